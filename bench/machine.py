@@ -39,7 +39,7 @@ def commit(root):
 def _flags(programs):
     path = os.path.join(programs, "compile_commands.json")
     for line in _lines(path):
-        if "triangle/refine.c" in line and '"command"' in line:
+        if "triangle/refine/refine.c" in line and '"command"' in line:
             return " ".join(w for w in line.split() if re.match(r"-(O|std|f|m|g|DNDEBUG)", w))
     return "unknown"
 

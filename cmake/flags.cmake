@@ -35,8 +35,8 @@ set(PTRIANGLE_STRICT_WARNINGS
     -Wno-unknown-pragmas) # OpenMP's, where it is left out
 
 # Each operation on doubles is rounded to a double as it is written, or the exact predicates break and meshes differ
-# between compilers (triangle/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand behind
-# those of CFLAGS and CMAKE_C_FLAGS, so that they win. Linking has them too, since compilers add code there that
+# between compilers (triangle/base/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand
+# behind those of CFLAGS and CMAKE_C_FLAGS, so that they win. Linking has them too, since compilers add code there that
 # switches subnormals off for the whole process; -Ofast is the one option that nothing behind it takes back. They are
 # private: a client's own arithmetic is the client's business.
 include(CheckCSourceCompiles)

@@ -3,59 +3,59 @@
 
 # Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
-    triangle/status.c
-    triangle/scratch_file.c
-    triangle/predicates.c
-    triangle/pslg.c
-    triangle/mesh.c
-    triangle/radix.c
-    triangle/hilbert.c
-    triangle/spatial.c
-    triangle/insertion.c
-    triangle/curve_sort.c
-    triangle/delaunay.c
-    triangle/crossing.c
-    triangle/recover.c
-    triangle/flip_history.c
-    triangle/flip.c
-    triangle/overlap.c
-    triangle/bundle.c
-    triangle/constrain.c
-    triangle/sweep_line.c
-    triangle/locate.c
-    triangle/carve.c
-    triangle/why_empty.c
-    triangle/chain.c
-    triangle/reconstruct.c
-    triangle/cavity.c
-    triangle/interpolate.c
-    triangle/degrees.c
-    triangle/quality.c
-    triangle/petal.c
-    triangle/size_text.c
-    triangle/small_angle.c
-    triangle/groundwork.c
-    triangle/feature_size.c
-    triangle/split.c
-    triangle/disk.c
-    triangle/bad_queue.c
-    triangle/criterion.c
-    triangle/inside.c
-    triangle/feed.c
-    triangle/treat.c
-    triangle/refine.c
-    triangle/pause.c
-    triangle/census.c
-    triangle/crowd.c
-    triangle/estimate.c
-    triangle/stats.c
-    triangle/generate.c
+    triangle/base/status.c
+    triangle/base/scratch_file.c
+    triangle/geometry/predicates.c
+    triangle/mesh/pslg.c
+    triangle/mesh/mesh.c
+    triangle/base/radix.c
+    triangle/geometry/hilbert.c
+    triangle/cdt/spatial.c
+    triangle/cdt/insertion.c
+    triangle/cdt/curve_sort.c
+    triangle/cdt/delaunay.c
+    triangle/cdt/crossing.c
+    triangle/cdt/recover.c
+    triangle/cdt/flip_history.c
+    triangle/cdt/flip.c
+    triangle/cdt/overlap.c
+    triangle/cdt/bundle.c
+    triangle/cdt/constrain.c
+    triangle/geometry/sweep_line.c
+    triangle/mesh/locate.c
+    triangle/cdt/carve.c
+    triangle/cdt/why_empty.c
+    triangle/cdt/chain.c
+    triangle/cdt/reconstruct.c
+    triangle/refine/cavity.c
+    triangle/mesh/interpolate.c
+    triangle/geometry/degrees.c
+    triangle/refine/quality.c
+    triangle/refine/petal.c
+    triangle/base/size_text.c
+    triangle/refine/small_angle.c
+    triangle/refine/groundwork.c
+    triangle/size/feature_size.c
+    triangle/refine/split.c
+    triangle/refine/disk.c
+    triangle/refine/bad_queue.c
+    triangle/refine/criterion.c
+    triangle/refine/inside.c
+    triangle/refine/feed.c
+    triangle/refine/treat.c
+    triangle/refine/refine.c
+    triangle/refine/pause.c
+    triangle/refine/census.c
+    triangle/size/crowd.c
+    triangle/size/estimate.c
+    triangle/mesh/stats.c
+    triangle/refine/generate.c
     triangle/api/figure.c
-    triangle/api/mesh.c
+    triangle/api/figure_mesh.c
     triangle/api/arrays.c
     triangle/dropin/switches.c
-    triangle/topology.c
-    triangle/grid.c
+    triangle/mesh/topology.c
+    triangle/mesh/grid.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
@@ -102,7 +102,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
-    triangle/text/stream.c
+    triangle/text/text_stream.c
     triangle/text/tile_store.c
     triangle/text/grouping.c
     triangle/text/boundary.c
@@ -133,41 +133,41 @@ set(PTRIANGLE_HDF5_SOURCES
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/part.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
-set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c
-    triangle/predicates.c)
+set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c
+    triangle/geometry/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
-# hand out threads (sched/threads.h), and nothing else.
+# hand out threads (sched/schedule/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
-    sched/theory.c
-    sched/threads.c
-    sched/by_tile.c
-    sched/partition.c
-    sched/room.c
-    sched/sweep/tile_copy.c
-    sched/sweep/finds.c
-    sched/sweep/pipeline.c
-    sched/sweep/tile_fill.c
-    sched/sweep/tiles.c
-    sched/sweep/stream.c
-    sched/sweep/queue.c
-    sched/sweep/deal.c
-    sched/sweep/sort_triangles.c
-    sched/sweep/move_triangles.c
-    sched/sweep/numbering.c
-    sched/sweep/park.c
-    sched/sweep/spool.c
-    sched/sweep/folder.c
-    sched/sweep/checkpoint.c
-    sched/sweep/carry_halt.c
-    sched/sweep/state.c
-    sched/sweep/ahead.c
-    sched/sweep/remain.c
-    sched/sweep/sweep.c
-    sched/worklist.c
-    sched/halt.c
-    sched/phase.c
+    sched/schedule/theory.c
+    sched/schedule/threads.c
+    sched/schedule/by_tile.c
+    sched/schedule/partition.c
+    sched/schedule/room.c
+    sched/tiles/tile_copy.c
+    sched/tiles/finds.c
+    sched/tiles/pipeline.c
+    sched/tiles/tile_fill.c
+    sched/tiles/tiles.c
+    sched/tiles/tile_stream.c
+    sched/tiles/queue.c
+    sched/tiles/deal.c
+    sched/tiles/sort_triangles.c
+    sched/tiles/move_triangles.c
+    sched/tiles/numbering.c
+    sched/tiles/park.c
+    sched/checkpoint/spool.c
+    sched/checkpoint/folder.c
+    sched/checkpoint/checkpoint.c
+    sched/checkpoint/carry_halt.c
+    sched/checkpoint/state.c
+    sched/tiles/ahead.c
+    sched/tiles/remain.c
+    sched/tiles/sweep.c
+    sched/schedule/worklist.c
+    sched/schedule/halt.c
+    sched/schedule/phase.c
     sched/ranks/carrier.c
     sched/ranks/borrow.c
     sched/ranks/hand_out.c
@@ -177,12 +177,12 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/pieces.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
-    sched/ranks/stream.c
+    sched/ranks/rank_stream.c
     sched/ranks/talk.c
     sched/ranks/territory.c
-    sched/schedule.c
-    sched/triangulate.c
-    sched/mesh.c)
+    sched/schedule/schedule.c
+    sched/schedule/triangulate.c
+    sched/schedule/library.c)
 
 # The ranks of an MPI, where there is one: a library of its own.
 set(PTRIANGLE_MPI_SOURCES sched/ranks/mpi.c)
@@ -197,17 +197,21 @@ set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/files.h
     include/ptriangle/check.h)
 
-# Folder drivers/: the executables, each from drivers/<name>.c. The second list of programs needs the folder sched/ and
-# its library.
+# Folder drivers/: the executables, each from PTRIANGLE_MAIN_<name>. The second list of programs needs the folder sched/
+# and its library.
+set(PTRIANGLE_MAIN_triangle drivers/mesh/triangle.c)
+set(PTRIANGLE_MAIN_ptriangle drivers/mesh/ptriangle.c)
+set(PTRIANGLE_MAIN_trianglecheck drivers/judge/trianglecheck.c)
+set(PTRIANGLE_MAIN_meshplot drivers/plot/meshplot.c)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES drivers/verdict.c sched/threads.c)
+set(PTRIANGLE_JUDGE_SOURCES drivers/judge/verdict.c sched/schedule/threads.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
     drivers/resources.c
-    drivers/scratch.c
-    drivers/judged_text.c
-    drivers/judged_h5.c
-    drivers/judged_files.c
-    drivers/judged_words.c
+    drivers/judge/scratch.c
+    drivers/judge/judged_text.c
+    drivers/judge/judged_h5.c
+    drivers/judge/judged_files.c
+    drivers/judge/judged_words.c
     drivers/one_line.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
@@ -216,47 +220,47 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
-    drivers/plot_part.c
-    drivers/plot_density.c
-    drivers/plot_colour.c
-    drivers/plot_shade.c
-    drivers/plot_field.c
-    drivers/plot_draw.c)
+    drivers/plot/plot_part.c
+    drivers/plot/plot_density.c
+    drivers/plot/plot_colour.c
+    drivers/plot/plot_shade.c
+    drivers/plot/plot_field.c
+    drivers/plot/plot_draw.c)
 
 # The command line of Triangle, for the mesh generators among the programs.
 set(PTRIANGLE_RUN_SOURCES
-    drivers/arguments.c
-    drivers/console.c
+    drivers/mesh/arguments.c
+    drivers/mesh/console.c
     drivers/one_line.c
-    drivers/help.c
+    drivers/mesh/help.c
     drivers/interrupt.c
-    drivers/export.c
-    drivers/mesh_files.c
-    drivers/summary.c
-    drivers/self_check.c
+    drivers/mesh/export.c
+    drivers/mesh/mesh_files.c
+    drivers/mesh/summary.c
+    drivers/mesh/self_check.c
     drivers/resources.c
-    drivers/estimate.c
-    drivers/disk_needs.c
-    drivers/plan.c
-    drivers/run.c)
+    drivers/mesh/estimate.c
+    drivers/mesh/disk_needs.c
+    drivers/mesh/plan.c
+    drivers/mesh/run.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
-    drivers/blocks_file.c
-    drivers/joint_files.c
-    drivers/launch.c
-    drivers/long_options.c
-    drivers/progress.c
-    drivers/rank_report.c
-    drivers/shared_input.c
-    drivers/streams.c
-    drivers/restart.c
-    drivers/prediction.c
-    drivers/replay.c)
-set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
-set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)
+    drivers/mesh/blocks_file.c
+    drivers/mesh/joint_files.c
+    drivers/mesh/launch.c
+    drivers/mesh/long_options.c
+    drivers/mesh/progress.c
+    drivers/mesh/rank_report.c
+    drivers/mesh/shared_input.c
+    drivers/mesh/streams.c
+    drivers/mesh/restart.c
+    drivers/mesh/prediction.c
+    drivers/mesh/replay.c)
+set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)
+set(PTRIANGLE_NO_REPORT_SOURCE drivers/mesh/report_none.c)
 
 # As one of several tasks it is a rank of an MPI, or refuses.
-set(PTRIANGLE_LAUNCH_SOURCE drivers/launch_mpi.c)
-set(PTRIANGLE_NO_LAUNCH_SOURCE drivers/launch_alone.c)
+set(PTRIANGLE_LAUNCH_SOURCE drivers/mesh/launch_mpi.c)
+set(PTRIANGLE_NO_LAUNCH_SOURCE drivers/mesh/launch_alone.c)

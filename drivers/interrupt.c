@@ -24,7 +24,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "triangle/clock.h"
+#include "triangle/base/clock.h"
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LONG_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2,
                "handlers need lock-free atomics");

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "triangle/text/output.h"
-#include "triangle/stop.h"
+#include "triangle/base/stop.h"
 
 enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of timeout(1) */
 

@@ -2,9 +2,9 @@
  *
  * These come with some forty shared libraries, which take several times as long to load as a small mesh to make. So a
  * program is built twice, of the same objects: as the executable, which has stand-ins instead
- * (drivers/launch_alone.c, triangle/hdf5/none.c), and as a module with both, which the executable loads and calls where
- * it is one of several tasks or a word names an HDF5 file. From then on the executable does nothing of its own. Where
- * modules cannot be loaded (cmake/programs.cmake) the executable has all itself. */
+ * (drivers/mesh/launch_alone.c, triangle/hdf5/none.c), and as a module with both, which the executable loads and calls
+ * where it is one of several tasks or a word names an HDF5 file. From then on the executable does nothing of its own.
+ * Where modules cannot be loaded (cmake/programs.cmake) the executable has all itself. */
 #ifndef DRIVERS_START_H
 #define DRIVERS_START_H
 

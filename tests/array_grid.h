@@ -2,7 +2,7 @@
 #ifndef TESTS_ARRAY_GRID_H
 #define TESTS_ARRAY_GRID_H
 
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 struct array_grid {
     const double *points, *attributes; /* [n_points][2], [n_points][n_attributes] */

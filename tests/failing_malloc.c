@@ -9,7 +9,7 @@
  *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
  *
  * Calls of the dynamic linker and of OpenMP's library are not counted: that prints a line and ends the program, and
- * nothing can be done about it (sched/threads.h). */
+ * nothing can be done about it (sched/schedule/threads.h). */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -33,7 +33,7 @@ awk '{
         }
     }
     print FILENAME ":" FNR ": " out
-}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] >"$code"
+}' triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] >"$code"
 
 # refuse PATTERN REASON FILE...
 refuse() {
@@ -46,7 +46,7 @@ refuse() {
 }
 
 # 1. Every source file stands in a list, every list entry is a file.
-for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; do
+for file in triangle/*/*.c triangle/*/*.cpp sched/*/*.c; do
     [ -f "$file" ] || continue
     grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
 done
@@ -61,28 +61,28 @@ tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
     triangle/hdf5/* | triangle/text/behind.c) echo hdf5 ;;
-    triangle/api/* | sched/mesh.c) echo api ;;
+    triangle/api/* | sched/schedule/library.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
     triangle/text/names.c | triangle/text/window.c) echo read ;;
     triangle/text/output.c | triangle/text/layouts.c) echo write ;;
     triangle/text/joined.c) echo joint_files ;;
-    triangle/text/stream.c) echo text_stream ;;
+    triangle/text/text_stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
-    triangle/feed.c | triangle/treat.c) echo refine ;;
-    sched/triangulate.c) echo par_triangulate ;;
-    sched/halt.c | sched/sweep/carry_halt.c | sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
-    sched/sweep/state.c | sched/sweep/folder.c) echo checkpoint ;;
-    sched/sweep/deal.c | sched/sweep/sort_triangles.c | sched/sweep/move_triangles.c) echo numbering ;;
-    sched/sweep/finds.c | sched/sweep/numbering.c | sched/sweep/pipeline.c | sched/sweep/queue.c) basename "$1" .c ;;
-    sched/threads.c | sched/sweep/*) echo schedule ;;
+    triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
+    sched/schedule/triangulate.c) echo par_triangulate ;;
+    sched/schedule/halt.c | sched/checkpoint/carry_halt.c | sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
+    sched/checkpoint/state.c | sched/checkpoint/folder.c) echo checkpoint ;;
+    sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
+    sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
+    sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;
     esac
 }
-for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; do
+for file in triangle/*/*.c triangle/*/*.cpp sched/*/*.c; do
     [ -f "tests/test_$(tested_by "$file").c" ] || breach "$file has no test program"
 done
 
@@ -90,69 +90,71 @@ done
 # include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all, and
 # hdf5/, whose files are outputs of text/.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper folder' \
-    triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
-refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper folder' sched/*.[ch] sched/*/*.[ch]
+    triangle/*/*.[ch] triangle/*/*.cpp
+refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper folder' sched/*/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|dropin|check)/' 'includes a folder of the mesher' \
-    triangle/*.[ch]
+    triangle/base/*.[ch] triangle/geometry/*.[ch] triangle/mesh/*.[ch] triangle/cdt/*.[ch] triangle/refine/*.[ch] \
+    triangle/size/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/hdf5/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|check)/' 'includes another folder' triangle/dropin/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
     include/ptriangle/*.h
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
-    triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
+    triangle/*/*.[ch] triangle/*/*.cpp
 
-# The sweep and the ranks stand above the headers of the schedule: only sched/*.c, which choose between them, include
-# both.
-refuse '#[[:space:]]*include[[:space:]]*"sched/(sweep|ranks)/' 'includes what stands above it' sched/*.h
-refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/sweep/*.[ch]
+# The sweep and the ranks stand above the headers of the schedule: only sched/schedule/*.c, which choose between them,
+# include both.
+refuse '#[[:space:]]*include[[:space:]]*"sched/(tiles|checkpoint|ranks)/' 'includes what stands above it' sched/schedule/*.h
+refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/tiles/*.[ch] \
+    sched/checkpoint/*.[ch]
 
-# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks (drivers/run.h).
+# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks (drivers/mesh/run.h).
 # shellcheck disable=SC2046 # one word a file
-refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/triangle.c \
-    $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_]+' | sed 's/$/.c/; p; s/c$/h/')
+refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/mesh/triangle.c \
+    $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_/]+' | sed 's/$/.c/; p; s/c$/h/')
 
 # One file runs anything in parallel: all else hands tasks to an executor.
-others=$(ls sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
+others=$(ls sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] | grep -vx sched/schedule/threads.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
-refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/threads.c' $others
+refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/schedule/threads.c' $others
 
 # Arrays grow in one way; the mesh's own lie where a storage has them, or at a cache line.
-others=$(ls triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] |
-    grep -vx -e triangle/grow.h -e triangle/mesh.c | tr '\n' ' ')
+others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] |
+    grep -vx -e triangle/base/grow.h -e triangle/mesh/mesh.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
-refuse '[^a-z_]realloc\(' 'grows an array without triangle/grow.h' $others
+refuse '[^a-z_]realloc\(' 'grows an array without triangle/base/grow.h' $others
 
 # One file knows MPI, so that all else can be compiled, and tried, without.
-others=$(ls triangle/*.[ch] triangle/*/*.[ch] sched/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
+others=$(ls triangle/*/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $others
 
 # The judge knows nothing of the judged but input, predicates and tools: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
-        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic|executor|grow|scratch_file)\.h)$')
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|scratch_file)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh|owners|fence|refine|pause|census|estimate|generate|executor|api/mesh|dropin/(triangle|run)'
-tools='clock|degrees|grow|hilbert|radix|point|scratch_file|size_text|status|stop'
+hooks='mesh/(mesh|owners)|refine/(fence|refine|pause|census|generate)|size/estimate|api/mesh|dropin/(triangle|run)'
+tools='base/[a-z_]+|geometry/(degrees|hilbert|point)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
 [ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
 
 # 3. Libraries neither print nor end the process nor touch the locale, but for the one line of triangulate().
-others=$(ls triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] |
+others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] |
     grep -vx triangle/dropin/aloud.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
     'prints, exits or touches the locale' $others
 
 # 4. No line of code is longer than 120 characters. (Lines of scripts and of CMake may hold a longer word or pattern.)
-long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] \
-    sched/*/*.[ch] drivers/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*/*.c* include/*/*.h \
+long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] \
+    drivers/*.[ch] drivers/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*/*.c* include/*/*.h \
     bench/*.py python/*/*.py tests/*.py tests/*/*.py tools/*.py | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
@@ -161,7 +163,7 @@ long=$(LC_ALL=C.UTF-8 grep -nE '^[^|].{120,}' ./*.md docs/*.md data/*.md | head 
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
 # 5. Each header compiles alone; those of hdf5/ where HDF5 is there; that for MPI in its client (tests/client/ranks.c).
-for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
+for file in include/*/*.h triangle/*/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
     case $file in triangle/hdf5/*) [ -n "$hdf5" ] || continue ;; include/ptriangle/mpi.h) continue ;; esac
     "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include ${hdf5:+-isystem "$hdf5"} \
@@ -170,7 +172,7 @@ done
 
 # 6. The top folder holds what is listed here; what a run has left there is not committed.
 known='\.(ci|clang-format|clang-tidy|gitattributes|gitignore)|[A-Z]+(\.md)?|CMake(Lists\.txt|Presets\.json)'
-known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|include|python|sched|tests|tools|triangle"
+known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|examples|include|python|sched|tests|tools|triangle"
 if [ -e .git ] && command -v git >/dev/null; then
     strange=$(git ls-files | cut -d / -f 1 | sort -u | grep -vxE "$known")
     [ -z "$strange" ] || breach "committed at the top:" $strange

@@ -3,7 +3,7 @@
 #define TESTS_LATTICE_TILES_H
 
 #include "ptriangle/tiles.h"
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 /* side * side points at whole places, each square cut into two triangles; the points of the lowest row were there
  * before refinement. One row of squares is a tile, or a few are. All values follow from the item's number. */

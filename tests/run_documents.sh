@@ -21,8 +21,8 @@ for program in triangle ptriangle trianglecheck meshplot; do
     "$build/bin/$program" --version | grep -qx "$program [0-9.]*" || fault "$program --version"
     # What the sources take: tables of {"name", ...}.
     case $program in
-    ptriangle) source=$root/drivers/long_options.c ;;
-    *) source=$root/drivers/$program.c ;;
+    ptriangle) source=$root/drivers/mesh/long_options.c ;;
+    *) source=$(echo "$root"/drivers/*/"$program.c") ;;
     esac
     taken=$(grep -oE '\{"[a-z-]+", *([A-Z]|(required|no)_argument)' "$source" | sed 's/{"\([a-z-]*\)".*/--\1/')
     [ $program = triangle ] || [ "$(echo "$taken" | wc -l)" -gt 10 ] || fault "$program: which options does $source take?"

@@ -27,14 +27,14 @@ compiles() { # compiles FILE OPTION...
 }
 evaluation() { "$cc" "$@" -dM -E -x c /dev/null 2>/dev/null | awk '$2 == "__FLT_EVAL_METHOD__" { print $3 }'; }
 
-compiles predicates.c -O2 || fault "predicates.c does not compile: $(cat by_hand.log)"
+compiles geometry/predicates.c -O2 || fault "predicates.c does not compile: $(cat by_hand.log)"
 for option in -ffast-math -Ofast -ffinite-math-only; do
-    compiles predicates.c -O2 $option && fault "predicates.c compiles with $option"
+    compiles geometry/predicates.c -O2 $option && fault "predicates.c compiles with $option"
     grep -q 'fast-math' by_hand.log || fault "$option is refused for another reason: $(head -n 3 by_hand.log)"
 done
 # The x87, where the compiler has it; what s390x compilers call 1 is fit for use.
 if [ "$(evaluation -mfpmath=387)" = 2 ]; then
-    compiles predicates.c -mfpmath=387 && fault "predicates.c compiles for the x87"
+    compiles geometry/predicates.c -mfpmath=387 && fault "predicates.c compiles for the x87"
     grep -q 'rounded to double' by_hand.log || fault "the x87 is refused for another reason: $(head -n 3 by_hand.log)"
 fi
 for method in 0 1 2; do
@@ -42,7 +42,7 @@ for method in 0 1 2; do
 #include <float.h>
 #undef FLT_EVAL_METHOD
 #define FLT_EVAL_METHOD $method
-#include "triangle/arithmetic.h"
+#include "triangle/base/arithmetic.h"
 EOF
     "$cc" -std=c11 -I "$root" -I "$root/include" -c arithmetic.c -o by_hand.o 2>by_hand.log
     [ $? -eq $((method == 2)) ] || fault "FLT_EVAL_METHOD $method: $(head -n 3 by_hand.log)"

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "triangle/estimate.h"
-#include "triangle/delaunay.h"
+#include "triangle/size/estimate.h"
+#include "triangle/cdt/delaunay.h"
 #include "triangle/text/read.h"
 
 uint64_t support_bits(struct support_random *random)

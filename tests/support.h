@@ -17,10 +17,10 @@
 #include <cmocka.h>
 
 #include "both_ways.h"
-#include "triangle/census.h"
-#include "triangle/mesh.h"
-#include "triangle/predicates.h"
-#include "triangle/generate.h"
+#include "triangle/refine/census.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/refine/generate.h"
 
 /* A generator of random numbers (splitmix64). Start it with any seed. */
 struct support_random {

@@ -14,7 +14,7 @@
 #include "ptriangle/check.h"
 #include "ptriangle/files.h"
 #include "ptriangle/par.h"
-#include "triangle/feature_size.h"
+#include "triangle/size/feature_size.h"
 
 /* A square with a square hole in it, two regions on either side of a wall, attributes, markers. */
 static const double points[][2] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {3, 0}, {3, 3}};

@@ -1,5 +1,5 @@
 /* File names: suffixes, iteration numbers. */
-#include "drivers/arguments.h"
+#include "drivers/mesh/arguments.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

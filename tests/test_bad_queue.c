@@ -1,6 +1,6 @@
 /* The queue against a naive twin: a list that is searched for the first entry of the lowest bucket. */
 #include "support.h"
-#include "triangle/bad_queue.h"
+#include "triangle/refine/bad_queue.h"
 
 /* Triangle t is in state 3 t, unless a test changes that. */
 enum { SLOTS = 100000 };

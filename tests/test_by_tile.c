@@ -1,5 +1,5 @@
 /* The order of a worklist by tiles: whatever order it comes in, and whoever has which tiles. */
-#include "sched/by_tile.h"
+#include "sched/schedule/by_tile.h"
 
 #include "tests/support.h"
 

@@ -1,6 +1,6 @@
 /* Carving and regions against a naive twin that paints components of the mesh minus its segments. */
 #include "support.h"
-#include "triangle/carve.h"
+#include "triangle/cdt/carve.h"
 
 /* paint[t]: the least number of a triangle that t reaches without crossing a subsegment. Sweeps until nothing
  * changes. */

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "allocations.h"
-#include "sched/schedule.h"
-#include "sched/sweep/checkpoint.h"
+#include "sched/schedule/schedule.h"
+#include "sched/checkpoint/checkpoint.h"
 #include "trials.h"
 
 static const char DIRECTORY[] = "state";

@@ -3,8 +3,8 @@
 
 #include <gmp.h>
 
-#include "triangle/crossing.h"
-#include "triangle/expansion.h"
+#include "triangle/cdt/crossing.h"
+#include "triangle/geometry/expansion.h"
 
 /* A point of the plane in rationals; determinants of such. */
 struct exact {

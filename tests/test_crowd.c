@@ -1,6 +1,6 @@
 /* Forecasts against what refinement makes. */
 #include "support.h"
-#include "triangle/crowd.h"
+#include "triangle/size/crowd.h"
 
 /* What angles alone ask for: in a long gap between walls, where no size can grow, at a feature of a large square, and
  * along a coast. Before, the second was twice too much, and the last half of what came. */

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/degrees.h"
+#include "triangle/geometry/degrees.h"
 
 static void test_accuracy(void **state)
 {

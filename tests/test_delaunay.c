@@ -1,6 +1,6 @@
 /* The triangulation of a point set against its naive twin: all triangles whose circle holds no other point. */
 #include "support.h"
-#include "triangle/delaunay.h"
+#include "triangle/cdt/delaunay.h"
 
 static struct tri_mesh triangulate(const struct tri_pslg *pslg) { return support_delaunay(pslg, 0, NULL); }
 

@@ -1,6 +1,6 @@
 /* Estimates against what refinement makes, and against themselves. */
 #include "support.h"
-#include "triangle/estimate.h"
+#include "triangle/size/estimate.h"
 
 /* A square of side 1 with some points in it, not refined yet. */
 static struct tri_mesh coarse_square(int32_t n)

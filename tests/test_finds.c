@@ -1,5 +1,5 @@
 /* What shares find, row by row: dealt, or left where it is, as a naive list has it; and runs of ids. */
-#include "sched/sweep/finds.h"
+#include "sched/tiles/finds.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

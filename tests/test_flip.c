@@ -1,8 +1,8 @@
 /* Flips: from any triangulation to the Delaunay one, with a triangle known for each vertex. */
 #include "support.h"
-#include "triangle/delaunay.h"
-#include "triangle/flip.h"
-#include "triangle/reconstruct.h"
+#include "triangle/cdt/delaunay.h"
+#include "triangle/cdt/flip.h"
+#include "triangle/cdt/reconstruct.h"
 
 /* A fan of all triangles from the first of n points in convex position, on an arc. */
 static struct tri_mesh fan(int32_t n, double height)

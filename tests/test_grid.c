@@ -1,7 +1,7 @@
 /* A mesh as it is handed out, item by item, against the mesh itself. */
 #include "support.h"
-#include "triangle/grid.h"
-#include "triangle/topology.h"
+#include "triangle/mesh/grid.h"
+#include "triangle/mesh/topology.h"
 
 /* A refined square with attributes, of which one corner is cut off: vertex 4, outside, is no corner of a triangle. */
 static struct tri_mesh cut_square(struct tri_pslg *pslg)

@@ -1,6 +1,6 @@
 /* Points come in the order of the curve: neighbours in it are neighbours in the plane. */
 #include "support.h"
-#include "triangle/hilbert.h"
+#include "triangle/geometry/hilbert.h"
 
 /* All n points along the curve. */
 static void order_all(const struct tri_point *xy, int32_t n, int32_t *order)

@@ -1,5 +1,5 @@
 /* Attributes that are linear in the plane stay so. */
-#include "triangle/interpolate.h"
+#include "triangle/mesh/interpolate.h"
 
 #include "tests/support.h"
 

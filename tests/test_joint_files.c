@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "drivers/joint_files.h"
-#include "sched/schedule.h"
+#include "drivers/mesh/joint_files.h"
+#include "sched/schedule/schedule.h"
 #include "tests/files.h"
 
 static const struct trial trials[] = {

@@ -1,6 +1,6 @@
 /* Faces against a naive twin: all triangles that hold a point, and what floods from them. */
 #include "support.h"
-#include "triangle/locate.h"
+#include "triangle/mesh/locate.h"
 
 static int32_t face_of(int32_t *root, int32_t t)
 {

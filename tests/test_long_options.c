@@ -1,5 +1,5 @@
 /* Words that begin with two dashes. */
-#include "drivers/long_options.h"
+#include "drivers/mesh/long_options.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
-#include "sched/sweep/numbering.h"
+#include "sched/tiles/numbering.h"
 #include "tile_order.h"
 
 /* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "support.h"
-#include "triangle/overlap.h"
+#include "triangle/cdt/overlap.h"
 
 enum { N_POINTS = 24, MOST = 60 };
 

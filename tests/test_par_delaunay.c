@@ -1,7 +1,7 @@
 /* The triangulation of points on several threads against that on one, byte for byte, with many small blocks. */
 #include "support.h"
 
-#include "sched/threads.h"
+#include "sched/schedule/threads.h"
 
 static void compare_threads(const struct tri_pslg *pslg, int32_t leaf_size)
 {

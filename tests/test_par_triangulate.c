@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "sched/schedule.h"
+#include "sched/schedule/schedule.h"
 #define REAL TRI_REAL
 #include "triangle/dropin/triangle.h"
 

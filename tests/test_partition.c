@@ -1,9 +1,9 @@
 /* Blocks: their fences, held against a look at every one of them; shares of work, held against the refined mesh. */
 #include "support.h"
 
-#include "sched/partition.h"
-#include "triangle/estimate.h"
-#include "triangle/quality.h"
+#include "sched/schedule/partition.h"
+#include "triangle/size/estimate.h"
+#include "triangle/refine/quality.h"
 
 /* Inputs and bounds of many kinds, degenerate ones among them. */
 struct trial {

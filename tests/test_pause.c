@@ -1,7 +1,7 @@
 /* Refiners that are taken apart between two points, and go on elsewhere: the same mesh as without a pause. */
 #include "support.h"
 
-#include "triangle/pause.h"
+#include "triangle/refine/pause.h"
 
 static bool always(void *user)
 {

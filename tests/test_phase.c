@@ -3,11 +3,11 @@
 #include "full.h"
 #include "support.h"
 
-#include "sched/phase.h"
-#include "sched/theory.h"
-#include "sched/threads.h"
-#include "triangle/estimate.h"
-#include "triangle/quality.h"
+#include "sched/schedule/phase.h"
+#include "sched/schedule/theory.h"
+#include "sched/schedule/threads.h"
+#include "triangle/size/estimate.h"
+#include "triangle/refine/quality.h"
 
 struct trial {
     const char *file; /* or NULL: random points in a square */

@@ -8,9 +8,9 @@
 #include <cmocka.h>
 #include <pthread.h>
 
-#include "sched/sweep/pipeline.h"
-#include "sched/threads.h"
-#include "triangle/status.h"
+#include "sched/tiles/pipeline.h"
+#include "sched/schedule/threads.h"
+#include "triangle/base/status.h"
 
 enum { N = 500, SLOTS = 5 };
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "drivers/plot.h"
+#include "drivers/plot/plot.h"
 
 enum { WIDTH = 40, HEIGHT = 30 };
 

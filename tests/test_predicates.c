@@ -11,8 +11,8 @@
 #include <cmocka.h>
 #include <gmp.h>
 
-#include "triangle/expansion.h"
-#include "triangle/predicates.h"
+#include "triangle/geometry/expansion.h"
+#include "triangle/geometry/predicates.h"
 
 /* random numbers and points */
 

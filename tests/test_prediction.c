@@ -1,6 +1,6 @@
 /* List scheduling of measured blocks, the shares that follow, and the same on ranks. */
-#include "drivers/prediction.h"
-#include "drivers/replay.h"
+#include "drivers/mesh/prediction.h"
+#include "drivers/mesh/replay.h"
 
 #include <math.h>
 #include <setjmp.h>

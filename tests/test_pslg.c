@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/pslg.h"
+#include "triangle/mesh/pslg.h"
 
 static double corners[] = {0, 0, 1, 0, 0, 1}, hole[] = {0.1, 0.1}, region[] = {0.2, 0.2, 1, -1};
 

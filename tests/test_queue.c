@@ -1,5 +1,5 @@
 /* A sink behind a queue: all tiles in their order, copied; failures come back; nothing hangs, nothing leaks. */
-#include "sched/sweep/queue.h"
+#include "sched/tiles/queue.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 #include "tests/allocations.h"
 #include "tests/lattice_tiles.h"
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 static const struct lattice LATTICE = {60, 3, 2, 1, true, false};
 

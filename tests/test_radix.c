@@ -1,7 +1,7 @@
 /* Against a stable sort that is plainly right, over all sizes that are treated differently. */
 #include "full.h"
 #include "support.h"
-#include "triangle/radix.h"
+#include "triangle/base/radix.h"
 
 struct entry {
     uint64_t key;

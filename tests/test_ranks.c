@@ -9,9 +9,9 @@
 
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
-#include "sched/ranks/stream.h"
-#include "sched/schedule.h"
-#include "sched/sweep/checkpoint.h"
+#include "sched/ranks/rank_stream.h"
+#include "sched/schedule/schedule.h"
+#include "sched/checkpoint/checkpoint.h"
 
 static const struct trial trials[] = {
     {"letter.poly", 30, 20000, 500, false, false, 0},

@@ -6,11 +6,11 @@
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
-#include "triangle/census.h"
-#include "triangle/chain.h"
-#include "triangle/crossing.h"
-#include "triangle/reconstruct.h"
-#include "triangle/topology.h"
+#include "triangle/refine/census.h"
+#include "triangle/cdt/chain.h"
+#include "triangle/cdt/crossing.h"
+#include "triangle/cdt/reconstruct.h"
+#include "triangle/mesh/topology.h"
 
 enum { MOST = 64 };
 

@@ -2,7 +2,7 @@
  * laid. By Lee & Lin's lemma it is enough that every edge without subsegment is Delaunay. */
 #include "full.h"
 #include "support.h"
-#include "triangle/recover.h"
+#include "triangle/cdt/recover.h"
 
 struct crossing {
     int32_t t;     /* triangle at a that the segment leaves through; TRI_NONE: through none, or it is not clear */

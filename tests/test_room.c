@@ -2,9 +2,9 @@
  * is. */
 #include "support.h"
 
-#include "sched/room.h"
-#include "sched/sweep/numbering.h"
-#include "sched/threads.h"
+#include "sched/schedule/room.h"
+#include "sched/tiles/numbering.h"
+#include "sched/schedule/threads.h"
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
 

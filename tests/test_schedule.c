@@ -11,12 +11,12 @@
 #include <stdatomic.h>
 #include <sys/resource.h>
 
-#include "sched/schedule.h"
-#include "sched/sweep/numbering.h"
-#include "sched/sweep/park.h"
-#include "sched/threads.h"
+#include "sched/schedule/schedule.h"
+#include "sched/tiles/numbering.h"
+#include "sched/tiles/park.h"
+#include "sched/schedule/threads.h"
 #include "tile_order.h"
-#include "triangle/topology.h"
+#include "triangle/mesh/topology.h"
 #include "trials.h"
 
 /* The first twelve are run by every test that looks for differences; the rest are inputs of the unkind sort. */

@@ -16,7 +16,7 @@
 
 #include "tests/allocations.h"
 #include "tests/files.h"
-#include "triangle/scratch_file.h"
+#include "triangle/base/scratch_file.h"
 
 static void test_each_is_its_own(void **state)
 {

@@ -1,6 +1,6 @@
 /* Sizes in messages: three digits, in a unit that fits. */
 #include "support.h"
-#include "triangle/size_text.h"
+#include "triangle/base/size_text.h"
 
 static void test_units_fit(void **state)
 {

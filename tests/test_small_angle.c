@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "tests/support.h"
-#include "triangle/small_angle.h"
+#include "triangle/refine/small_angle.h"
 
 /* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as
  * narrow gaps. */

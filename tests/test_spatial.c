@@ -1,8 +1,8 @@
 /* Points go along the curve and come back: no trace of the order inside is left in a mesh. */
 #include "support.h"
-#include "triangle/delaunay.h"
-#include "triangle/hilbert.h"
-#include "triangle/spatial.h"
+#include "triangle/cdt/delaunay.h"
+#include "triangle/geometry/hilbert.h"
+#include "triangle/cdt/spatial.h"
 
 /* A PSLG of which every point has attributes and a marker that tell who it is. */
 static struct tri_pslg named_points(enum support_kind kind, int32_t n, uint64_t seed)

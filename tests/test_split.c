@@ -3,8 +3,8 @@
  * lost, every segment kept. */
 #include "support.h"
 
-#include "triangle/crossing.h"
-#include "triangle/split.h"
+#include "triangle/cdt/crossing.h"
+#include "triangle/refine/split.h"
 
 enum { ROOM = 200 };
 

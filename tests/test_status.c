@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 static void test_detail(void **state)
 {

@@ -4,11 +4,11 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "sched/schedule.h"
+#include "sched/schedule/schedule.h"
 #include "tests/array_grid.h"
 #include "support.h"
 #include "triangle/text/output.h"
-#include "triangle/quality.h"
+#include "triangle/refine/quality.h"
 #include "triangle/text/read.h"
 #include "triangle/dropin/triangle.h"
 #include "triangle/text/write.h"

@@ -2,7 +2,7 @@
  * carved, and refined. TANGLES: how many of each family. */
 #include "full.h"
 #include "tangles.h"
-#include "triangle/crossing.h"
+#include "triangle/cdt/crossing.h"
 
 static struct tri_options triangulated(void)
 {

@@ -1,9 +1,9 @@
 /* The lemmas of the paper, as formulas and on random meshes. */
 #include "support.h"
 
-#include "sched/theory.h"
-#include "triangle/cavity.h"
-#include "triangle/quality.h"
+#include "sched/schedule/theory.h"
+#include "triangle/refine/cavity.h"
+#include "triangle/refine/quality.h"
 
 static const double RADIAN = 3.14159265358979324 / 180;
 

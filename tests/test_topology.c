@@ -1,5 +1,5 @@
 /* Edges, neighbours, Voronoi diagram, nodes amid edges: against naive answers and against their definitions. */
-#include "triangle/topology.h"
+#include "triangle/mesh/topology.h"
 
 #include "tests/support.h"
 

@@ -3,7 +3,7 @@
 
 #include "full.h"
 #include "support.h"
-#include "triangle/why_empty.h"
+#include "triangle/cdt/why_empty.h"
 
 /* Two squares, the second in the first, and five points on a line beside them. */
 static const double SPOTS[13][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 1}, {3, 1}, {3, 3}, {1, 3},

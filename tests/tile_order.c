@@ -2,7 +2,7 @@
 #include "tile_order.h"
 
 #include "support.h"
-#include "triangle/hilbert.h"
+#include "triangle/geometry/hilbert.h"
 
 static int64_t tile_of(const struct tri_mesh *mesh, const struct par_partition *partition, const int32_t *v, int n)
 {

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/clock.h"
-#include "triangle/grow.h"
+#include "triangle/base/clock.h"
+#include "triangle/base/grow.h"
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more)
 {

@@ -12,8 +12,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/status.h"
-#include "triangle/stop.h"
+#include "triangle/base/status.h"
+#include "triangle/base/stop.h"
 
 /* Bytes that grow. */
 struct par_bytes {

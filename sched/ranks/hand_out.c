@@ -2,7 +2,7 @@
  * numbers the vertices of its tiles; tells later ranks the numbers of those that their triangles have, too, found again
  * by their places; and hands out its own tiles, as one process would. */
 #include "sched/ranks/ranks.h"
-#include "sched/sweep/park.h"
+#include "sched/tiles/park.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "sched/ranks/mpi_carrier.h"
-#include "sched/ranks/stream.h"
+#include "sched/ranks/rank_stream.h"
 
 /* Counts of MPI are ints. */
 enum { MOST_BYTES = 1 << 30 };

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "sched/ranks/ranks.h"
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum tri_status par_ranks_no_memory(struct tri_error *error)
 {
@@ -253,7 +253,7 @@ static bool paste_vertices(struct pasting *p)
         const struct par_told_vertex *told = &p->message->vertex[i];
         tri_vertex_id v = told->common;
         /* A new vertex that comes back need not be noted: it was made within one block, whose triangles no other block
-         * changes (triangle/refine.h), so one rank alone tells of it. */
+         * changes (triangle/refine/refine.h), so one rank alone tells of it. */
         if (v == TRI_NONE) {
             int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
             v = *at != TRI_NONE ? *at : append_vertex(p, i);

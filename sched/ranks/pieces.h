@@ -12,7 +12,7 @@
 #define SCHED_RANKS_PIECES_H
 
 #include "sched/ranks/ranks.h"
-#include "sched/sweep/checkpoint.h"
+#include "sched/checkpoint/checkpoint.h"
 
 struct par_piece_file {
     int32_t first, end; /* its tiles: first .. end - 1 */

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/by_tile.h"
-#include "sched/sweep/park.h"
-#include "sched/sweep/state.h"
-#include "triangle/grow.h"
+#include "sched/schedule/by_tile.h"
+#include "sched/tiles/park.h"
+#include "sched/checkpoint/state.h"
+#include "triangle/base/grow.h"
 
 /* --- who works where */
 

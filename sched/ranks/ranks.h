@@ -16,11 +16,11 @@
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 
-#include "sched/phase.h"
+#include "sched/schedule/phase.h"
 #include "sched/ranks/carrier.h"
 #include "sched/ranks/talk.h"
 #include "sched/ranks/territory.h"
-#include "sched/sweep/tiles.h"
+#include "sched/tiles/tiles.h"
 
 /* Who does the blocks of the phase at hand. */
 struct par_shift {
@@ -77,7 +77,7 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
 void par_count_done(const struct par_ranks *ranks, int64_t done[PAR_DONE]);
 void par_add_done(struct par_ranks *ranks, const int64_t done[PAR_DONE]);
 
-/* --- keep.c: checkpoints, where they are wanted (sched/sweep/checkpoint.h) */
+/* --- keep.c: checkpoints, where they are wanted (sched/checkpoint/checkpoint.h) */
 
 /* Collective. Where there is a state, *again: mesh, worklist, report and stand are what they were; what there is now
  * goes. TRI_BAD_INPUT: it is another run's, or damaged. */

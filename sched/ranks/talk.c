@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/sweep/spool.h"
-#include "triangle/grow.h"
+#include "sched/checkpoint/spool.h"
+#include "triangle/base/grow.h"
 
 /* --- maps */
 

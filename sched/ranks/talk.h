@@ -9,8 +9,8 @@
 #define SCHED_RANKS_TALK_H
 
 #include "sched/ranks/carrier.h"
-#include "sched/worklist.h"
-#include "triangle/mesh.h"
+#include "sched/schedule/worklist.h"
+#include "triangle/mesh/mesh.h"
 
 /* From ids to numbers. What lies at a border has ids that lie together: so there are pages where there are any. */
 enum { PAR_PAGE = 1024 };

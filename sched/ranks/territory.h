@@ -7,7 +7,7 @@
 #ifndef SCHED_RANKS_TERRITORY_H
 #define SCHED_RANKS_TERRITORY_H
 
-#include "sched/partition.h"
+#include "sched/schedule/partition.h"
 #include "sched/ranks/carrier.h"
 
 struct par_territory {

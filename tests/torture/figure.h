@@ -6,7 +6,7 @@
 #define TESTS_TORTURE_FIGURE_H
 
 #include "tests/support.h"
-#include "triangle/pslg.h"
+#include "triangle/mesh/pslg.h"
 
 struct figure {
     struct tri_pslg pslg; /* owns its arrays; markers are there for all points and segments */

@@ -1,10 +1,10 @@
 /* The stages of a run, as the programs have them, each result before the judges. */
 #include "tests/torture/judge.h"
 
-#include "sched/schedule.h"
-#include "sched/threads.h"
-#include "triangle/quality.h"
-#include "triangle/reconstruct.h"
+#include "sched/schedule/schedule.h"
+#include "sched/schedule/threads.h"
+#include "triangle/refine/quality.h"
+#include "triangle/cdt/reconstruct.h"
 
 /* In degrees: up to here theory promises an end (28.6, where no segments meet at small angles). */
 static const double PROMISED = 28;

@@ -2,10 +2,10 @@
 #include <stdio.h>
 
 #include "tests/torture/judge.h"
-#include "triangle/census.h"
-#include "triangle/disk.h"
-#include "triangle/predicates.h"
-#include "triangle/quality.h"
+#include "triangle/refine/census.h"
+#include "triangle/refine/disk.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/refine/quality.h"
 
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;

@@ -3,7 +3,7 @@
 
 #include "triangle/api/figure.h"
 #include "triangle/api/mesh.h"
-#include "triangle/topology.h"
+#include "triangle/mesh/topology.h"
 
 static const struct tri_api_mesh *api(const struct tri_mesh *mesh) { return (const struct tri_api_mesh *)mesh; }
 

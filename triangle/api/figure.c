@@ -1,4 +1,4 @@
-/* Shapes are checked here, contents where they matter (triangle/pslg.c, triangle/reconstruct.c). */
+/* Shapes are checked here, contents where they matter (triangle/mesh/pslg.c, triangle/cdt/reconstruct.c). */
 #include "triangle/api/figure.h"
 
 #include <assert.h>

@@ -3,7 +3,7 @@
 #define TRIANGLE_API_FIGURE_H
 
 #include "ptriangle/tri.h"
-#include "triangle/pslg.h"
+#include "triangle/mesh/pslg.h"
 
 enum { TRI_API_MOST_COPIES = 12 };
 

@@ -3,7 +3,7 @@
 #define TRIANGLE_API_MESH_H
 
 #include "ptriangle/tri.h"
-#include "triangle/generate.h"
+#include "triangle/refine/generate.h"
 
 struct tri_api_mesh {
     struct tri_mesh mesh; /* first: what callers point to. No free numbers, points in the order of the caller */

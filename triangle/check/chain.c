@@ -19,8 +19,8 @@
 #include <stdlib.h>
 
 #include "triangle/check/tube.h"
-#include "triangle/grow.h"
-#include "triangle/predicates.h"
+#include "triangle/base/grow.h"
+#include "triangle/geometry/predicates.h"
 
 enum { MAX_GRID_SIDE = 2048, HUB = 16, MOST_PASSES = 16 };
 

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "triangle/check/store.h"
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",

@@ -18,9 +18,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "triangle/executor.h"
-#include "triangle/pslg.h"
-#include "triangle/status.h"
+#include "triangle/base/executor.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/base/status.h"
 
 #ifdef __cplusplus
 extern "C" {

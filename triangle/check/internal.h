@@ -21,7 +21,7 @@
 #include <stdint.h>
 
 #include "triangle/check/check.h"
-#include "triangle/predicates.h"
+#include "triangle/geometry/predicates.h"
 
 /* A point whose place, inside or outside the mesh, the sweep is to find out. */
 struct check_query {

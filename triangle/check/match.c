@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "triangle/check/store.h"
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 static int compare_ends(int64_t from, int64_t to, int64_t begin, int64_t end)
 {

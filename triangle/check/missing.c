@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum { MOST_TRIALS = 1 << 27, MOST_CUTS = 1 << 20 };
 

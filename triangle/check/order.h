@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 enum { CHECK_ORDER_LEVELS = 16 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "triangle/check/internal.h"
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum { NEAR_ENOUGH = 1 << 12, WINDOW = 1 << 14 }; /* vertices */
 

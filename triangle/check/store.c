@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "triangle/grow.h"
-#include "triangle/scratch_file.h"
+#include "triangle/base/grow.h"
+#include "triangle/base/scratch_file.h"
 
 enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 

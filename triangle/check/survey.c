@@ -91,7 +91,7 @@ static enum tri_status pass(struct checker *c, struct survey *s)
     return status;
 }
 
-/* More, and multiples of the least double would be no coordinates any longer (triangle/point.h). */
+/* More, and multiples of the least double would be no coordinates any longer (triangle/geometry/point.h). */
 enum { MOST = 1074 - 268 };
 
 /* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1, as

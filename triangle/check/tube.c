@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum { HUB = 16, MOST_TUBES = 2 /* that a subsegment is in, on an average */ };
 

@@ -7,9 +7,9 @@
 
 #include "triangle/dropin/switches.h"
 #include "triangle/dropin/triangle.h"
-#include "triangle/mesh.h"
-#include "triangle/pslg.h"
-#include "triangle/reconstruct.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/cdt/reconstruct.h"
 
 #define REAL TRI_REAL /* as clients of Triangle have it */
 

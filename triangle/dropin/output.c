@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "triangle/dropin/io.h"
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 enum { MOST_ARRAYS = 14 };
 

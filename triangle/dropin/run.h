@@ -1,10 +1,10 @@
 /* What lies behind triangulate(), whoever refines: that of libtriangle.a (triangle/dropin/triangulate.c) and that of
- * libptriangle.a (sched/triangulate.c). */
+ * libptriangle.a (sched/schedule/triangulate.c). */
 #ifndef TRIANGLE_DROPIN_RUN_H
 #define TRIANGLE_DROPIN_RUN_H
 
 #include "triangle/dropin/triangle.h"
-#include "triangle/generate.h"
+#include "triangle/refine/generate.h"
 
 /* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
  * executor (or NULL) runs what comes in pieces. aloud: for triangulate(). Errors, why the mesh is empty, and that

@@ -1,7 +1,7 @@
 /* triangulate() of libtriangle.a: one thread.
  *
- * libptriangle.a has the same functions (sched/triangulate.c), and a linker that sees it first never comes here: this
- * file defines nothing else. */
+ * libptriangle.a has the same functions (sched/schedule/triangulate.c), and a linker that sees it first never comes
+ * here: this file defines nothing else. */
 #include "triangle/dropin/triangle.h"
 
 #include <stddef.h>

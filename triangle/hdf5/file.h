@@ -8,7 +8,7 @@
 
 #include <hdf5.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 #include "triangle/text/behind.h"
 
 struct tri_h5_file {

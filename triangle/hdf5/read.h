@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 #ifdef __cplusplus
 extern "C" {

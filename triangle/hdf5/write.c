@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 #include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 #include "triangle/hdf5/segments.h"

@@ -2,7 +2,7 @@
 #ifndef TRIANGLE_TEXT_BOUNDARY_H
 #define TRIANGLE_TEXT_BOUNDARY_H
 
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 /* A maximal run of boundary edges with one marker, the mesh on its left. */
 struct tri_boundary_piece {

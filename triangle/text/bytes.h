@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 struct tri_bytes {
     char *data;           /* malloc'ed */

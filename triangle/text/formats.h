@@ -6,7 +6,7 @@
 #ifndef TRIANGLE_TEXT_FORMATS_H
 #define TRIANGLE_TEXT_FORMATS_H
 
-#include "triangle/pslg.h"
+#include "triangle/mesh/pslg.h"
 #include "triangle/text/write.h"
 
 #ifdef __cplusplus

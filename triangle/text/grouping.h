@@ -2,7 +2,7 @@
 #ifndef TRIANGLE_TEXT_GROUPING_H
 #define TRIANGLE_TEXT_GROUPING_H
 
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 enum { TRI_MOST_GROUPS = 1024 };
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "triangle/status.h"
+#include "triangle/base/status.h"
 
 #ifdef __cplusplus
 extern "C" {

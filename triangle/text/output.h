@@ -17,8 +17,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/status.h"
-#include "triangle/stop.h"
+#include "triangle/base/status.h"
+#include "triangle/base/stop.h"
 
 #ifdef __cplusplus
 extern "C" {

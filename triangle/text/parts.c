@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum { MOST_SAMPLES = 1 << 18 };
 

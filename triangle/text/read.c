@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/mesh.h"
+#include "triangle/mesh/mesh.h"
 #include "triangle/text/text.h"
 
 enum {

@@ -15,11 +15,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/executor.h"
-#include "triangle/pslg.h"
-#include "triangle/reconstruct.h"
-#include "triangle/status.h"
-#include "triangle/stop.h"
+#include "triangle/base/executor.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/cdt/reconstruct.h"
+#include "triangle/base/status.h"
+#include "triangle/base/stop.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/tags.h"
 #include "triangle/text/text.h"

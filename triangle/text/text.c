@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 enum { DEFAULT_CHUNK = 1 << 18 };
 

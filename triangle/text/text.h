@@ -18,10 +18,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/executor.h"
+#include "triangle/base/executor.h"
 #include "triangle/text/decimal.h"
-#include "triangle/status.h"
-#include "triangle/stop.h"
+#include "triangle/base/status.h"
+#include "triangle/base/stop.h"
 
 struct tri_text_chunk {
     size_t begin;  /* offset of the first line that begins here or later */

@@ -14,7 +14,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "triangle/scratch_file.h"
+#include "triangle/base/scratch_file.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };

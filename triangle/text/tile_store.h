@@ -8,7 +8,7 @@
 #define TRIANGLE_TEXT_TILE_STORE_H
 
 #include "ptriangle/tiles.h"
-#include "triangle/grid.h"
+#include "triangle/mesh/grid.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "triangle/grow.h"
+#include "triangle/base/grow.h"
 
 /* Fills the room. */
 static enum tri_status fill(struct tri_window *w, struct tri_error *error)

@@ -14,9 +14,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/executor.h"
-#include "triangle/grid.h"
-#include "triangle/status.h"
+#include "triangle/base/executor.h"
+#include "triangle/mesh/grid.h"
+#include "triangle/base/status.h"
 #include "triangle/text/output.h"
 
 #ifdef __cplusplus

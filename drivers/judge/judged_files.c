@@ -1,0 +1,320 @@
+/* The files of a mesh on trial. */
+#include "drivers/judge/judged_files.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "triangle/text/names.h"
+#include "triangle/text/read.h"
+#include "triangle/text/text.h"
+
+/* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
+#define TEXT_SHARE 4.0
+#define UNLISTED_SHARE 8.0  /* without a .poly file, should the mesh be full of holes */
+#define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
+
+bool judged_cut_suffix(char *path, const char *suffix)
+{
+    size_t n = strlen(path), m = strlen(suffix);
+    if (n <= m || strcmp(path + n - m, suffix) != 0)
+        return false;
+    path[n - m] = '\0';
+    return true;
+}
+
+bool judged_cut_text_suffix(char *path)
+{
+    return judged_cut_suffix(path, ".node") || judged_cut_suffix(path, ".ele") || judged_cut_suffix(path, ".poly");
+}
+
+struct neighbor_rows {
+    int32_t *neighbors;
+    int32_t base;
+};
+
+static const char *read_neighbor_row(void *user, size_t i, struct tri_fields *fields)
+{
+    struct neighbor_rows *rows = user;
+    int64_t value;
+    if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
+        return "has no number";
+    for (size_t k = 0; k < 3; k++) {
+        if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
+            return "lacks a neighbor";
+        if (value < -1 || value > INT32_MAX)
+            return "has a neighbor that is no triangle";
+        rows->neighbors[3 * i + k] = value < 0 ? -1 : (int32_t)value - rows->base;
+    }
+    return NULL;
+}
+
+static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_text *text,
+                                       const struct tri_executor *executor, struct tri_error *error)
+{
+    struct tri_cursor cursor = tri_cursor_begin(text);
+    struct tri_fields fields;
+    int64_t n = 0;
+    const bool found = tri_cursor_next(&cursor, &fields);
+    const long line = (long)cursor.line;
+    if (!found)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line > 0 ? line : 1,
+                        "unexpected end of file: the number of triangles is missing");
+    if (tri_fields_integer(&fields, &n) != TRI_FIELD_GOOD)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is not a number");
+    if (n < 0)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is negative");
+    f->stale_neighbors = n != f->elements.n; /* left there by an earlier run */
+    if (f->stale_neighbors)
+        return TRI_OK;
+    if (tri_cursor_remaining(&cursor) < (size_t)n)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line,
+                        "unexpected end of file: %lld triangles are announced, but only %zu records follow",
+                        (long long)n, tri_cursor_remaining(&cursor));
+    f->neighbors = malloc(3 * ((size_t)n + 1) * sizeof *f->neighbors);
+    if (f->neighbors == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    struct neighbor_rows rows = {f->neighbors, f->base};
+    struct tri_table table = {"triangle", (size_t)n, f->base, read_neighbor_row, &rows};
+    return tri_cursor_table(&cursor, &table, executor, error);
+}
+
+static enum tri_status read_neighbors(struct judged_files *f, const char *path, const struct tri_executor *executor,
+                                      struct tri_error *error)
+{
+    struct tri_text text = {0};
+    enum tri_status status = tri_text_load(&text, path, 0, executor, NULL, error);
+    if (status == TRI_OK)
+        status = parse_neighbors(f, &text, executor, error);
+    tri_text_free(&text);
+    return status;
+}
+
+static enum tri_status read_arrays(struct judged_files *f, const struct judged_names *names,
+                                   const struct tri_executor *executor, struct tri_error *error)
+{
+    struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = executor};
+    bool points_in_poly;
+    enum tri_status status =
+        names->poly ? tri_read_poly(names->poly, names->node, &options, &f->mesh, &f->base, &points_in_poly, error)
+                    : tri_read_node(names->node, &options, &f->mesh, &f->base, error);
+    f->n_nodes = f->mesh.n_points;
+    if (status == TRI_OK)
+        status = tri_read_ele(names->ele, &options, f->base, f->mesh.n_points, &f->elements, error);
+    if (status == TRI_OK && names->neigh)
+        status = read_neighbors(f, names->neigh, executor, error);
+    return status;
+}
+
+static double size_of(const char *path)
+{
+    struct stat status;
+    return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
+}
+
+/* The input's text is read into memory. */
+static enum tri_status check_input_size(const struct judged_ask *ask, struct tri_error *error)
+{
+    const double size = size_of(ask->input);
+    if (size < JUDGED_WORTH_A_LOOK || size <= ask->memory)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, ask->input, 0,
+                    "has %.3g MB of text, which is read into memory; %.3g MB may be used", 1e-6 * size,
+                    1e-6 * ask->memory);
+}
+
+static enum tri_status read_input(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    const char *path = ask->input;
+    enum tri_status fits = check_input_size(ask, error);
+    if (fits != TRI_OK)
+        return fits;
+    struct tri_read_options options = {.default_base = f->base, .may_be_empty = true, .executor = ask->executor,
+                                       .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
+    int32_t base;
+    bool points_in_poly;
+    char *stem = tri_joined(path, "");
+    if (stem == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    if (judged_cut_suffix(stem, ".node")) {
+        free(stem);
+        return tri_read_node(path, &options, &f->input, &base, error);
+    }
+    (void)judged_cut_suffix(stem, ".poly");
+    char *node = tri_joined(stem, ".node");
+    free(stem);
+    if (node == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    enum tri_status status = tri_read_poly(path, node, &options, &f->input, &base, &points_in_poly, error);
+    free(node);
+    return status;
+}
+
+static struct tri_check_source take_arrays(struct judged_files *f)
+{
+    static const int32_t none[2] = {0, 0};
+    f->arrays = (struct tri_check_mesh){
+        .n_points = f->mesh.n_points, .points = f->mesh.points,
+        .n_triangles = f->elements.n, .triangles = f->elements.corners != NULL ? f->elements.corners : none,
+        .neighbors = f->neighbors, .n_segments = f->listed ? f->mesh.n_segments : 0,
+        .segments = !f->listed ? NULL : f->mesh.segments != NULL ? f->mesh.segments : none,
+        .segment_markers = f->mesh.segment_markers, .point_markers = f->mesh.markers,
+        .n_attributes = f->elements.n_attributes, .attributes = f->elements.attributes,
+        .n_nodes = f->mesh.n_points, .middles = f->elements.n_nodes == 6 ? f->elements.extra : NULL,
+        .n_point_attributes = f->mesh.n_attributes, .point_attributes = f->mesh.attributes};
+    return tri_check_source_of(&f->arrays);
+}
+
+static int64_t least_extra(const struct tri_elements *e)
+{
+    int64_t least = INT64_MAX;
+    for (size_t i = 0; e->extra != NULL && i < (size_t)(e->n_nodes - 3) * (size_t)e->n; i++)
+        least = e->extra[i] >= 0 && e->extra[i] < least ? e->extra[i] : least;
+    return least;
+}
+
+/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last.
+ * Of the input's points fewer may be there (-j). */
+static void leave_out_nodes(struct judged_files *f)
+{
+    const int64_t first_node = f->text.given != 0 ? f->text.least_middle : least_extra(&f->elements);
+    int64_t n = f->input.n_points < f->n_nodes ? f->input.n_points : f->n_nodes;
+    n = first_node < n ? first_node : n;
+    if (f->elements.n_nodes > 3) {
+        for (size_t i = 0; i < 3 * (size_t)f->elements.n; i++)
+            n = f->elements.corners[i] >= n ? f->elements.corners[i] + 1 : n;
+        f->arrays.n_points = (int32_t)n;
+        f->source.n_points = n;
+    } else if (f->source.n_points < n) { /* of scratch files */
+        f->source.n_points = n;
+    }
+}
+
+bool judged_fits(const char *base, double memory)
+{
+    enum { POLY, NODE, ELE, NEIGH, N_SUFFIXES };
+    static const char *const suffixes[N_SUFFIXES] = {".poly", ".node", ".ele", ".neigh"};
+    double size[N_SUFFIXES];
+    for (int i = 0; i < N_SUFFIXES; i++) {
+        char *path = tri_joined(base, suffixes[i]);
+        size[i] = size_of(path);
+        free(path);
+    }
+    const double share = size[POLY] > 0 ? TEXT_SHARE : UNLISTED_SHARE;
+    return BOUNDARY_SHARE * size[POLY] + share * (size[NODE] + size[ELE] + size[NEIGH]) <= memory;
+}
+
+/* Into memory, if they and the judge fit. */
+static enum tri_status read_texts(struct judged_files *f, const struct judged_ask *ask,
+                                  const struct judged_names *names, struct tri_error *error)
+{
+    f->listed = names->poly != NULL;
+    enum tri_status status = TRI_OK;
+    if (judged_fits(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input))) {
+        status = read_arrays(f, names, ask->executor, error);
+        f->source = take_arrays(f);
+    } else {
+        status = judged_text_read(&f->text, names, ask->scratch, ask->executor, error);
+        f->source = judged_text_source(&f->text);
+        f->source.memory = ask->memory;
+        f->base = f->text.base;
+        f->n_nodes = f->text.n_nodes;
+        f->stale_neighbors = f->text.stale_neighbors;
+    }
+    return status;
+}
+
+static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    char *node = tri_joined(ask->base, ".node"), *ele = tri_joined(ask->base, ".ele");
+    char *poly = tri_joined(ask->base, ".poly"), *neigh = tri_joined(ask->base, ".neigh");
+    enum tri_status status = TRI_OK;
+    if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
+        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    } else {
+        struct judged_names names = {node, ele, access(poly, F_OK) == 0 ? poly : NULL,
+                                     access(neigh, F_OK) == 0 ? neigh : NULL};
+        status = read_texts(f, ask, &names, error);
+    }
+    free(node);
+    free(ele);
+    free(poly);
+    free(neigh);
+    return status;
+}
+
+static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    enum tri_status status = judged_h5_open(&f->h5, ask->base, error);
+    if (status != TRI_OK)
+        return status;
+    f->source = judged_h5_source(f->h5);
+    f->source.memory = ask->memory;
+    f->n_nodes = f->source.n_points;
+    return TRI_OK;
+}
+
+bool judged_is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
+
+const struct tri_format *judged_format(const struct judged_ask *ask)
+{
+    const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
+    if (format == NULL || access(ask->base, F_OK) == 0)
+        return format;
+    char *node = tri_joined(ask->base, ".node");
+    const bool is_base = node != NULL && access(node, F_OK) == 0;
+    free(node);
+    return is_base ? NULL : format;
+}
+
+enum tri_status judged_check_size(const char *path, double memory, struct tri_error *error)
+{
+    const double size = size_of(path);
+    if (size < JUDGED_WORTH_A_LOOK || TEXT_SHARE * size <= memory)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, path, 0, "has %.3g MB, which are read into memory and take %.3g MB there; "
+                    "%.3g MB may be used: a mesh of any size is read of .h5 and of .node, .ele and .poly",
+                    1e-6 * size, 1e-6 * TEXT_SHARE * size, 1e-6 * memory);
+}
+
+/* Where a format keeps the boundary alone, which segments there are is not known. */
+static enum tri_status read_format(struct judged_files *f, const struct judged_ask *ask,
+                                   const struct tri_format *format, struct tri_error *error)
+{
+    enum tri_status status = judged_check_size(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input), error);
+    status = status ? status : format->read(ask->base, &f->mesh, &f->elements, ask->executor, error);
+    if (status != TRI_OK)
+        return status;
+    f->listed = format->inner_segments;
+    f->boundary_alone = !f->listed;
+    f->n_nodes = f->mesh.n_points;
+    f->source = take_arrays(f);
+    return TRI_OK;
+}
+
+enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    const struct tri_format *format = judged_format(ask);
+    enum tri_status status = judged_is_h5(ask) ? open_h5(f, ask, error)
+                             : format != NULL  ? read_format(f, ask, format, error)
+                                               : read_mesh(f, ask, error);
+    if (status == TRI_OK && ask->input != NULL)
+        status = read_input(f, ask, error);
+    if (status == TRI_OK)
+        leave_out_nodes(f);
+    f->source.scratch = ask->scratch;
+    return status;
+}
+
+void judged_files_free(struct judged_files *f)
+{
+    tri_pslg_free(&f->mesh);
+    tri_elements_free(&f->elements);
+    free(f->neighbors);
+    tri_pslg_free(&f->input);
+    judged_text_close(&f->text);
+    judged_h5_close(f->h5);
+}

@@ -1,0 +1,351 @@
+/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
+ * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/judge/judged_files.h"
+#include "drivers/judge/judged_words.h"
+#include "drivers/one_line.h"
+#include "drivers/resources.h"
+#include "drivers/start.h"
+#include "drivers/judge/verdict.h"
+#include "sched/schedule/threads.h"
+#include "triangle/check/check.h"
+#include "triangle/base/size_text.h"
+
+enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
+
+static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
+
+static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+    "\n"
+    "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
+    "that in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or .grd, where BASE is its name. The\n"
+    "last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared. Of\n"
+    "triangles with six nodes each edge has one node, half the way along it, with its subsegment's marker and half\n"
+    "the way between the attributes of its ends.\n"
+    "\n"
+    "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
+    "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
+    "                       they are outside the mesh, or within rounding of its boundary; its hole points lie\n"
+    "                       outside, no vertex is lost. Its vertices keep their attributes, if the mesh has some;\n"
+    "                       those of others lie in the range of the input's\n"
+    "  -q, --min-angle Q    angle bound in degrees; smaller angles are faults unless a small input angle explains\n"
+    "                       them: the triangle touches a vertex where two subsegments meet at less than 60\n"
+    "                       degrees (or a triangle next to it does), or has corners on both of them\n"
+    "      --small-input-angle X  what is small there, instead of 60\n"
+    "  -b, --max-bad N      instead: up to N triangles may be below the angle bound, for whatever reason\n"
+    "  -a, --max-area A     area bound\n"
+    "  -D, --conforming     all triangles truly Delaunay, diametral circles of subsegments empty (default:\n"
+    "                       constrained)\n"
+    "      --no-delaunay    no check of circles\n"
+    "  -c, --convex         the mesh fills the convex hull of the vertices, within 16 units in the last place of\n"
+    "                       the largest coordinate: vertices on the hull's edges are rounded\n"
+    "      --keep-hull      made with -c: the mesh may end at the convex hull of the vertices, not at segments alone\n"
+    "  -j, --jettisoned     unused input vertices were dropped: know input vertices by their coordinates\n"
+    "      --keep-holes     hole points were ignored\n"
+    "      --any-holes      faces may be empty without a hole point: found otherwise\n"
+    "  -r, --refined        made by refining a mesh: hole points were ignored, unused vertices inside are no fault,\n"
+    "                       and the mesh may end anywhere\n"
+    "      --no-markers     do not compare the markers of subsegments and vertices\n"
+    "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
+    "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
+    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what is free (default:\n"
+    "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
+    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory:\n"
+    "                       what takes too much of that is refused\n"
+    "      --scratch DIR    folder for what does not fit then (default: TMPDIR, else /tmp): text files as numbers,\n"
+    "                       20 bytes a vertex and 24 a triangle, more with attributes, neighbours, six nodes\n"
+    "      --json           report in JSON on standard output, instead of lines\n"
+    "      --quiet          print faults only\n"
+    "      --version, --help  name and version; this help\n"
+    "\n"
+    "Exit code: 0 no fault, 1 faults, 2 wrong usage or unreadable files (vertex numbers in BASE.ele that do not\n"
+    "exist are found on reading). Numbers printed count as the files do.\n";
+
+struct settings {
+    const char *base; /* name without suffix, or of one file */
+    bool is_base;     /* a suffix has been cut off */
+    const char *input;
+    struct tri_check_options check;
+    bool ignore_markers, ignore_regions, json, quiet;
+    int64_t threads; /* 0: not given */
+    double memory, memory_share; /* one of them, or 0: not given */
+    const char *scratch;         /* NULL: not given */
+};
+
+static int fail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    one_line_complain(PTRIANGLE_NAME, format, arguments);
+    va_end(arguments);
+    return TROUBLE;
+}
+
+static int fail_with(const struct tri_error *e)
+{
+    if (e->file[0] == '\0')
+        return fail("%s", e->text);
+    return e->line > 0 ? fail("%s:%ld: %s", e->file, e->line, e->text) : fail("%s: %s", e->file, e->text);
+}
+
+/* --- judging */
+
+/* Bytes that the process may use: the number asked for, or the share of what there is; by default most of that. */
+static double memory_to_use(const struct settings *s)
+{
+    enum { USUAL_PERCENT = 80 };
+    if (s->memory > 0)
+        return s->memory;
+    return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
+}
+
+/* Of the program itself: code, stacks, what allocators keep. */
+static const double TO_COME = 4e6;
+
+/* What stays in memory beside the parts leaves room for them, and for the program itself, or the trial is refused. */
+static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
+{
+    const double needed = tri_check_bound(&f->source, tri_check_least_bytes(&f->source, input));
+    if (f->source.memory <= 0 || needed <= f->source.memory)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, "", 0,
+                    "to judge %s vertices and %s subsegments, and what they are compared with, takes about %s of "
+                    "memory; %s may be used", tri_count_text((double)f->source.n_points).text,
+                    tri_count_text((double)f->source.n_segments).text, tri_size_text(needed).text,
+                    tri_size_text(f->source.memory).text);
+}
+
+static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,
+                             int threads, struct tri_check_report *report, struct tri_error *error)
+{
+    unsigned ignored = 0;
+    if (s->ignore_markers)
+        ignored |= 1u << TRI_CHECK_POINT_MARKERS | 1u << TRI_CHECK_SEGMENT_MARKERS;
+    if (s->ignore_regions)
+        ignored |= 1u << TRI_CHECK_ATTRIBUTES;
+    f->source.given &= ~ignored;
+    struct tri_check_options options = s->check;
+    options.base = f->base;
+    if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
+        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
+    if (f->source.n_triangles >= WORTH_THREADS) {
+        options.executor = executor;
+        options.n_threads = threads;
+    }
+    const struct tri_pslg *input = s->input != NULL ? &f->input : NULL;
+    f->source.beside = resources_memory_used() + TO_COME;
+    enum tri_status status = check_memory(f, input, error);
+    return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
+}
+
+/* --- arguments */
+
+enum long_option {
+    NO_DELAUNAY = 256,
+    SMALL_INPUT_ANGLE,
+    KEEP_HOLES,
+    ANY_HOLES,
+    KEEP_HULL,
+    NO_MARKERS,
+    NO_REGIONS,
+    THREADS,
+    MEMORY,
+    SCRATCH,
+    JSON,
+    QUIET,
+    VERSION,
+    HELP
+};
+
+static const struct option long_options[] = {
+    {"poly", required_argument, NULL, 'p'},
+    {"min-angle", required_argument, NULL, 'q'},
+    {"max-bad", required_argument, NULL, 'b'},
+    {"max-area", required_argument, NULL, 'a'},
+    {"conforming", no_argument, NULL, 'D'},
+    {"no-delaunay", no_argument, NULL, NO_DELAUNAY},
+    {"convex", no_argument, NULL, 'c'},
+    {"jettisoned", no_argument, NULL, 'j'},
+    {"keep-holes", no_argument, NULL, KEEP_HOLES},
+    {"any-holes", no_argument, NULL, ANY_HOLES},
+    {"keep-hull", no_argument, NULL, KEEP_HULL},
+    {"threads", required_argument, NULL, THREADS},
+    {"refined", no_argument, NULL, 'r'},
+    {"small-input-angle", required_argument, NULL, SMALL_INPUT_ANGLE},
+    {"no-markers", no_argument, NULL, NO_MARKERS},
+    {"no-regions", no_argument, NULL, NO_REGIONS},
+    {"memory", required_argument, NULL, MEMORY},
+    {"scratch", required_argument, NULL, SCRATCH},
+    {"json", no_argument, NULL, JSON},
+    {"quiet", no_argument, NULL, QUIET},
+    {"version", no_argument, NULL, VERSION},
+    {"help", no_argument, NULL, HELP},
+    {NULL, 0, NULL, 0},
+};
+
+static bool parse_real(const char *text, double *value)
+{
+    char *end;
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*value) && *value >= 0;
+}
+
+static bool parse_count(const char *text, int64_t *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtoll(text, &end, 10);
+    return end != text && *end == '\0' && errno == 0 && *value >= 0;
+}
+
+/* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
+static bool parse_size(const char *text, double *bytes, double *share)
+{
+    static const char units[] = "KMGT";
+    char *end;
+    double value = strtod(text, &end);
+    const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
+    if (end == text || !(value > 0) || !isfinite(value) || (*end != '\0' && end[1] != '\0'))
+        return false;
+    *share = *end == '%' ? value / 100 : 0;
+    *bytes = *end == '%' ? 0 : unit != NULL ? ldexp(value, 10 * (int)(unit - units + 1)) : value;
+    return *end == '\0' || unit != NULL || (*end == '%' && value <= 100);
+}
+
+/* Applies an option without value; false: it is none. */
+static bool apply_flag(struct settings *s, int option)
+{
+    switch (option) {
+    case 'D':
+        s->check.delaunay = TRI_CHECK_CONFORMING;
+        return true;
+    case NO_DELAUNAY:
+        s->check.delaunay = TRI_CHECK_NOT_DELAUNAY;
+        return true;
+    case 'c':
+        s->check.convex = true;
+        return true;
+    case 'j':
+        s->check.renumbered = true;
+        return true;
+    case KEEP_HOLES:
+        s->check.ignore_holes = true;
+        return true;
+    case 'r':
+        s->check.ignore_holes = s->check.ignore_lost = true;
+        s->check.border = TRI_CHECK_BORDER_ANY;
+        return true;
+    case ANY_HOLES:
+        s->check.any_holes = true;
+        return true;
+    case KEEP_HULL:
+        s->check.border = TRI_CHECK_BORDER_HULL;
+        return true;
+    case NO_MARKERS:
+        s->ignore_markers = true;
+        return true;
+    case NO_REGIONS:
+        s->ignore_regions = true;
+        return true;
+    case JSON:
+        s->json = true;
+        return true;
+    case QUIET:
+        s->quiet = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* Applies one option; false: not an option, or no value for it. */
+static bool apply(void *settings, int option)
+{
+    struct settings *s = settings;
+    switch (option) {
+    case 'p':
+        s->input = optarg;
+        return true;
+    case 'q':
+        return parse_real(optarg, &s->check.min_angle);
+    case 'b':
+        return parse_count(optarg, &s->check.max_bad);
+    case 'a':
+        return parse_real(optarg, &s->check.max_area);
+    case SMALL_INPUT_ANGLE:
+        return parse_real(optarg, &s->check.small_input_angle);
+    case THREADS:
+        return parse_count(optarg, &s->threads) && s->threads > 0;
+    case MEMORY:
+        return parse_size(optarg, &s->memory, &s->memory_share);
+    case SCRATCH:
+        s->scratch = optarg;
+        return true;
+    default:
+        return apply_flag(s, option);
+    }
+}
+
+/* 0: go on; < 0: done, with success; > 0: exit code. */
+static int parse_arguments(int argc, char **argv, struct settings *s)
+{
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              "-:p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    if (end != WORDS_TAKEN)
+        return end == WORDS_ANSWERED ? -1 : TROUBLE;
+    s->is_base = judged_cut_text_suffix(mesh);
+    s->base = mesh;
+    return 0;
+}
+
+static const char *usual_scratch(void)
+{
+    const char *folder = getenv("TMPDIR");
+    return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
+}
+
+static int run(const struct settings *s, struct judged_files *f)
+{
+    struct tri_error error = {0};
+    struct tri_check_report report;
+    int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
+    const struct tri_executor executor = par_executor(&threads);
+    const char *scratch = s->scratch != NULL ? s->scratch : usual_scratch();
+    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), scratch, &executor};
+    enum tri_status status = judged_read(f, &ask, &error);
+    if (f->stale_neighbors)
+        fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
+             s->base);
+    if (status == TRI_OK)
+        status = judge(s, f, &executor, threads, &report, &error);
+    if (status != TRI_OK)
+        return fail_with(&error);
+    struct verdict_style style = {s->base, s->check.min_angle, s->quiet};
+    (s->json ? verdict_print_json : verdict_print_lines)(&style, f, &report);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        return fail("cannot write to standard output");
+    return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
+}
+
+const int program_trouble = TROUBLE;
+const char program_version[] = PTRIANGLE_VERSION;
+
+int program_main(int argc, char **argv)
+{
+    struct settings settings = {.check = {.max_bad = -1}};
+    struct judged_files files = {0};
+    int code = parse_arguments(argc, argv, &settings);
+    if (code != 0)
+        return code < 0 ? EXIT_SUCCESS : code;
+    code = run(&settings, &files);
+    judged_files_free(&files);
+    return code;
+}

@@ -1,0 +1,30 @@
+/* The command line of Triangle: words of switches, one input file, and what files are called because of them. */
+#ifndef DRIVERS_MESH_ARGUMENTS_H
+#define DRIVERS_MESH_ARGUMENTS_H
+
+#include "triangle/base/status.h"
+#include "triangle/dropin/switches.h"
+
+struct arguments {
+    int argc; /* the words as given, for the comment in every file */
+    char **argv;
+    struct tri_switches switches;
+    const char *file; /* the last word that is no switch; NULL: there was none */
+    char *input;      /* file without its suffix; suffixes are appended to this */
+    char *output;     /* the same for what is written */
+};
+
+struct arguments arguments_begin(int argc, char **argv);
+
+/* Takes one word: switches if it begins with a dash, else the input file. */
+void arguments_word(struct arguments *arguments, const char *word);
+
+/* Once all words are in: lets the file's suffix set its switches, and makes the names. TRI_NO_MEMORY. */
+enum tri_status arguments_end(struct arguments *arguments, struct tri_error *error);
+
+void arguments_free(struct arguments *arguments);
+
+/* The name of the next iteration, malloc'ed; NULL: no memory. box -> box.1, box.9 -> box.10, d.1/box -> d.1/box.1. */
+char *next_iteration(const char *name);
+
+#endif

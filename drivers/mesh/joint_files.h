@@ -1,0 +1,60 @@
+/* Files that all ranks write together, each the rows that it owns: a sink on each rank, and on rank 0 the files, opened
+ * there and committed there. They are byte for byte those of one process. Nothing of them moves between ranks.
+ *
+ * WHO WRITES WHAT WHERE. Before the first tile all know how many vertices, triangles and segments each rank owns.
+ *   HDF5  Rank 0 lays the file out, and tells all where each array lies (triangle/hdf5/part.h); a row's place follows
+ *         from its number. At the end rank 0 adds what describes the arrays.
+ *   text  Lines have different lengths: each rank keeps its own in a file of its scratch folder, until all have told
+ *         how many bytes they have; then it copies them behind those of the ranks before it. The first line, whose
+ *         numbers are known, and what follows the last rows are rank 0's.
+ * What a rank has to write it writes through a descriptor of its own, by the temporary name that rank 0 has given the
+ * file. Where not all ranks see that file (triangle/text/joined.h), none of them writes: then, as for formats that need
+ * the whole mesh, tiles go to rank 0 (sched/ranks/relay.h). */
+#ifndef DRIVERS_MESH_JOINT_FILES_H
+#define DRIVERS_MESH_JOINT_FILES_H
+
+#include "ptriangle/tiles.h"
+#include "sched/ranks/carrier.h"
+#include "triangle/hdf5/write.h"
+#include "triangle/text/joined.h"
+#include "triangle/text/stream.h"
+
+enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };
+
+struct joint_files {
+    struct par_carrier *carrier;
+    const char *scratch;
+    const struct tri_stop *stop;          /* of what other ranks than the first one write */
+    struct tri_text_options text_options; /* its three outputs on rank 0 alone */
+    struct tri_sink text;                 /* rank 0: that of these files, if there are any */
+    struct joint_h5 {                     /* rank 0: an HDF5 file, if it has a writer; */
+        struct tri_h5_writer *writer;
+        struct tri_sink sink;
+        struct tri_output *output;
+        struct tri_h5_layout layout;      /* the rest is ours, on all ranks */
+        int64_t *place;
+        struct tri_h5_part *part;
+    } h5[JOINT_H5];
+    bool together;                        /* all ranks write */
+    struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files */
+    struct tri_output file[JOINT_FILES];  /* where others than rank 0 have joined in */
+    struct tri_output spool[JOINT_TEXTS];
+    struct tri_text_stream *stream;       /* into these */
+    struct tri_sink to_spool;
+    int64_t total[3];                     /* vertices, triangles, segments of all ranks, once the sink has begun */
+    int64_t n_input;
+    double bounds[4];
+};
+
+/* Collective, on files just opened: finds out whether all ranks can write them. wanted, of rank 0: they shall. The
+ * agreement includes the status. To be closed in any case. */
+enum tri_status joint_files_open(struct joint_files *joint, bool wanted, enum tri_status status,
+                                 struct tri_error *error);
+
+/* On each rank, where all write together. */
+struct tri_sink joint_files_sink(struct joint_files *joint);
+
+/* Collective: an agreement on the status. */
+enum tri_status joint_files_close(struct joint_files *joint, enum tri_status status, struct tri_error *error);
+
+#endif

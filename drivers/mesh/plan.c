@@ -1,0 +1,414 @@
+/* Can the machine carry the mesh that is asked for, and in what way?
+ *
+ * RULE. A sure estimate refuses, a likely one warns: areas ask for a number of triangles beyond doubt, angles for about
+ * a number. A likely estimate refuses, too, against a bound that somebody has set (--memory, or a limit of the
+ * process), and against the most that a mesh holds where areas decide, since the mesh would fail there after all the
+ * work. A mesh that fits stays in memory, which is quicker. */
+#define _DEFAULT_SOURCE /* access */
+
+#include "drivers/mesh/plan.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "drivers/mesh/disk_needs.h"
+#include "drivers/resources.h"
+#include "triangle/base/size_text.h"
+
+/* By how many times a mesh in memory may exceed its estimate: in general; where it must not; and where, as well, angles
+ * above 31 degrees or diametral circles without vertices are asked for, of which an estimate knows least. Memory below
+ * WORTH_A_LOOK bytes is not looked for. */
+static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
+
+/* Areas decide on a mesh that has hardly more triangles than they ask for beyond doubt: 1.14 times as many, as a rule.
+ * Up to such a share of what a mesh holds it surely fits in one: blocks have room that they do not use. */
+static const double AREAS_DECIDE = 1.3, SURELY_ONE_MESH = 0.8;
+
+/* Measured: bytes at the peak of triangulating, of the process, a point, an attribute of one, a segment, and of a mesh
+ * that is rebuilt, a point and a triangle; of text on its way into files, a point and at the most; and the share of all
+ * that is sure. */
+static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 200, ATTRIBUTE_BYTES = 20, SEGMENT_BYTES = 135,
+                    REBUILT_POINT_BYTES = 100, ELEMENT_BYTES = 48, TEXT_BYTES = 60, MOST_TEXT = 6e6, SURE_SHARE = 0.7;
+
+/* Measured: what is allocated to write files, touched or not. */
+static const double BUFFER_BYTES = 3e7;
+
+/* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
+static bool is_strict(const struct run *run)
+{
+    return run->hooks->limits.memory > 0 || resources_memory_end() != RESOURCES_SYSTEM;
+}
+
+/* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
+static double system_memory_left(const struct run *run)
+{
+    const bool counts_all = resources_memory_end() != RESOURCES_SYSTEM;
+    const double untouched = counts_all ? resources_stacks(run->hooks->threads) + BUFFER_BYTES : 0;
+    return fmax(resources_memory() - untouched, 0);
+}
+
+double plan_memory_left(const struct run *run)
+{
+    double allowed = run->hooks->limits.memory, left = system_memory_left(run);
+    return allowed > 0 ? fmin(left, fmax(allowed - resources_memory_used(), 0)) : left;
+}
+
+/* --- the input */
+
+static double size_of(const char *name)
+{
+    struct stat status;
+    return stat(name, &status) == 0 ? (double)status.st_size : 0;
+}
+
+/* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
+enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error)
+{
+    double size = 0;
+    for (int i = 0; i < files->n; i++)
+        size += size_of(files->name[i]);
+    if (size < WORTH_A_LOOK && !is_strict(run))
+        return TRI_OK;
+    const double left = plan_memory_left(run);
+    if (size > left)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "the input has %s of text, which is read into memory; %s are left", tri_size_text(size).text,
+                        tri_size_text(left).text);
+    return TRI_OK;
+}
+
+/* To write HDF5 of a mesh that nothing refines, beside the half of the peak that the mesh itself takes. */
+static double unrefined_streams(const struct run *run)
+{
+    const double triangles = run->elements.n > 0 ? run->elements.n : 2.0 * run->pslg.n_points;
+    return run->options.refine ? 0 : estimate_streams(run->hooks->n_streamed, triangles);
+}
+
+/* At its peak, what has been read included. */
+static double input_bytes(const struct run *run)
+{
+    const struct tri_pslg *p = &run->pslg;
+    const double point = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + ATTRIBUTE_BYTES * p->n_attributes;
+    const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +
+                        fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
+    return PROCESS_BYTES + fmax(made, made / 2 + unrefined_streams(run));
+}
+
+enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error)
+{
+    const double needed = input_bytes(run);
+    if (needed < WORTH_A_LOOK && !is_strict(run))
+        return TRI_OK;
+    const double all = resources_memory_used() + plan_memory_left(run);
+    if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "to triangulate the input, %s points and %s segments,%s takes about %s of memory; there are %s",
+                        tri_count_text(run->pslg.n_points).text, tri_count_text(run->pslg.n_segments).text,
+                        unrefined_streams(run) > 0 ? " and write it as HDF5," : "",
+                        tri_size_text(needed).text, tri_size_text(all).text);
+    if (needed > all)
+        console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",
+                     tri_size_text(needed).text, tri_size_text(all).text);
+    return TRI_OK;
+}
+
+/* --- what asks for the whole mesh */
+
+static const char *by_switches(const struct tri_switches *s)
+{
+    const struct {
+        bool given;
+        const char *name;
+    } asks[] = {
+        {s->edges, "-e (edges)"},           {s->voronoi, "-v (Voronoi diagram)"},
+        {s->neighbors, "-n (neighbours)"},  {s->off, "-g (.off)"},
+        {s->second_order, "-o2"},           {s->jettison, "-j"},
+        {s->check, "-C (self check)"},      {s->verbosity > 0, "-V (shapes)"},
+    };
+    for (size_t i = 0; i < sizeof asks / sizeof *asks; i++)
+        if (asks[i].given)
+            return asks[i].name;
+    return NULL;
+}
+
+const char *plan_obstacle(const struct run *run)
+{
+    const struct run_hooks *hooks = run->hooks;
+    if (!hooks->streams)
+        return "";
+    if (!run->options.refine)
+        return "no bounds";
+    if (run->report.loose > 0)
+        return "segments that are no edges of the mesh";
+    if (hooks->whole_mesh)
+        return hooks->whole_mesh;
+    return by_switches(&run->arguments->switches);
+}
+
+/* --- refusals and warnings */
+
+static enum tri_status fail_too_many(const struct needs *n, bool sure, const char *why, struct tri_error *error)
+{
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                    "the %sbounds ask for %s %s triangles, and a mesh holds %s%s%s", sure ? "area " : "",
+                    sure ? "at least" : "about", tri_count_text(n->triangles).text,
+                    tri_count_text(TRI_MAX_TRIANGLES).text,
+                    *why ? " where it must be there as a whole, as for " : "", why);
+}
+
+/* why: all triangles of the mesh must be there at a time. */
+static enum tri_status check_number(const struct estimate *e, const char *why, const struct console *console,
+                                    struct tri_error *error)
+{
+    const double most = TRI_MAX_TRIANGLES, likely = e->likely.triangles, least = e->least.triangles;
+    if (least > most)
+        return fail_too_many(&e->least, true, why, error);
+    if (likely > most && likely <= AREAS_DECIDE * least)
+        return fail_too_many(&e->likely, false, why, error);
+    if (likely > most)
+        console_warn(console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
+                     tri_count_text(most).text);
+    return TRI_OK;
+}
+
+/* What would do of --memory, where that is what is short. */
+static void suggest(const struct run *run, double needed, char *text, size_t size)
+{
+    *text = 0;
+    if (run->hooks->limits.memory > 0 && needed <= system_memory_left(run))
+        snprintf(text, size, "; --memory %.0fM would do", ceil((resources_memory_used() + needed) / 0x1p20) + 1);
+}
+
+static enum tri_status fail_memory(const struct run *run, const struct needs *n, bool sure, double needed, double left,
+                                   const char *obstacle, struct tri_error *error)
+{
+    char would_do[64];
+    suggest(run, needed, would_do, sizeof would_do);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                    "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s%s",
+                    sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
+                    tri_size_text(needed).text, tri_size_text(left).text, would_do,
+                    *obstacle ? "; less would do but for " : "", obstacle);
+}
+
+/* least, likely: bytes of memory. Where what is likely refuses, it does so first: who gives what is then said to be
+ * needed is not refused again. */
+static enum tri_status check_memory(const struct run *run, const struct estimate *e, double least, double likely,
+                                    double left, const char *obstacle, const struct console *console,
+                                    struct tri_error *error)
+{
+    if (is_strict(run) && likely > left && likely >= least)
+        return fail_memory(run, &e->likely, false, likely, left, obstacle, error);
+    if (least > left)
+        return fail_memory(run, &e->least, true, least, left, obstacle, error);
+    if (likely > left)
+        console_warn(console, "the bounds may take about %s of memory; %s are left.\n",
+                     tri_size_text(likely).text, tri_size_text(left).text);
+    return TRI_OK;
+}
+
+static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle,
+                                   const struct console *console, struct tri_error *error)
+{
+    enum tri_status status = check_number(e, obstacle, console, error);
+    if (status)
+        return status;
+    if (run->plan.filed)
+        return check_memory(run, e, e->least.filed, e->likely.filed, left, "", console, error);
+    return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle, console, error);
+}
+
+/* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
+static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
+                                    const struct console *console, struct tri_error *error)
+{
+    const char *why = run->hooks->n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
+    enum tri_status status = e->sweeps ? TRI_OK : check_number(e, why, console, error);
+    if (status)
+        return status;
+    return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
+}
+
+/* What a run puts on disk. */
+static void list_places(struct disk_place places[DISK_PLACES], const struct run *run, const struct needs *n,
+                        double left)
+{
+    const struct run_limits *limits = &run->hooks->limits;
+    places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
+                                                                       : run->arguments->output, n->files};
+    const double whole = run->plan.filed && n->whole > left ? n->filed_away : 0;
+    places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
+                                    run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : whole};
+    const double states = run->plan.swept ? n->checkpoint : n->states;
+    places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
+}
+
+static double sum_of(const struct disk_place places[DISK_PLACES])
+{
+    return places[0].bytes + places[1].bytes + places[2].bytes;
+}
+
+static enum tri_status check_disk(const struct run *run, const struct estimate *e, double memory,
+                                  const struct console *console, struct tri_error *error)
+{
+    struct disk_place sure[DISK_PLACES], likely[DISK_PLACES];
+    double needed;
+    list_places(sure, run, &e->least, memory);
+    list_places(likely, run, &e->likely, memory);
+    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
+    if (place)
+        return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
+                        "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
+                        "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
+                        tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
+    place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
+    if (place)
+        console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
+                     place->path, place->what, tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
+    return TRI_OK;
+}
+
+/* A folder is tried before the work, which may take hours until it is needed. */
+static enum tri_status check_scratch(const char *folder, struct tri_error *error)
+{
+    if (access(folder, W_OK | X_OK) != 0)
+        return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
+                        strerror(errno));
+    return TRI_OK;
+}
+
+/* --- all together */
+
+static double margin_of(const struct run *run)
+{
+    const struct tri_refine_options *quality = &run->options.quality;
+    if (!is_strict(run))
+        return MARGIN;
+    return quality->conforming ? CONFORMING_MARGIN : quality->min_angle > TRI_EASY_ANGLE ? STEEP_MARGIN : STRICT_MARGIN;
+}
+
+static bool fits(const struct run *run, const struct estimate *e, double left)
+{
+    const double margin = e->sweeps || estimate_can_park(run, e->likely.held) ? margin_of(run) : 1;
+    const double share = e->sweeps ? SURELY_ONE_MESH : 1;
+    return fmax(e->likely.triangles, e->least.triangles) <= share * TRI_MAX_TRIANGLES &&
+           margin * e->likely.whole <= left;
+}
+
+static void say_parking(const struct console *console, const struct run *run, double bytes)
+{
+    console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n", run->hooks->limits.scratch,
+                tri_size_text(bytes).text);
+}
+
+static void say_way(const struct console *console, const struct run *run, const struct estimate *e, double left)
+{
+    const struct needs *n = &e->likely;
+    char whole[64] = "are too many for a mesh in memory";
+    if (n->triangles <= TRI_MAX_TRIANGLES)
+        snprintf(whole, sizeof whole, "would take %s of memory", tri_size_text(n->whole).text);
+    if (e->sweeps && run->hooks->n_ranks > 0)
+        console_say(console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
+                    tri_count_text(n->triangles).text, run->hooks->n_ranks, tri_size_text(n->held).text);
+    else if (run->hooks->n_ranks > 1)
+        console_say(console, "Each of %d tasks makes all of the mesh: -S is not shared.\n",
+                    run->hooks->n_ranks);
+    else if (e->sweeps)
+        console_say(console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
+                    tri_count_text(n->triangles).text, whole, tri_size_text(n->held).text);
+    if (n->held > left)
+        say_parking(console, run, n->away);
+}
+
+/* A mesh that stays one, where --memory bounds what is in memory of it. Of several tasks one makes all of it, whose
+ * needs nobody has estimated. */
+static bool may_lie_in_files(const struct run *run, const struct estimate *e)
+{
+    const struct run_hooks *hooks = run->hooks;
+    return hooks->streams && hooks->n_ranks == 0 && hooks->limits.memory > 0 && run->options.refine &&
+           estimate_can_park(run, e->likely.whole);
+}
+
+/* Buffers of what is written while it is made may be more than a small mesh. */
+static bool takes_less_whole(const struct run *run, const struct estimate *e, double left)
+{
+    return may_lie_in_files(run, e) && e->likely.floor > left && e->likely.filed <= left;
+}
+
+enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e,
+                          const struct console *console, struct tri_error *error)
+{
+    bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
+    double left = look ? plan_memory_left(run) : HUGE_VAL;
+    const char *obstacle = plan_obstacle(run);
+    bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
+    *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
+                              .triangles = e->likely.triangles};
+    plan->filed = !plan->swept && may_lie_in_files(run, e);
+    enum tri_status status = plan->swept ? check_stream(run, e, left, console, error)
+                                         : check_whole(run, e, left, obstacle ? obstacle : "", console, error);
+    if (!status && (plan->swept || (plan->filed && (stream || e->likely.whole > left))))
+        status = check_scratch(run->hooks->limits.scratch, error);
+    status = status ? status : check_disk(run, e, left, console, error);
+    if (!status && plan->swept)
+        say_way(console, run, e, left);
+    else if (!status && plan->filed && e->likely.whole > left)
+        say_parking(console, run, e->likely.filed_away);
+    return status;
+}
+
+static void print_seconds(double seconds, int threads)
+{
+    if (seconds < 0.01)
+        printf("  Time: under 0.01 s");
+    else
+        printf("  Time: %.2g s", seconds);
+    printf(" on %d thread%s\n", threads, threads > 1 ? "s" : "");
+}
+
+/* there: what there is, which is `left`, or all there is. */
+static void print_bytes(const char *what, double needed, double there, const char *left)
+{
+    printf("  %s: %s", what, tri_size_text(needed).text);
+    if (there < HUGE_VAL)
+        printf(" (%s %s)", tri_size_text(there).text, left);
+    putchar('\n');
+}
+
+static const char *way_of(const struct run *run, const struct estimate *e)
+{
+    if (run->hooks->n_ranks > 0 && e->sweeps)
+        return "shared by all tasks";
+    if (run->plan.swept && e->sweeps)
+        return "swept, a few columns in memory at a time";
+    return run->plan.swept || run->plan.filed ? "all in memory, or in files as far as it does not fit"
+                                              : "all in memory";
+}
+
+void plan_print(const struct run *run, const struct estimate *e)
+{
+    int threads = run->hooks->threads > 1 ? run->hooks->threads : 1;
+    const struct needs *n = &e->likely;
+    struct disk_place places[DISK_PLACES];
+    const double left = plan_memory_left(run), most = run->plan.swept ? n->held : n->whole;
+    const double floor = run->plan.swept ? n->floor : run->plan.filed ? n->filed : n->whole;
+    const double more = fmin(most, fmax(left, floor));
+    list_places(places, run, n, left);
+    printf("\nEstimate:\n\n");
+    printf("  Triangles: %s\n", tri_count_text(n->triangles).text);
+    printf("  Vertices: %s\n", tri_count_text(e->vertices).text);
+    if (run->options.refine)
+        printf("  Way: %s\n", way_of(run, e));
+    const double used = resources_memory_used();
+    print_bytes("Memory", fmax(used + more, input_bytes(run)), used + left, "in all");
+    print_bytes("Disk", n->files, disk_left(&places[0]), "left");
+    if (places[1].bytes > 0)
+        print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]), "left");
+    if (places[2].bytes > 0)
+        print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]), "left");
+    print_seconds(e->seconds, threads);
+}

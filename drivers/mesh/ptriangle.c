@@ -1,0 +1,635 @@
+/* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and
+ * long options. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/mesh/blocks_file.h"
+#include "drivers/mesh/console.h"
+#include "drivers/mesh/estimate.h"
+#include "drivers/mesh/help.h"
+#include "drivers/interrupt.h"
+#include "drivers/mesh/joint_files.h"
+#include "drivers/mesh/launch.h"
+#include "drivers/mesh/long_options.h"
+#include "drivers/mesh/progress.h"
+#include "drivers/mesh/rank_report.h"
+#include "drivers/mesh/report_json.h"
+#include "drivers/resources.h"
+#include "drivers/mesh/restart.h"
+#include "drivers/mesh/run.h"
+#include "drivers/mesh/shared_input.h"
+#include "drivers/start.h"
+#include "drivers/mesh/streams.h"
+#include "sched/schedule/cells.h"
+#include "sched/ranks/relay.h"
+#include "sched/schedule/schedule.h"
+#include "sched/tiles/park.h"
+#include "sched/tiles/queue.h"
+#include "sched/schedule/threads.h"
+#include "triangle/refine/census.h"
+#include "triangle/size/crowd.h"
+#include "triangle/size/estimate.h"
+#include "triangle/base/size_text.h"
+#include "triangle/text/formats.h"
+#include "triangle/text/names.h"
+#include "triangle/text/write.h"
+
+static const char PROGRAM[] = PTRIANGLE_NAME;
+
+/* What the hooks share. */
+struct program {
+    struct long_options options;
+    int threads;
+    struct progress progress;
+    struct restart restart;
+    char *scratch;             /* folder for what does not fit in memory */
+    struct file_names h5;      /* HDF5 files that are wanted */
+    char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
+    struct streams streams;
+    struct par_park *park;     /* of the mesh, as long as that lives */
+    struct joint_files joint;  /* on several ranks */
+    int32_t n_before;          /* vertices there were before refinement */
+    bool refined;              /* the schedule has run: its report is filled */
+    bool quiet;                /* errors and warnings alone are said */
+    struct par_report schedule;
+    struct launch launch;
+    struct rank_report ranks;
+};
+
+/* Tests run the schedule on small inputs: a build with tests takes the triangles in a cell from the environment. */
+static double cell_for_tests(void)
+{
+#ifdef PTRIANGLE_TESTS
+    const char *text = getenv("PTRIANGLE_TEST_BLOCK");
+    long triangles = text ? strtol(text, NULL, 10) : 0;
+    return triangles > 0 ? (double)triangles : 0;
+#else
+    return 0;
+#endif
+}
+
+/* And sweep what would fit in memory. */
+static bool sweep_for_tests(void)
+{
+#ifdef PTRIANGLE_TESTS
+    return getenv("PTRIANGLE_TEST_SWEEP") != NULL;
+#else
+    return false;
+#endif
+}
+
+/* --- hooks */
+
+/* A rank knows of its own part. */
+static void tell_reached(const struct program *p, int64_t triangles)
+{
+    const bool in_parts = p->launch.carrier && p->launch.carrier->n_ranks > 1;
+    interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
+}
+
+static void follow(void *user, const struct par_place *place)
+{
+    struct program *p = user;
+    interrupt_stage(place->phase == PAR_NUMBERING ? "numbering" : "refining");
+    if (place->phase != PAR_NUMBERING)
+        tell_reached(p, place->triangles);
+    progress_step(&p->progress, place);
+}
+
+static struct par_options options_of(struct program *p, const struct run *run)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    struct par_options options = par_defaults();
+    options.threads = p->threads;
+    options.by_block = p->options.by_block;
+    options.cell_triangles = cell_for_tests();
+    options.progress = follow;
+    options.progress_user = p;
+    options.figure = &run->pslg;
+    options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
+    options.sweep = run->plan.swept;
+    bool bounded = run->hooks->limits.memory > 0 || (run->plan.swept && !p->launch.carrier);
+    if (bounded && run->plan.memory < HUGE_VAL)
+        options.memory = (int64_t)run->plan.memory;
+    options.count_remaining = !run->arguments->switches.quiet || p->options.report;
+    options.scratch = p->scratch;
+    options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
+    return options;
+}
+
+/* Vertices, triangles or segments, by 0, 1, 2, that have been handed out, by all ranks. */
+static int64_t handed_out(const struct program *p, int which)
+{
+    const int64_t here[] = {p->streams.vertices, p->streams.triangles, p->streams.segments};
+    return p->joint.together ? p->joint.total[which] : here[which];
+}
+
+static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
+                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_error *error)
+{
+    p->n_before = mesh->n_vertices;
+    progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
+    enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
+    if (status)
+        progress_drop(&p->progress);
+    else
+        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
+                     options->sweep ? 0 : p->schedule.seconds_number);
+    p->refined = true;
+    if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
+        interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* of all ranks */
+    else if (status == TRI_STOPPED && !options->sweep)
+        tell_reached(p, mesh->n_triangles);
+    return status;
+}
+
+/* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
+ * boundary is a subsegment. */
+static void count_streamed(struct tri_counts *c, const struct tri_counts *before, int64_t unused,
+                           const struct program *p)
+{
+    c->vertices = handed_out(p, 0) - unused;
+    c->triangles = handed_out(p, 1);
+    c->subsegments = handed_out(p, 2);
+    c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
+    c->exterior = 2 * c->edges - 3 * c->triangles;
+    c->interior = c->subsegments - c->exterior;
+}
+
+/* Bytes of tiles that may wait for the disk. */
+static int64_t waiting_bytes(const struct run_plan *plan)
+{
+    return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
+}
+
+/* What others than the first rank cannot know of its files. */
+static void show_streams(struct program *p)
+{
+    struct joint_files *joint = &p->joint;
+    joint->text_options = p->streams.text_options;
+    joint->text = p->streams.text_sink;
+    for (int i = 0; i < p->streams.n; i++) {
+        const struct stream *s = &p->streams.stream[i];
+        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = s->sink, .output = s->options.file};
+    }
+}
+
+/* Do all ranks write the files? Not where a format wants the whole mesh. Collective. */
+static enum tri_status join_files(struct program *p, const struct run *run, enum tri_status status,
+                                  struct tri_error *error)
+{
+    const struct run_limits *limits = &run->hooks->limits;
+    const bool ends_at_once = !limits->write_partial && !limits->checkpoint;
+    p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
+                                    .stop = ends_at_once ? interrupt_stop() : NULL,
+                                    .text_options = {.base = run->base, .figure = &run->pslg,
+                                                     .markers = !run->arguments->switches.no_markers}};
+    if (!status && p->launch.rank == 0)
+        show_streams(p);
+    return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, error);
+}
+
+/* Refines into files, on a rank that is one of several. */
+static enum tri_status refine_jointly(struct program *p, struct run *run, struct tri_mesh *mesh,
+                                      const struct tri_refine_options *quality, struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    const struct tri_sink sink = joint_files_sink(&p->joint);
+    options.carrier = p->launch.carrier;
+    options.sink = &sink;
+    return refine_with(p, run, &options, mesh, quality, error);
+}
+
+/* Refines into a sink; on several ranks into that of the first. */
+static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
+                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
+    if (run->hooks->limits.memory > 0)
+        relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
+    const struct tri_sink relayed = par_relay_sink(&relay);
+    options.carrier = p->launch.carrier;
+    options.sink = options.carrier ? &relayed : sink;
+    enum tri_status status = refine_with(p, run, &options, mesh, quality, error);
+    return options.carrier ? par_relay_finish(&relay, status, error) : status;
+}
+
+/* The same where tiles come from other ranks, too: who receives them does not wait for the disk. */
+static enum tri_status refine_behind_queue(struct program *p, struct run *run, const struct tri_sink *sink,
+                                           struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                           struct tri_error *error)
+{
+    struct par_queue queue;
+    if (!par_queue_begin(&queue, sink, waiting_bytes(&run->plan)))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    const struct tri_sink queued = par_queue_sink(&queue);
+    enum tri_status status = refine_into(p, run, &queued, mesh, quality, error);
+    par_queue_free(&queue);
+    return status;
+}
+
+/* Refines on several ranks. to: where rank 0 takes tiles of all, if all cannot write together. */
+static enum tri_status refine_on_ranks(struct program *p, struct run *run, const struct tri_sink *to,
+                                       struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                       enum tri_status status, struct tri_error *error)
+{
+    status = join_files(p, run, status, error);
+    if (!status && p->joint.together)
+        status = refine_jointly(p, run, mesh, quality, error);
+    else if (!status)
+        status = to ? refine_behind_queue(p, run, to, mesh, quality, error)
+                    : refine_into(p, run, NULL, mesh, quality, error);
+    return joint_files_close(&p->joint, status, error);
+}
+
+/* A rank whose files another one commits. */
+static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
+                                   const struct tri_refine_options *quality, struct tri_error *error)
+{
+    enum tri_status status = refine_on_ranks(p, run, NULL, mesh, quality, TRI_OK, error);
+    tri_mesh_free(mesh);
+    return status;
+}
+
+/* What did not fit in memory, or could not be swept. */
+static void tell_of_parking(const struct program *p)
+{
+    const struct console console = {.program = PROGRAM, .quiet = p->quiet};
+    if (p->schedule.parked > 0)
+        console_say(&console, "%s parked in %s: %s.\n",
+                    p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
+                    p->scratch, tri_size_text((double)p->schedule.parked).text);
+}
+
+/* Refines, and writes what is finished meanwhile. */
+static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                             const struct tri_refine_options *quality, struct tri_error *error)
+{
+    struct tri_counts before;
+    const struct tri_sink streams = streams_sink(&p->streams);
+    enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
+    int64_t unused = mesh->n_vertices - before.vertices;
+    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    status = status ? status : streams_open_text(&p->streams, run, set, error);
+    status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
+    if (p->launch.carrier)
+        status = refine_on_ranks(p, run, &streams, mesh, quality, status, error);
+    else if (!status)
+        status = refine_into(p, run, &streams, mesh, quality, error);
+    streams_close(&p->streams);
+    tri_mesh_free(mesh); /* what is left of it is no mesh */
+    tell_of_parking(p);
+    if (!status)
+        count_streamed(&run->counts, &before, unused, p);
+    run->remain_known = !status && p->schedule.remain_known;
+    memcpy(run->remain, p->schedule.remain, sizeof run->remain);
+    return status;
+}
+
+/* A stop is no failure that others have to share where the mesh that is there will be written. */
+static enum tri_status report_ranks(struct program *p, const struct run *run, enum tri_status status,
+                                    struct tri_error *error)
+{
+    const bool is_kept = status == TRI_STOPPED && run->hooks->limits.write_partial;
+    enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
+                                                error);
+    return shared ? shared : status;
+}
+
+static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              struct tri_error *error)
+{
+    struct program *p = user;
+    enum tri_status status;
+    if (run->plan.swept && p->launch.rank > 0) {
+        status = help_others(p, run, mesh, quality, error);
+    } else if (run->plan.swept) {
+        status = sweep(p, run, set, mesh, quality, error);
+    } else if (p->launch.rank > 0) {
+        status = TRI_OK; /* the first rank makes the whole, and keeps its checkpoints as one task does */
+    } else {
+        struct par_options options = options_of(p, run);
+        options.park = run->plan.filed ? &p->park : NULL;
+        status = refine_with(p, run, &options, mesh, quality, error);
+        tell_of_parking(p);
+        if (!status)
+            progress_stage(&p->progress, "writing");
+    }
+    *report = p->schedule.total;
+    return p->launch.carrier ? report_ranks(p, run, status, error) : status;
+}
+
+static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error)
+{
+    struct program *p = user;
+    const enum tri_status status = par_park_expect(p->park, mesh, (size_t)bytes, error);
+    if (!p->park)
+        return status;
+    p->schedule.parked = par_park_bytes(p->park);
+    if (p->schedule.parked > 0 && p->schedule.way == PAR_IN_MEMORY) {
+        p->schedule.way = PAR_PARKED;
+        tell_of_parking(p);
+    }
+    return status;
+}
+
+static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+{
+    struct program *p = user;
+    const struct tri_executor executor = par_executor(&p->threads);
+    double sure;
+    if (!quality->unsuitable)
+        return tri_forecast(mesh, quality);
+    return tri_estimate(mesh, quality, &executor, &sure);
+}
+
+static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)
+{
+    const struct program *p = user;
+    return shared_input(p->launch.carrier, run, status, error);
+}
+
+static enum tri_status agree(void *user, enum tri_status status, struct tri_error *error)
+{
+    const struct program *p = user;
+    return par_agree(p->launch.carrier, status, error);
+}
+
+/* Of a mesh that is there as a whole. */
+static enum tri_status write_streams(struct program *p, struct run *run, struct tri_output_set *set,
+                                     struct tri_error *error)
+{
+    const struct tri_sink sink = streams_sink(&p->streams);
+    if (p->h5.n == 0)
+        return TRI_OK;
+    enum tri_status status = make_room(p, &run->mesh, estimate_streams(p->h5.n, run->mesh.n_triangles), error);
+    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
+    status = status ? status : streams_hand_out(run, n_before, &sink, error);
+    streams_close(&p->streams);
+    return status;
+}
+
+/* A report tells how many triangles stay below the bounds however the mesh was made. */
+static void count_remaining(struct program *p, const struct run *run)
+{
+    if (!p->refined || p->schedule.remain_known || run->plan.swept)
+        return;
+    if (run->remain_known)
+        memcpy(p->schedule.remain, run->remain, sizeof run->remain);
+    else
+        tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor,
+                      p->schedule.remain);
+    p->schedule.remain_known = true;
+}
+
+static enum tri_status write_further(void *user, struct run *run, struct tri_output_set *set,
+                                     struct tri_error *error)
+{
+    struct program *p = user;
+    char text[96];
+    snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
+    progress_stage(&p->progress, text);
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
+    if (!status && p->options.blocks)
+        status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
+    if (status || !p->options.report)
+        return status;
+    count_remaining(p, run);
+    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads,
+                        error);
+}
+
+/* --- arguments */
+
+/* --output names the files whatever -I says; the suffix of one of them goes. */
+static enum tri_status name_output(struct arguments *arguments, const char *base, struct tri_error *error)
+{
+    if (!base || !arguments->file)
+        return TRI_OK;
+    char *output = tri_name(base, tri_format_base(base), "");
+    if (!output)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    free(arguments->output);
+    arguments->output = output;
+    arguments->switches.no_iteration = false;
+    return TRI_OK;
+}
+
+static enum tri_status refuse_second_order(const char *path, const char *format, struct tri_error *error)
+{
+    return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)", format);
+}
+
+/* Can every file that is asked for hold what the switches ask for? */
+static enum tri_status check_formats(const struct long_options *options, const struct tri_switches *switches,
+                                     struct tri_error *error)
+{
+    if (!switches->second_order)
+        return TRI_OK;
+    if (options->n_streams > 0)
+        return refuse_second_order(options->streams[0], "HDF5", error);
+    for (int i = 0; i < options->n_exports; i++) {
+        const struct tri_format *format = tri_format_of(options->exports[i]);
+        if (!format->second_order)
+            return refuse_second_order(options->exports[i], format->name, error);
+    }
+    return TRI_OK;
+}
+
+static enum tri_status take_words(struct program *p, struct arguments *arguments, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int i = 1; !status && i < arguments->argc; i++) {
+        const char *word = arguments->argv[i];
+        if (strncmp(word, "--", 2) == 0)
+            status = long_options_take(&p->options, &arguments->switches, arguments->argc, arguments->argv, &i, error);
+        else
+            arguments_word(arguments, word);
+    }
+    if (status || p->options.version || p->options.help || arguments->switches.help)
+        return status;
+    status = long_options_check(&p->options, error);
+    status = status ? status : arguments_end(arguments, error);
+    status = status ? status : check_formats(&p->options, &arguments->switches, error);
+    status = status ? status : name_output(arguments, p->options.output, error);
+    if (!status && p->options.report && arguments->file)
+        status = report_check(error);
+    return status;
+}
+
+/* --- all together */
+
+static void add_further(struct file_names *names, const char *name)
+{
+    if (name)
+        names->name[names->n++] = name;
+}
+
+/* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
+static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
+{
+    const char *asked = options->scratch ? options->scratch : getenv("TMPDIR");
+    const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
+    const char *slash = output ? strrchr(output, '/') : NULL;
+    if (asked && *asked)
+        return tri_joined(asked, "");
+    char *folder = tri_joined(slash ? output : ".", "");
+    if (folder && slash)
+        folder[slash - output + 1] = 0;
+    return folder;
+}
+
+/* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */
+static enum tri_status settle_memory(struct long_options *options, struct tri_error *error)
+{
+    const double total = options->memory_share > 0 ? resources_memory_total() : 0;
+    if (total == HUGE_VAL)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--memory: the system does not tell how much memory there is; "
+                        "give a size such as 4G");
+    options->memory = options->memory_share > 0 ? options->memory_share * total : options->memory;
+    return TRI_OK;
+}
+
+/* HDF5 files, and the texts beside them, are checked as all files are. */
+static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
+{
+    for (int i = 0; i < p->options.n_streams; i++) {
+        p->xdmf[i] = stream_xdmf(p->options.streams[i]);
+        if (!p->xdmf[i])
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+        add_further(&p->h5, p->options.streams[i]);
+        add_further(&hooks->further, p->options.streams[i]);
+        add_further(&hooks->further, p->xdmf[i]);
+    }
+    return TRI_OK;
+}
+
+/* What of the long options asks for the whole mesh at a time. */
+static const char *whole_mesh(const struct long_options *o)
+{
+    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
+}
+
+static struct run_hooks hooks_of(struct program *p)
+{
+    const struct long_options *o = &p->options;
+    bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
+    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
+                              .write = write_further, .streams = true,
+                              .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
+                              .written_elsewhere = p->launch.rank > 0,
+                              .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
+                              .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
+                              .whole_mesh = whole_mesh(o), .threads = p->threads,
+                              .cell_triangles = par_triangles_in_cell, .user = p,
+                              .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
+                                         .dry_run = o->dry_run, .memory = o->memory, .scratch = p->scratch,
+                                         .checkpoint = o->resume ? o->resume : o->checkpoint}};
+    for (int i = 0; i < o->n_exports; i++)
+        add_further(&hooks.exports, o->exports[i]);
+    hooks.n_parts = o->n_parts;
+    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    hooks.first_file = o->n_streams > 0 ? o->streams[0] : hooks.exports_alone ? o->exports[0] : NULL;
+    hooks.n_streamed = o->n_streams;
+    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
+    add_further(&hooks.further, o->blocks);
+    return hooks;
+}
+
+static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
+{
+    p->threads = par_threads(long_options_threads(&p->options), true);
+    p->quiet = arguments->switches.quiet;
+    p->progress = progress_start(PROGRAM, p->options.progress, p->quiet);
+    const struct tri_executor executor = par_executor(&p->threads);
+    p->scratch = scratch_of(&p->options, arguments);
+    struct run_hooks hooks = hooks_of(p);
+    hooks.executor = &executor;
+    if (!p->scratch)
+        tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    if (!p->scratch || name_streams(p, &hooks, error)) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
+    if (arguments->file)
+        progress_stage(&p->progress, "reading and triangulating");
+    int code = run_arguments(arguments, &hooks);
+    if (!arguments->file)
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
+             "  --numbering curve|blocks\n"
+             "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
+             "  --help");
+    return code;
+}
+
+static void free_program(struct program *p)
+{
+    par_park_close(p->park, NULL); /* the mesh has gone with its run */
+    par_report_free(&p->schedule);
+    free(p->scratch);
+    free(p->ranks.number);
+    for (int i = 0; i < STREAMS_MOST; i++)
+        free(p->xdmf[i]);
+}
+
+/* One task goes on where several were at work. */
+static bool goes_on_alone(const struct program *p)
+{
+    return !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
+}
+
+/* Once the words have been taken. */
+static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
+{
+    if (p->options.version) {
+        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
+        return EXIT_SUCCESS;
+    }
+    if (p->options.help || arguments->switches.help) {
+        help_full(PROGRAM, "on all cores", long_options_help);
+        return EXIT_SUCCESS;
+    }
+    if (!settle_memory(&p->options, error) && arguments->file)
+        restart_open(&p->restart, &p->options, PROGRAM, arguments, p->launch.carrier, error);
+    if (error->status) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
+    const bool alone = goes_on_alone(p);
+    int64_t room[PAR_ROOM];
+    struct par_carrier one = par_carrier_alone(room);
+    p->launch.carrier = alone ? &one : p->launch.carrier;
+    int code = launch_agree(&p->launch, run_program(p, arguments, error), error);
+    p->launch.carrier = alone ? NULL : p->launch.carrier;
+    restart_close(&p->restart, code);
+    return code;
+}
+
+const int program_trouble = EXIT_FAILURE;
+const char program_version[] = PTRIANGLE_VERSION;
+
+int program_main(int argc, char **argv)
+{
+    static struct program program;
+    struct tri_error error = {0};
+    const struct console console = {.program = PROGRAM};
+    console_open();
+    struct arguments arguments = arguments_begin(argc, argv);
+    int code = EXIT_FAILURE;
+    bool joined = !launch_join(&program.launch, &error);
+    if (!joined || take_words(&program, &arguments, &error))
+        console_error(&console, &error);
+    else
+        code = carry_out(&program, &arguments, &error);
+    free_program(&program);
+    arguments_free(&arguments);
+    code = console_close(&console) ? code : EXIT_FAILURE;
+    return joined ? launch_leave(&program.launch, code, &error) : code;
+}

@@ -1,0 +1,22 @@
+/* The report of a run of ptriangle as a JSON file: --report. */
+#ifndef DRIVERS_MESH_REPORT_JSON_H
+#define DRIVERS_MESH_REPORT_JSON_H
+
+#include "drivers/mesh/rank_report.h"
+#include "drivers/mesh/run.h"
+#include "sched/schedule/schedule.h"
+#include "triangle/text/output.h"
+
+/* Does this name, "-", stand for standard output? */
+static inline bool report_is_printed(const char *path) { return path[0] == '-' && path[1] == 0; }
+
+/* TRI_BAD_INPUT: this program was built without reports. */
+enum tri_status report_check(struct tri_error *error);
+
+/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh; of several ranks that
+ * of the first. Takes a pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
+                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
+                             struct tri_error *error);
+
+#endif

@@ -1,0 +1,129 @@
+#include "drivers/mesh/restart.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/interrupt.h"
+
+static const char version[] = PTRIANGLE_VERSION;
+
+static enum tri_status check_options(const struct long_options *o, struct tri_error *error)
+{
+    if (o->checkpoint && o->resume && strcmp(o->checkpoint, o->resume) != 0)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--checkpoint and --resume name two directories");
+    if (o->has_every && !o->checkpoint && !o->resume)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--every needs --checkpoint or --resume");
+    return TRI_OK;
+}
+
+/* A word as a shell would need it. */
+static void print_word(FILE *to, const char *word)
+{
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-_./=:,%@";
+    if (*word && strspn(word, plain) == strlen(word)) {
+        fprintf(to, " %s", word);
+        return;
+    }
+    fputs(" '", to);
+    for (; *word; word++)
+        if (*word == '\'')
+            fputs("'\\''", to);
+        else
+            fputc(*word, to);
+    fputc('\'', to);
+}
+
+/* Is this the option, in a word of its own or with its value behind a "="? */
+static bool is_option(const char *word, const char *option)
+{
+    size_t n = strlen(option);
+    return strncmp(word, option, n) == 0 && (word[n] == 0 || word[n] == '=');
+}
+
+/* Is this one of the options, which all have a value, that the command that goes on has not? */
+static bool is_left_out(const char *word)
+{
+    return is_option(word, "--checkpoint") || is_option(word, "--resume") || is_option(word, "--time-limit");
+}
+
+/* The command that goes on: the words that were given, without the directory, which --resume names, and without the
+ * limit of time, which was for the run that is over. */
+static void print_command(FILE *to, const struct restart *r, const char *program, const struct arguments *arguments)
+{
+    fputs(program, to);
+    for (int i = 1; i < arguments->argc; i++) {
+        const char *word = arguments->argv[i];
+        if (is_left_out(word))
+            i += strchr(word, '=') == NULL;
+        else
+            print_word(to, word);
+    }
+    print_word(to, "--resume");
+    print_word(to, r->checkpoint.directory);
+}
+
+static void tell_kept(void *user, int64_t triangles)
+{
+    const struct restart *restart = user;
+    interrupt_kept(triangles, restart->go_on);
+}
+
+/* From now on a stop tells what is kept. */
+static enum tri_status follow(struct restart *r, const char *program, const struct arguments *arguments,
+                              struct tri_error *error)
+{
+    size_t n;
+    FILE *text = open_memstream(&r->go_on, &n);
+    if (text)
+        print_command(text, r, program, arguments);
+    if (!text || fclose(text) != 0)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the command that goes on");
+    r->checkpoint.told = tell_kept;
+    r->checkpoint.told_user = r;
+    tell_kept(r, par_checkpoint_has_state(&r->checkpoint) ? r->checkpoint.manifest.triangles : 0);
+    return TRI_OK;
+}
+
+static enum tri_status open_directory(struct restart *restart, const struct long_options *o, const char *directory,
+                                      struct tri_error *error)
+{
+    bool resume = o->resume && (!o->checkpoint || par_checkpoint_is_there(directory));
+    if (!restart->follows)
+        return par_checkpoint_open(&restart->checkpoint, directory, resume, par_hash(0, version, sizeof version),
+                                   error);
+    restart->checkpoint = par_checkpoint_closed(directory);
+    return TRI_OK;
+}
+
+enum tri_status restart_open(struct restart *restart, const struct long_options *o, const char *program,
+                             const struct arguments *arguments, struct par_carrier *carrier, struct tri_error *error)
+{
+    static const double USUAL_MINUTES = 10;
+    const char *directory = o->resume ? o->resume : o->checkpoint;
+    *restart = (struct restart){.follows = carrier && carrier->rank > 0};
+    enum tri_status status = check_options(o, error);
+    if (!status && o->dry_run && o->resume && !o->checkpoint)
+        status = par_checkpoint_look(directory, par_hash(0, version, sizeof version), error);
+    bool wanted = !status && directory && !o->dry_run;
+    status = wanted ? open_directory(restart, o, directory, error) : status;
+    if (wanted && !status && !restart->follows)
+        status = follow(restart, program, arguments, error);
+    if (wanted && status && restart->checkpoint.lock >= 0)
+        par_checkpoint_close(&restart->checkpoint, !par_checkpoint_has_state(&restart->checkpoint));
+    restart->wanted = wanted && !status;
+    restart->checkpoint.seconds = 60 * (o->has_every ? o->every : USUAL_MINUTES);
+    return carrier ? par_agree(carrier, status, error) : status;
+}
+
+void restart_close(struct restart *r, int code)
+{
+    enum { FIRST_STOP = 124 };
+    if (!r->wanted || r->follows)
+        return;
+    const bool stopped = code >= FIRST_STOP, has_state = par_checkpoint_has_state(&r->checkpoint);
+    if (code != EXIT_SUCCESS && !stopped && has_state && r->checkpoint.saved > 0)
+        interrupt_tell_kept();
+    r->checkpoint.told = NULL;
+    par_checkpoint_close(&r->checkpoint, code == EXIT_SUCCESS || (!has_state && !stopped));
+}

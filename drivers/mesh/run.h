@@ -1,0 +1,112 @@
+/* A run of a mesh generator from the command line, from files to files: what `triangle` and its parallel sister
+ * share.
+ *
+ * The stages and their order are fixed; how the mesh is refined and who runs independent pieces of work is plugged
+ * in. */
+#ifndef DRIVERS_MESH_RUN_H
+#define DRIVERS_MESH_RUN_H
+
+#include "drivers/mesh/arguments.h"
+#include "drivers/mesh/mesh_files.h"
+#include "triangle/base/executor.h"
+#include "triangle/text/read.h"
+#include "triangle/mesh/stats.h"
+#include "triangle/refine/generate.h"
+
+enum run_stage {
+    RUN_READ,     /* files to PSLG or mesh */
+    RUN_DELAUNAY,
+    RUN_SEGMENTS,
+    RUN_HOLES,    /* carving and regions */
+    RUN_QUALITY,
+    RUN_WRITE,
+    RUN_STAGES
+};
+
+/* How the mesh is made: see drivers/mesh/plan.h. */
+struct run_plan {
+    bool swept;    /* files are written meanwhile, and the mesh goes; else it stays a mesh .. */
+    bool filed;    /* .. which lies in files as far as it does not fit in memory; else in memory */
+    double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
+    double triangles; /* that are expected */
+};
+
+/* All about a run, as far as it got. */
+struct run {
+    const struct run_hooks *hooks;
+    const struct arguments *arguments;
+    struct tri_options options;
+    struct tri_pslg pslg;
+    struct tri_elements elements; /* -r: the triangles */
+    bool *is_edge;                /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
+    int32_t base;                 /* 0 or 1 */
+    bool points_in_poly;
+    struct run_plan plan; /* once refinement begins */
+    struct tri_mesh mesh;
+    struct tri_report report;
+    struct tri_counts counts;
+    int64_t remain[TRI_EXCUSES]; /* triangles that stay below the bounds, */
+    bool remain_known;           /* where they have been counted */
+    double seconds[RUN_STAGES];
+    double total_seconds;
+    const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
+};
+
+/* What the command line says beyond the switches of Triangle. */
+struct run_limits {
+    double seconds;     /* the run ends after so much time; 0: none */
+    bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
+    bool dry_run;       /* nothing is refined or written: an estimate is printed */
+    double memory;      /* bytes that the process may take; 0: what there is */
+    const char *checkpoint; /* directory: a run that is stopped takes the time to keep its state there; NULL: none */
+    const char *scratch; /* directory for what does not fit in memory */
+};
+
+struct run_hooks {
+    const char *program;
+    const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
+    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into
+     * the guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
+    enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                              const struct tri_refine_options *options, struct tri_refine_report *report,
+                              struct tri_error *error);
+    /* Beside a mesh that is not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
+     * files. NULL: nothing moves. */
+    enum tri_status (*make_room)(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error);
+    /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
+    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
+    bool streams;                   /* refine follows run->plan, and can write files meanwhile */
+    bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
+    bool written_elsewhere;         /* another rank reads and writes all files */
+    int n_ranks;                    /* that share the mesh; 0: it is all here */
+    /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
+     * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
+     * on all, with the same error. NULL: there is one. */
+    enum tri_status (*share)(void *user, struct run *run, enum tri_status status, struct tri_error *error);
+    enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
+    const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
+    int threads;                    /* to refine with, for estimates */
+    /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
+    double (*cell_triangles)(double triangles);
+    struct file_names exports;      /* the mesh in other formats .. */
+    bool exports_alone;             /* .. and in no others */
+    int n_parts;                    /* into which those are cut that can be; 0: none */
+    const char *first_file;         /* of those that take most of the disk; NULL: they have the arguments' base name */
+    int n_streamed;                 /* HDF5 files, which refine or write makes */
+    struct file_names further;      /* files that are written beside the mesh .. */
+    /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
+    enum tri_status (*write)(void *user, struct run *run, struct tri_output_set *set, struct tri_error *error);
+    void *user;
+    struct run_limits limits;
+};
+
+/* Carries out what the arguments say, after arguments_end. Returns the exit code: 0; 1 after an error, which has been
+ * reported; then no file has been touched; after a stop that of interrupt_code: then no file has been touched either,
+ * unless partial meshes are wanted and it says where one is. All files appear together, as the last thing that can
+ * fail. */
+int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks);
+
+/* All of the above for a program without arguments of its own. */
+int run_words(int argc, char **argv, const struct run_hooks *hooks);
+
+#endif

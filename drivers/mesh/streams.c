@@ -1,0 +1,348 @@
+#include "drivers/mesh/streams.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/interrupt.h"
+#include "triangle/text/names.h"
+
+static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
+
+/* --- names */
+
+char *stream_xdmf(const char *name)
+{
+    static const char suffix[] = ".xdmf";
+    size_t n = strlen(name) - strlen(STREAM_SUFFIX);
+    char *path = malloc(n + sizeof suffix);
+    if (path) {
+        memcpy(path, name, n);
+        memcpy(path + n, suffix, sizeof suffix);
+    }
+    return path;
+}
+
+static const char *without_folder(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+/* --- opening and closing */
+
+static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_output_set *set,
+                                   struct tri_error *error)
+{
+    s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
+    s->xdmf = stream_xdmf(name);
+    if (!s->xdmf)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    enum tri_status status = interrupt_open(set, name, &s->options.file, error);
+    status = status ? status : interrupt_open(set, s->xdmf, &s->options.xdmf, error);
+    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
+}
+
+enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
+                             struct tri_output_set *set, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    *streams = (struct streams){0};
+    for (int i = 0; !status && i < names->n; i++)
+        status = open_stream(&streams->stream[streams->n++], names->name[i], markers, set, error);
+    return status;
+}
+
+/* One of Triangle's files, if it is wanted. */
+static enum tri_status open_text(struct tri_output **output, const struct mesh_files *files, const char *suffix,
+                                 struct tri_output_set *set, struct tri_error *error)
+{
+    if (!mesh_files_has(files, suffix))
+        return TRI_OK;
+    char *path = tri_joined(files->arguments->output, suffix);
+    if (!path)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    enum tri_status status = interrupt_open(set, path, output, error);
+    free(path);
+    return status;
+}
+
+enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                                  struct tri_error *error)
+{
+    const struct arguments *a = run->arguments;
+    struct mesh_files files = {.arguments = a, .points_in_poly = run->points_in_poly,
+                               .exports_alone = run->hooks->exports_alone};
+    struct tri_text_options *o = &streams->text_options;
+    *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
+                                   .argc = a->argc, .argv = a->argv};
+    enum tri_status status = open_text(&o->node, &files, ".node", set, error);
+    status = status ? status : open_text(&o->ele, &files, ".ele", set, error);
+    status = status ? status : open_text(&o->poly, &files, ".poly", set, error);
+    if (status || !(o->node || o->ele || o->poly))
+        return status;
+    return tri_text_stream_new(&streams->text, o, &streams->text_sink, error);
+}
+
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
+                                     struct tri_output_set *set, struct tri_error *error)
+{
+    const struct file_names *names = &run->hooks->exports;
+    enum tri_status status = TRI_OK;
+    streams->markers = !run->arguments->switches.no_markers;
+    streams->executor = run->hooks->executor;
+    for (int i = 0; !status && i < names->n; i++) {
+        streams->export[i] = export_of(names->name[i], run->hooks->n_parts);
+        status = export_open(&streams->export[i], names->name[i], set, error);
+    }
+    streams->n_exports = names->n;
+    if (status || names->n == 0)
+        return status;
+    return tri_tile_store_new(&streams->store, folder, &streams->store_sink, error);
+}
+
+void streams_close(struct streams *streams)
+{
+    for (int i = 0; i < streams->n; i++) {
+        struct stream *s = &streams->stream[i];
+        tri_h5_writer_free(s->writer);
+        free(s->xdmf);
+    }
+    tri_text_stream_free(streams->text);
+    tri_tile_store_free(streams->store);
+    streams->text = NULL;
+    streams->store = NULL;
+    streams->n = 0;
+}
+
+/* --- the sink */
+
+static enum tri_status begin_again(struct stream *s, struct tri_error *error)
+{
+    tri_h5_writer_free(s->writer);
+    s->writer = NULL;
+    enum tri_status status = tri_output_restart(s->options.file, error);
+    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
+}
+
+static enum tri_status begin_text_again(struct streams *streams, struct tri_error *error)
+{
+    struct tri_output *const outputs[] = {streams->text_options.node, streams->text_options.ele,
+                                          streams->text_options.poly};
+    enum tri_status status = TRI_OK;
+    tri_text_stream_free(streams->text);
+    streams->text = NULL;
+    for (int i = 0; !status && i < 3; i++)
+        status = outputs[i] ? tri_output_restart(outputs[i], error) : TRI_OK;
+    return status ? status : tri_text_stream_new(&streams->text, &streams->text_options, &streams->text_sink, error);
+}
+
+static enum tri_status begin_text(struct streams *streams, const struct tri_stream *stream, struct tri_error *error)
+{
+    if (!streams->text)
+        return TRI_OK;
+    enum tri_status status = streams->begun ? begin_text_again(streams, error) : TRI_OK;
+    return status ? status : streams->text_sink.begin(streams->text_sink.user, stream, error);
+}
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct streams *streams = user;
+    enum tri_status status = TRI_OK;
+    for (int i = 0; !status && i < streams->n; i++) {
+        struct stream *s = &streams->stream[i];
+        status = streams->begun ? begin_again(s, error) : TRI_OK;
+        status = status ? status : s->sink.begin(s->sink.user, stream, error);
+    }
+    status = status ? status : begin_text(streams, stream, error);
+    if (!status && streams->store)
+        status = streams->store_sink.begin(streams->store_sink.user, stream, error);
+    streams->begun = true;
+    streams->vertices = streams->triangles = streams->segments = 0;
+    return status;
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct streams *streams = user;
+    enum tri_status status = TRI_OK;
+    for (int i = 0; !status && i < streams->n; i++) {
+        struct stream *s = &streams->stream[i];
+        status = s->sink.take(s->sink.user, tile, error);
+    }
+    if (!status && streams->text)
+        status = streams->text_sink.take(streams->text_sink.user, tile, error);
+    if (!status && streams->store)
+        status = streams->store_sink.take(streams->store_sink.user, tile, error);
+    streams->vertices += tile->n_vertices;
+    streams->triangles += tile->n_triangles;
+    streams->segments += tile->n_segments;
+    return status;
+}
+
+static enum tri_status write_exports(struct streams *streams, struct tri_error *error)
+{
+    struct tri_grid grid;
+    enum tri_status status = tri_tile_store_grid(streams->store, streams->markers, &grid, error);
+    for (int i = 0; !status && i < streams->n_exports; i++)
+        status = export_write(&streams->export[i], &grid, streams->executor, error);
+    return status;
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct streams *streams = user;
+    enum tri_status status = TRI_OK;
+    for (int i = 0; !status && i < streams->n; i++) {
+        struct stream *s = &streams->stream[i];
+        status = s->sink.end(s->sink.user, error);
+    }
+    if (!status && streams->text)
+        status = streams->text_sink.end(streams->text_sink.user, error);
+    return status || !streams->store ? status : write_exports(streams, error);
+}
+
+struct tri_sink streams_sink(struct streams *streams) { return (struct tri_sink){streams, begin, take, end}; }
+
+/* --- a mesh that is in memory */
+
+enum { PIECE = 1 << 16 }; /* items handed out at a time */
+
+/* Items of a grid, on their way to a sink. */
+struct piece {
+    const struct tri_grid *grid;
+    const struct tri_mesh *mesh; /* of the grid */
+    const struct tri_sink *sink;
+    int64_t n_before;            /* points that there were before refinement */
+    double (*points)[2], *attributes;
+    int32_t *point_markers, *regions, *segment_markers;
+    int64_t (*corners)[3], (*ends)[2];
+};
+
+static bool reserve(struct piece *p)
+{
+    p->points = malloc(PIECE * sizeof *p->points);
+    p->attributes = malloc((size_t)PIECE * (size_t)p->grid->n_attributes * sizeof *p->attributes + 1);
+    p->point_markers = malloc(PIECE * sizeof *p->point_markers);
+    p->regions = malloc(PIECE * sizeof *p->regions);
+    p->segment_markers = malloc(PIECE * sizeof *p->segment_markers);
+    p->corners = malloc(PIECE * sizeof *p->corners);
+    p->ends = malloc(PIECE * sizeof *p->ends);
+    return p->points && p->attributes && p->point_markers && p->regions && p->segment_markers && p->corners && p->ends;
+}
+
+static void release(struct piece *p)
+{
+    free(p->points);
+    free(p->attributes);
+    free(p->point_markers);
+    free(p->regions);
+    free(p->segment_markers);
+    free(p->corners);
+    free(p->ends);
+}
+
+static int32_t least(int64_t a, int64_t b) { return (int32_t)(a < b ? a : b); }
+
+static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t end, struct tri_error *error)
+{
+    const struct tri_grid *g = p->grid;
+    int32_t place = first < p->n_before ? -1 : 0;
+    struct tri_tile tile = {.column = place, .row = place, .first_vertex = first,
+                            .n_vertices = least(end - first, PIECE), .points = (const double(*)[2])p->points,
+                            .point_markers = p->point_markers, .attributes = p->attributes};
+    for (int32_t i = 0; i < tile.n_vertices; i++) {
+        struct tri_grid_point point;
+        g->point(g->user, first + i, &point);
+        memcpy(p->points[i], point.at, sizeof point.at);
+        p->point_markers[i] = point.marker;
+        for (int32_t k = 0; k < g->n_attributes; k++)
+            p->attributes[(size_t)i * (size_t)g->n_attributes + (size_t)k] = g->attribute(g->user, first + i, k);
+    }
+    return p->sink->take(p->sink->user, &tile, error);
+}
+
+static enum tri_status hand_out_triangles(struct piece *p, int64_t first, struct tri_error *error)
+{
+    const struct tri_grid *g = p->grid;
+    struct tri_tile tile = {.first_vertex = g->n_points, .first_triangle = first,
+                            .n_triangles = least(g->n_triangles - first, PIECE),
+                            .corners = (const int64_t(*)[3])p->corners, .regions = p->regions};
+    for (int32_t i = 0; i < tile.n_triangles; i++) {
+        int64_t nodes[6];
+        g->triangle(g->user, first + i, nodes);
+        memcpy(p->corners[i], nodes, sizeof p->corners[i]);
+        p->regions[i] = p->mesh->tri[first + i].region;
+    }
+    return p->sink->take(p->sink->user, &tile, error);
+}
+
+static enum tri_status hand_out_segments(struct piece *p, int64_t first, struct tri_error *error)
+{
+    const struct tri_grid *g = p->grid;
+    struct tri_tile tile = {.first_vertex = g->n_points, .first_triangle = g->n_triangles, .first_segment = first,
+                            .n_segments = least(g->n_segments - first, PIECE),
+                            .ends = (const int64_t(*)[2])p->ends, .segment_markers = p->segment_markers};
+    for (int32_t i = 0; i < tile.n_segments; i++) {
+        struct tri_grid_edge segment;
+        g->segment(g->user, first + i, &segment);
+        memcpy(p->ends[i], segment.ends, sizeof segment.ends);
+        p->segment_markers[i] = segment.marker;
+    }
+    return p->sink->take(p->sink->user, &tile, error);
+}
+
+static enum tri_status hand_out_all(struct piece *p, struct tri_error *error)
+{
+    const struct tri_grid *g = p->grid;
+    enum tri_status status = TRI_OK;
+    for (int64_t i = 0; !status && i < p->n_before; i += PIECE)
+        status = hand_out_points(p, i, p->n_before, error);
+    for (int64_t i = p->n_before; !status && i < g->n_points; i += PIECE)
+        status = hand_out_points(p, i, g->n_points, error);
+    for (int64_t i = 0; !status && i < g->n_triangles; i += PIECE)
+        status = hand_out_triangles(p, i, error);
+    for (int64_t i = 0; !status && i < g->n_segments; i += PIECE)
+        status = hand_out_segments(p, i, error);
+    return status ? status : p->sink->end(p->sink->user, error);
+}
+
+/* Attributes of the triangles in each region; NULL: no memory. */
+static double *columns_of(const struct tri_mesh *mesh, int32_t n_columns)
+{
+    double *columns = malloc(((size_t)mesh->n_regions * (size_t)n_columns + 1) * sizeof *columns);
+    for (int32_t r = 0; columns && r < mesh->n_regions; r++)
+        for (int32_t k = 0; k < n_columns; k++)
+            columns[(size_t)r * (size_t)n_columns + (size_t)k] = tri_region_attributes(mesh, r)[k];
+    return columns;
+}
+
+static enum tri_status hand_out(struct piece *p, struct tri_error *error)
+{
+    double *columns = columns_of(p->mesh, p->grid->n_columns);
+    struct tri_stream stream = {.n_attributes = p->grid->n_attributes, .n_columns = p->grid->n_columns,
+                                .n_regions = p->mesh->n_regions, .regions = columns,
+                                .estimate = (double)p->grid->n_triangles, .n_ranks = 1};
+    enum tri_status status = TRI_OK;
+    if (!columns || !reserve(p))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+    status = status ? status : p->sink->begin(p->sink->user, &stream, error);
+    status = status ? status : hand_out_all(p, error);
+    release(p);
+    free(columns);
+    return status;
+}
+
+enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
+                                 struct tri_error *error)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
+    options.is_edge = s->segments ? run->is_edge : NULL;
+    struct tri_grid grid;
+    enum tri_status status = tri_grid_make(&grid, &options, error);
+    int64_t left_out = status ? 0 : run->mesh.n_vertices - grid.n_points; /* with -j: none of them is new */
+    struct piece piece = {.grid = &grid, .mesh = &run->mesh, .sink = sink, .n_before = n_before - left_out};
+    status = status ? status : hand_out(&piece, error);
+    tri_grid_free(&grid);
+    return status;
+}

@@ -1,0 +1,74 @@
+/* Files that are written tile by tile: while the mesh is made, where it is swept, else when it is there. */
+#ifndef DRIVERS_MESH_STREAMS_H
+#define DRIVERS_MESH_STREAMS_H
+
+#include <string.h>
+
+#include "drivers/mesh/export.h"
+#include "drivers/mesh/run.h"
+#include "ptriangle/tiles.h"
+#include "triangle/hdf5/write.h"
+#include "triangle/text/formats.h"
+#include "triangle/text/names.h"
+#include "triangle/text/stream.h"
+#include "triangle/text/tile_store.h"
+
+enum { STREAMS_MOST = 4 };
+
+/* One HDF5 file and the text beside it. */
+struct stream {
+    char *xdmf; /* name */
+    struct tri_h5_options options;
+    struct tri_h5_writer *writer;
+    struct tri_sink sink;
+};
+
+struct streams {
+    int n;
+    struct stream stream[STREAMS_MOST];
+    struct tri_text_options text_options;
+    struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
+    struct tri_sink text_sink;
+    int n_exports;
+    struct export export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
+    struct tri_tile_store *store;  /* NULL: none of them */
+    struct tri_sink store_sink;
+    bool markers;                  /* are written */
+    const struct tri_executor *executor;
+    bool begun;
+    int64_t vertices, triangles, segments; /* taken so far */
+};
+
+#define STREAM_SUFFIX ".h5"
+
+/* Does this name ask for such a file? */
+static inline bool stream_is_wanted(const char *name)
+{
+    return strlen(name) > strlen(STREAM_SUFFIX) && tri_name_ends(name, STREAM_SUFFIX);
+}
+
+/* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
+char *stream_xdmf(const char *name);
+
+/* Opens these HDF5 files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
+ * committed. */
+enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
+                             struct tri_output_set *set, struct tri_error *error);
+
+/* And those of Triangle's files that the run asks for. */
+enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                                  struct tri_error *error);
+
+/* And those in formats that are written when all of the mesh is there; until then it lies in files in this folder. */
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
+                                     struct tri_output_set *set, struct tri_error *error);
+void streams_close(struct streams *streams);
+
+/* Hands everything to all of them. If it is told of the beginning a second time, they begin again. */
+struct tri_sink streams_sink(struct streams *streams);
+
+/* Hands a mesh that is in memory to a sink: n_before vertices were there before refinement. */
+enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
+                                 struct tri_error *error);
+
+#endif

@@ -1,0 +1,549 @@
+/* meshplot: draws a mesh from its files as PNG or SVG. Here are arguments and files; drivers/plot/plot.h draws.
+ * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cairo-svg.h>
+
+#include "drivers/interrupt.h"
+#include "drivers/judge/judged_files.h"
+#include "drivers/judge/judged_words.h"
+#include "drivers/one_line.h"
+#include "drivers/plot/plot_part.h"
+#include "drivers/resources.h"
+#include "drivers/start.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/text/names.h"
+#include "triangle/text/read.h"
+#include "triangle/text/text.h"
+#include "triangle/text/write.h"
+
+enum { TROUBLE = 1, MISUSE = 2 };
+
+static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg [options]\n";
+
+static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+    "\n"
+    "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
+    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or\n"
+    ".grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or that has more\n"
+    "than 16.7 million triangles, what lies in the window is drawn; if that is more than so many triangles, densities\n"
+    "are.\n"
+    "\n"
+    "  -o, --output FILE        FILE.png or FILE.svg\n"
+    "  -c, --color quality|area|region|block|none|density\n"
+    "                           quality (default): the smallest angle of each triangle; region: its first\n"
+    "                           attribute; block: see --blocks; density: how many triangles there are at each\n"
+    "                           pixel, below 1 where they are larger than pixels, for a mesh of any size\n"
+    "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
+    "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
+    "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
+    "  -e, --edges auto|on|off  auto (default): short ones fade\n"
+    "      --segments on|off    (default on)\n"
+    "      --legend on|off      (default on)\n"
+    "  -t, --title TEXT         a line above the picture\n"
+    "  -b, --blocks FILE        one line `block phase` for each triangle, in the order of BASE.ele; a phase\n"
+    "                           below 0: in no block\n"
+    "      --version, --help    name and version; this help\n"
+    "\n"
+    "Exit code: 0 drawn, 1 files that cannot be read or written, 2 wrong usage.\n";
+
+enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSITY };
+
+struct settings {
+    const char *base, *output, *blocks;
+    enum colouring colour;
+    bool is_base; /* a suffix has been cut off `base` */
+    bool has_window;
+    struct plot_style style; /* window and mark in the caller's coordinates */
+};
+
+struct files {
+    struct tri_pslg mesh; /* points and subsegments */
+    struct tri_elements elements;
+    int32_t *block_phase; /* [elements.n][2] or NULL */
+    struct plot_density density;
+    int64_t all_points, all_triangles; /* of the whole mesh, where that is but a part */
+};
+
+static int fail(int code, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    one_line_complain(PTRIANGLE_NAME, format, arguments);
+    va_end(arguments);
+    return code;
+}
+
+static int fail_with(const struct tri_error *e)
+{
+    if (e->file[0] == '\0')
+        return fail(TROUBLE, "%s", e->text);
+    return e->line > 0 ? fail(TROUBLE, "%s:%ld: %s", e->file, e->line, e->text)
+                       : fail(TROUBLE, "%s: %s", e->file, e->text);
+}
+
+/* --- reading */
+
+static enum tri_status read_text(struct files *f, const char *stem, struct tri_error *error)
+{
+    const struct tri_read_options options = {.default_base = 1};
+    char *node = tri_joined(stem, ".node"), *ele = tri_joined(stem, ".ele"), *poly = tri_joined(stem, ".poly");
+    enum tri_status status = TRI_OK;
+    int32_t base = 1;
+    bool has_poly = false, points_in_poly;
+    if (node == NULL || ele == NULL || poly == NULL) {
+        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    } else {
+        has_poly = access(poly, F_OK) == 0;
+        status = has_poly ? tri_read_poly(poly, node, &options, &f->mesh, &base, &points_in_poly, error)
+                          : tri_read_node(node, &options, &f->mesh, &base, error);
+    }
+    if (status == TRI_OK && access(ele, F_OK) == 0)
+        status = tri_read_ele(ele, &options, base, f->mesh.n_points, &f->elements, error);
+    free(node);
+    free(ele);
+    free(poly);
+    return status;
+}
+
+static const char *read_block_row(void *user, size_t i, struct tri_fields *fields)
+{
+    int32_t *block_phase = user;
+    for (size_t k = 0; k < 2; k++) {
+        int64_t value;
+        if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
+            return k == 0 ? "has no block" : "has no phase";
+        if (value < INT32_MIN || value > INT32_MAX)
+            return "has a number that is too large";
+        block_phase[2 * i + k] = (int32_t)value;
+    }
+    return NULL;
+}
+
+static enum tri_status parse_blocks(struct files *f, const struct tri_text *text, struct tri_error *error)
+{
+    struct tri_cursor cursor = tri_cursor_begin(text);
+    const size_t n = (size_t)f->elements.n;
+    if (tri_cursor_remaining(&cursor) != n) {
+        return tri_fail(error, TRI_BAD_INPUT, text->name, 0, "%zu lines for %zu triangles",
+                        tri_cursor_remaining(&cursor), n);
+    }
+    f->block_phase = malloc(2 * (n + 1) * sizeof *f->block_phase);
+    if (f->block_phase == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    const struct tri_table table = {"triangle", n, 1, read_block_row, f->block_phase};
+    return tri_cursor_table(&cursor, &table, NULL, error);
+}
+
+static enum tri_status read_blocks(struct files *f, const char *path, struct tri_error *error)
+{
+    struct tri_text text = {0};
+    enum tri_status status = tri_text_load(&text, path, 0, NULL, NULL, error);
+    if (status == TRI_OK)
+        status = parse_blocks(f, &text, error);
+    tri_text_free(&text);
+    return status;
+}
+
+/* --- coordinates */
+
+/* x * 2^-exponent; in two steps, since 2^1074 is no double. */
+static double scale_down(double x, int exponent)
+{
+    const int half = exponent / 2;
+    return ldexp(ldexp(x, -half), -(exponent - half));
+}
+
+/* Brings the points to |x| <= 1, so that no square overflows or vanishes. Returns the exponent. */
+static int normalise(struct tri_pslg *mesh)
+{
+    double largest = 0;
+    int exponent = 0;
+    for (size_t i = 0; i < 2 * (size_t)mesh->n_points; i++)
+        largest = fmax(largest, fabs(mesh->points[i]));
+    if (largest > 0)
+        (void)frexp(largest, &exponent);
+    for (size_t i = 0; i < 2 * (size_t)mesh->n_points; i++)
+        mesh->points[i] = scale_down(mesh->points[i], exponent);
+    return exponent;
+}
+
+static struct plot_box scale_box(struct plot_box box, int exponent)
+{
+    return (struct plot_box){scale_down(box.x0, exponent), scale_down(box.y0, exponent), scale_down(box.x1, exponent),
+                             scale_down(box.y1, exponent)};
+}
+
+static void extend(struct plot_box *box, const double *p)
+{
+    box->x0 = fmin(box->x0, p[0]);
+    box->y0 = fmin(box->y0, p[1]);
+    box->x1 = fmax(box->x1, p[0]);
+    box->y1 = fmax(box->y1, p[1]);
+}
+
+/* The box around all that is drawn, a little wider, and never flat. */
+static struct plot_box whole(const struct plot_mesh *mesh)
+{
+    struct plot_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++)
+        extend(&box, mesh->points + 2 * (size_t)mesh->corners[i]);
+    for (int32_t v = 0; mesh->n_triangles == 0 && v < mesh->n_points; v++)
+        extend(&box, mesh->points + 2 * (size_t)v);
+    if (!(box.x0 <= box.x1))
+        box = (struct plot_box){0, 0, 0, 0};
+    const double longer = fmax(box.x1 - box.x0, box.y1 - box.y0), margin = longer > 0 ? 0.01 * longer : 0.5;
+    return (struct plot_box){box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
+}
+
+/* --- meshes of any size */
+
+static enum tri_status take_densities(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      struct tri_error *error)
+{
+    f->density.box = s->style.window;
+    plot_window_pixels(&s->style, &f->density.width, &f->density.height);
+    return plot_part_count(source, &f->density, &f->mesh, error);
+}
+
+/* What shows in the window; TRI_TOO_LARGE, and nothing: that is too much to be drawn. */
+static enum tri_status take_triangles(const struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      bool all, struct tri_error *error)
+{
+    if (all && source->n_triangles > plot_most_triangles())
+        return TRI_TOO_LARGE;
+    enum tri_status status = plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
+    if (status == TRI_TOO_LARGE) {
+        tri_pslg_free(&f->mesh);
+        tri_elements_free(&f->elements);
+    }
+    return status;
+}
+
+static void say_densities(struct settings *s)
+{
+    fail(0, "there are more than %d triangles to show: a picture of densities; --window shows those of a part",
+         (int)plot_most_triangles());
+    s->colour = BY_DENSITY;
+}
+
+static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                 struct tri_error *error)
+{
+    const bool all = !s->has_window;
+    enum tri_status status = TRI_OK;
+    if (s->colour == BY_BLOCK)
+        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
+    if (all)
+        status = plot_part_box(source, &s->style.window, error);
+    s->has_window = true;
+    f->all_points = source->n_points;
+    f->all_triangles = source->n_triangles;
+    if (status == TRI_OK && s->colour != BY_DENSITY)
+        status = take_triangles(s, f, source, all, error);
+    if (status == TRI_TOO_LARGE) {
+        say_densities(s);
+        status = TRI_OK;
+    }
+    return status != TRI_OK || s->colour != BY_DENSITY ? status : take_densities(s, f, source, error);
+}
+
+static enum tri_status read_part(struct settings *s, struct files *f, const struct judged_ask *ask,
+                                 struct tri_error *error)
+{
+    struct judged_files judged = {0};
+    enum tri_status status = judged_read(&judged, ask, error);
+    if (status == TRI_OK)
+        status = take_part(s, f, &judged.source, error);
+    judged_files_free(&judged);
+    return status;
+}
+
+static enum tri_status read_format(struct files *f, const struct judged_ask *ask, const struct tri_format *format,
+                                   struct tri_error *error)
+{
+    enum tri_status status = judged_check_size(ask->base, ask->memory, error);
+    return status ? status : format->read(ask->base, &f->mesh, &f->elements, NULL, error);
+}
+
+static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
+{
+    const char *folder = getenv("TMPDIR");
+    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .memory = 0.8 * resources_memory(),
+                                   .scratch = folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+    const struct tri_format *format = judged_format(&ask);
+    if (s->colour == BY_DENSITY || judged_is_h5(&ask) || (format == NULL && !judged_fits(s->base, ask.memory)))
+        return read_part(s, f, &ask, error);
+    enum tri_status status = format != NULL ? read_format(f, &ask, format, error) : read_text(f, s->base, error);
+    f->all_points = f->mesh.n_points;
+    f->all_triangles = f->elements.n;
+    if (status != TRI_OK || f->elements.n <= plot_most_triangles() || s->colour == BY_BLOCK)
+        return status;
+    tri_pslg_free(&f->mesh);
+    tri_elements_free(&f->elements);
+    return read_part(s, f, &ask, error);
+}
+
+/* --- drawing and writing */
+
+static enum tri_status shade(const struct settings *s, const struct files *f, const struct plot_mesh *mesh,
+                             struct plot_shading *shading, struct tri_error *error)
+{
+    if (s->colour == BY_DENSITY)
+        return plot_shade_density(shading, &f->density, error);
+    switch (mesh->n_triangles > 0 ? s->colour : BY_NOTHING) {
+    case BY_QUALITY:
+        return plot_shade_quality(shading, mesh, error);
+    case BY_AREA:
+        return plot_shade_area(shading, mesh, error);
+    case BY_REGION:
+        if (f->elements.n_attributes == 0)
+            return tri_fail(error, TRI_BAD_INPUT, "", 0,
+                            "%s has no attribute of triangles for the region (made without -A?)", s->base);
+        return plot_shade_region(shading, mesh, f->elements.attributes, f->elements.n_attributes, error);
+    case BY_BLOCK:
+        return plot_shade_block(shading, mesh, f->block_phase, error);
+    default:
+        return plot_shade_plain(shading, mesh, error);
+    }
+}
+
+static cairo_status_t write_bytes(void *output, const unsigned char *data, unsigned int size)
+{
+    return tri_output_write(output, (const char *)data, size, NULL) == TRI_OK ? CAIRO_STATUS_SUCCESS
+                                                                             : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static enum tri_status cairo_failure(cairo_status_t status, const char *path, struct tri_error *error)
+{
+    if (status == CAIRO_STATUS_SUCCESS)
+        return TRI_OK;
+    return tri_fail(error, status == CAIRO_STATUS_WRITE_ERROR ? TRI_CANNOT_WRITE : TRI_INTERNAL, path, 0, "cairo: %s",
+                    cairo_status_to_string(status));
+}
+
+/* Draws into the open output. */
+static enum tri_status draw(const struct settings *s, const struct plot_mesh *mesh, const struct plot_shading *shading,
+                            struct tri_output *output, struct tri_error *error)
+{
+    const bool vector = tri_name_ends(s->output, ".svg");
+    const double width = s->style.width, height = plot_height(&s->style, shading);
+    cairo_surface_t *surface = vector ? cairo_svg_surface_create_for_stream(write_bytes, output, width, height)
+                                      : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    if (vector)
+        cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
+    cairo_t *cr = cairo_create(surface);
+    enum tri_status status = plot_draw(cr, vector, mesh, shading, &s->style, error);
+    cairo_destroy(cr);
+    if (status == TRI_OK && !vector)
+        status = cairo_failure(cairo_surface_write_to_png_stream(surface, write_bytes, output), s->output, error);
+    cairo_surface_finish(surface);
+    if (status == TRI_OK)
+        status = cairo_failure(cairo_surface_status(surface), s->output, error);
+    cairo_surface_destroy(surface);
+    return status;
+}
+
+static enum tri_status write_picture(const struct settings *s, const struct plot_mesh *mesh,
+                                     const struct plot_shading *shading, struct tri_error *error)
+{
+    static struct tri_output_set set; /* handlers know its temporary names (interrupt.c) */
+    struct tri_output *output;
+    interrupt_stage("drawing");
+    interrupt_begin(&set);
+    enum tri_status status = interrupt_open(&set, s->output, &output, error);
+    if (status == TRI_OK)
+        status = draw(s, mesh, shading, output, error);
+    if (status == TRI_OK)
+        return interrupt_commit(&set, error);
+    interrupt_drop(&set);
+    return interrupt_code() == 0 ? status : tri_fail(error, TRI_STOPPED, "", 0, "stopped by %s; nothing was written",
+                                                     interrupt_cause());
+}
+
+static enum tri_status plot(struct settings *s, struct files *f, struct tri_error *error)
+{
+    struct plot_shading shading = {0};
+    enum tri_status status = read_mesh(s, f, error);
+    if (status == TRI_OK && s->colour == BY_BLOCK)
+        status = read_blocks(f, s->blocks, error);
+    if (status != TRI_OK)
+        return status;
+    const struct plot_mesh mesh = {
+        .exponent = normalise(&f->mesh),
+        .n_points = f->mesh.n_points,
+        .points = f->mesh.points,
+        .n_triangles = f->elements.n,
+        .corners = f->elements.corners,
+        .n_segments = f->mesh.n_segments,
+        .segments = f->mesh.segments,
+        .all_points = f->all_points,
+        .all_triangles = f->all_triangles,
+    };
+    s->style.window = s->has_window ? scale_box(s->style.window, mesh.exponent) : whole(&mesh);
+    s->style.mark = scale_box(s->style.mark, mesh.exponent);
+    if (!(s->style.window.x1 - s->style.window.x0 > 1e-100 && s->style.window.y1 - s->style.window.y0 > 1e-100))
+        return tri_fail(error, TRI_BAD_INPUT, "", 0, "the part to show is too small to be drawn");
+    status = shade(s, f, &mesh, &shading, error);
+    if (status == TRI_OK)
+        status = write_picture(s, &mesh, &shading, error);
+    plot_shading_free(&shading);
+    return status;
+}
+
+/* --- arguments */
+
+enum long_option { SEGMENTS = 256, LEGEND, VERSION, HELP };
+
+static const struct option long_options[] = {
+    {"output", required_argument, NULL, 'o'},  {"color", required_argument, NULL, 'c'},
+    {"size", required_argument, NULL, 's'},    {"window", required_argument, NULL, 'w'},
+    {"mark", required_argument, NULL, 'm'},    {"edges", required_argument, NULL, 'e'},
+    {"title", required_argument, NULL, 't'},   {"blocks", required_argument, NULL, 'b'},
+    {"segments", required_argument, NULL, SEGMENTS}, {"legend", required_argument, NULL, LEGEND},
+    {"version", no_argument, NULL, VERSION},   {"help", no_argument, NULL, HELP},
+    {NULL, 0, NULL, 0},
+};
+
+/* The index of text among the words, up to NULL; -1: none of them. */
+static int find_word(const char *text, const char *const *words)
+{
+    for (int i = 0; words[i] != NULL; i++) {
+        if (strcmp(text, words[i]) == 0)
+            return i;
+    }
+    return -1;
+}
+
+static bool parse_switch(const char *text, bool *value)
+{
+    static const char *const words[] = {"off", "on", NULL};
+    const int found = find_word(text, words);
+    *value = found == 1;
+    return found >= 0;
+}
+
+static bool parse_edges(const char *text, enum plot_edges *value)
+{
+    static const char *const words[] = {"auto", "on", "off", NULL};
+    const int found = find_word(text, words);
+    *value = found < 0 ? PLOT_EDGES_AUTO : (enum plot_edges)found;
+    return found >= 0;
+}
+
+static bool parse_colouring(const char *text, enum colouring *value)
+{
+    static const char *const words[] = {"quality", "region", "area", "block", "none", "density", NULL};
+    const int found = find_word(text, words);
+    *value = found < 0 ? BY_QUALITY : (enum colouring)found;
+    return found >= 0;
+}
+
+static bool parse_size(const char *text, double *value)
+{
+    char *end;
+    *value = floor(strtod(text, &end));
+    return end != text && *end == '\0' && *value >= 64 && *value <= 12000;
+}
+
+static bool parse_box(const char *text, struct plot_box *box)
+{
+    double *const value[4] = {&box->x0, &box->y0, &box->x1, &box->y1};
+    for (int k = 0; k < 4; k++) {
+        char *end;
+        *value[k] = strtod(text, &end);
+        if (end == text || *end != (k < 3 ? ',' : '\0') || !isfinite(*value[k]))
+            return false;
+        text = end + 1;
+    }
+    return box->x0 < box->x1 && box->y0 < box->y1;
+}
+
+/* Applies one option; false: not a value for it. */
+static bool apply(void *settings, int option)
+{
+    struct settings *s = settings;
+    switch (option) {
+    case 'o':
+        s->output = optarg;
+        return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
+    case 'c':
+        return parse_colouring(optarg, &s->colour);
+    case 's':
+        return parse_size(optarg, &s->style.width);
+    case 'w':
+        return s->has_window = parse_box(optarg, &s->style.window);
+    case 'm':
+        return s->style.has_mark = parse_box(optarg, &s->style.mark);
+    case 'e':
+        return parse_edges(optarg, &s->style.edges);
+    case SEGMENTS:
+        return parse_switch(optarg, &s->style.segments);
+    case LEGEND:
+        return parse_switch(optarg, &s->style.legend);
+    case 't':
+        s->style.title = optarg;
+        return true;
+    case 'b':
+        s->blocks = optarg;
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* 0: go on; < 0: done, with success; > 0: exit code. */
+static int parse_arguments(int argc, char **argv, struct settings *s)
+{
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              "-:o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    if (end != WORDS_TAKEN)
+        return end == WORDS_ANSWERED ? -1 : MISUSE;
+    if (s->output == NULL) {
+        fputs(usage, stderr);
+        return MISUSE;
+    }
+    if (s->colour == BY_BLOCK && s->blocks == NULL)
+        return fail(MISUSE, "--color block needs --blocks FILE");
+    s->is_base = judged_cut_text_suffix(mesh);
+    s->base = mesh;
+    return 0;
+}
+
+const int program_trouble = TROUBLE;
+const char program_version[] = PTRIANGLE_VERSION;
+
+int program_main(int argc, char **argv)
+{
+    struct settings settings = {.style = {.width = 1200, .segments = true, .legend = true}};
+    struct files files = {0};
+    struct tri_error error = {0};
+    int code = parse_arguments(argc, argv, &settings);
+    if (code != 0)
+        return code < 0 ? EXIT_SUCCESS : code;
+    interrupt_stage("reading");
+    if (!interrupt_start(PTRIANGLE_NAME, 0, 0))
+        return fail(TROUBLE, "the system does not take a handler for the end");
+    enum tri_status status = plot(&settings, &files, &error);
+    if (status == TRI_STOPPED)
+        interrupt_tell();
+    if (status != TRI_OK)
+        code = fail_with(&error);
+    if (status == TRI_STOPPED)
+        interrupt_told();
+    code = status == TRI_STOPPED ? interrupt_code() : code;
+    tri_pslg_free(&files.mesh);
+    tri_elements_free(&files.elements);
+    free(files.block_phase);
+    free(files.density.count);
+    return code;
+}

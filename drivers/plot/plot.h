@@ -1,0 +1,144 @@
+/* The parts of meshplot: colours, what colour each triangle gets and why (shading), and the drawing itself.
+ *
+ * Data flow: struct plot_mesh -> plot_shade_* -> struct plot_shading -> plot_draw -> any cairo surface. Nothing here
+ * reads files, prints or exits; pictures decide nothing, so that ordinary floating point and libm are good enough. */
+#ifndef DRIVERS_PLOT_PLOT_H
+#define DRIVERS_PLOT_PLOT_H
+
+#include <cairo.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "triangle/base/status.h"
+
+/* --- colours */
+
+struct plot_colour {
+    double red, green, blue; /* sRGB, 0 .. 1 */
+};
+
+static inline void plot_set_colour(cairo_t *cr, struct plot_colour colour)
+{
+    cairo_set_source_rgb(cr, colour.red, colour.green, colour.blue);
+}
+
+/* Sequential scale for t in 0 .. 1, dark violet to light yellow: lightness rises evenly, so that the order is seen also
+ * without colour vision or in grey print. */
+struct plot_colour plot_colour_scale(double t);
+
+/* One of any number of colours that are told apart easily as long as there are a dozen; tone in 0 .. 1 goes from its
+ * darker to its lighter shade. */
+struct plot_colour plot_colour_category(int category, double tone);
+
+/* --- a mesh, borrowed */
+
+struct plot_mesh {
+    int32_t n_points;
+    const double *points; /* [n_points][2]; brought to |x|, |y| <= 1 by a power of two */
+    int exponent;         /* the caller's coordinates are points * 2^exponent */
+    int32_t n_triangles;
+    const int32_t *corners; /* [n_triangles][3] */
+    int32_t n_segments;
+    const int32_t *segments; /* [n_segments][2]; any of them may name points that do not exist */
+    int64_t all_points, all_triangles; /* of the mesh that this is a part of, for the texts */
+};
+
+struct plot_box {
+    double x0, y0, x1, y1; /* x0 < x1, y0 < y1 */
+};
+
+/* How many triangles there are at each pixel: what is drawn of a mesh with too many for anything else. */
+struct plot_density {
+    int width, height;   /* pixels */
+    struct plot_box box; /* what they cover, in the caller's coordinates */
+    double *count;       /* [height][width] from the top; below 1 where triangles are larger than pixels */
+};
+
+/* Adds one triangle, in the caller's coordinates. O(pixels that it covers). */
+void plot_density_add(struct plot_density *density, const double *const at[3]);
+
+/* --- shading */
+
+enum plot_legend {
+    PLOT_LEGEND_NONE,
+    PLOT_LEGEND_SCALE, /* shades in order, with a histogram */
+    PLOT_LEGEND_KEYS   /* named colours */
+};
+
+enum { PLOT_MAX_TICKS = 16, PLOT_LABEL_BYTES = 32, PLOT_FACT_BYTES = 128 };
+
+struct plot_key {
+    struct plot_colour colour;
+    char label[PLOT_LABEL_BYTES];
+};
+
+struct plot_tick {
+    double at; /* 0 .. 1 along the scale */
+    char label[PLOT_LABEL_BYTES];
+};
+
+struct plot_shading {
+    uint16_t *shade; /* [n_triangles] index into shades; of each pixel if density is not NULL, n_shades: white */
+    const struct plot_density *density;
+    int n_shades;
+    struct plot_colour *shades;
+    int64_t *count; /* [n_shades] triangles of that shade */
+    enum plot_legend legend;
+    const char *title; /* of the legend; static */
+    int n_ticks;
+    struct plot_tick ticks[PLOT_MAX_TICKS]; /* of a scale */
+    int n_keys;
+    struct plot_key *keys;
+    char fact[PLOT_FACT_BYTES]; /* one line about the whole mesh, or "" */
+};
+
+/* Each fills *shading, which is to be freed in any case. Errors: TRI_NO_MEMORY. O(n log n). */
+enum tri_status plot_shade_plain(struct plot_shading *shading, const struct plot_mesh *mesh, struct tri_error *error);
+enum tri_status plot_shade_quality(struct plot_shading *shading, const struct plot_mesh *mesh, struct tri_error *error);
+enum tri_status plot_shade_area(struct plot_shading *shading, const struct plot_mesh *mesh, struct tri_error *error);
+/* value[n_triangles * stride]: the region of each triangle. */
+enum tri_status plot_shade_region(struct plot_shading *shading, const struct plot_mesh *mesh, const double *value,
+                                  int32_t stride, struct tri_error *error);
+/* block_phase[n_triangles][2]; phase < 0: made outside the schedule. */
+enum tri_status plot_shade_block(struct plot_shading *shading, const struct plot_mesh *mesh, const int32_t *block_phase,
+                                 struct tri_error *error);
+enum tri_status plot_shade_density(struct plot_shading *shading, const struct plot_density *density,
+                                   struct tri_error *error);
+void plot_shading_free(struct plot_shading *shading);
+
+/* --- drawing */
+
+enum plot_edges {
+    PLOT_EDGES_AUTO, /* edges fade as they get short, so that fine parts show their colour instead of black */
+    PLOT_EDGES_ON,
+    PLOT_EDGES_OFF
+};
+
+struct plot_style {
+    double width;           /* of the picture, pixels */
+    struct plot_box window; /* the part of the plane to show, in units of plot_mesh.points */
+    bool has_mark;
+    struct plot_box mark;   /* a frame around another part */
+    enum plot_edges edges;
+    bool segments, legend;
+    const char *title;      /* NULL: none */
+};
+
+/* Draws the mesh alone into a box of the surface, in pixels with y down, the window as large as fits; pen: width of the
+ * lines of subsegments. vector: the surface keeps outlines, not pixels. Errors: TRI_NO_MEMORY. O(n). */
+enum tri_status plot_field(cairo_t *cr, bool vector, const struct plot_mesh *mesh, const struct plot_shading *shading,
+                           const struct plot_style *style, const struct plot_box *field, double pen,
+                           struct tri_error *error);
+
+/* How many pixels the window takes in the picture. */
+void plot_window_pixels(const struct plot_style *style, int *width, int *height);
+
+/* Height in pixels of the picture of that style: that of the window, within reason, and the texts. */
+double plot_height(const struct plot_style *style, const struct plot_shading *shading);
+
+/* Draws the whole picture with its upper left corner at the origin of `cr`. Errors: TRI_NO_MEMORY, TRI_INTERNAL with
+ * cairo's words. O(n). */
+enum tri_status plot_draw(cairo_t *cr, bool vector, const struct plot_mesh *mesh, const struct plot_shading *shading,
+                          const struct plot_style *style, struct tri_error *error);
+
+#endif

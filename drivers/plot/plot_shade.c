@@ -1,0 +1,356 @@
+/* What colour each triangle gets and what the legend says: by smallest angle, area, region, or block and phase.
+ *
+ * A triangle's colour is an index into a short table of shades, so that the drawing can go shade by shade. */
+#include "drivers/plot/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SCALE_SHADES = 60,
+    MAX_REGION_SHADES = 4096,
+    MAX_KEYS = 24,
+    MAX_PHASES = 24,
+    TONES = 16, /* of one phase, so that neighbouring blocks differ */
+    OUTSIDE = MAX_PHASES * TONES
+};
+
+static const double degrees = 57.29577951308232;
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+}
+
+static enum tri_status begin(struct plot_shading *s, const struct plot_mesh *mesh, int n_shades,
+                             struct tri_error *error)
+{
+    *s = (struct plot_shading){.n_shades = n_shades};
+    s->shade = malloc(((size_t)mesh->n_triangles + 1) * sizeof *s->shade);
+    s->shades = malloc((size_t)n_shades * sizeof *s->shades);
+    s->count = calloc((size_t)n_shades, sizeof *s->count);
+    s->keys = calloc(MAX_KEYS + 1, sizeof *s->keys);
+    return s->shade && s->shades && s->count && s->keys ? TRI_OK : no_memory(error);
+}
+
+void plot_shading_free(struct plot_shading *s)
+{
+    free(s->shade);
+    free(s->shades);
+    free(s->count);
+    free(s->keys);
+    *s = (struct plot_shading){0};
+}
+
+static void set(struct plot_shading *s, int32_t triangle, int shade)
+{
+    s->shade[triangle] = (uint16_t)shade;
+    s->count[shade]++;
+}
+
+static void add_key(struct plot_shading *s, struct plot_colour colour, const char *word, double number)
+{
+    struct plot_key *key = &s->keys[s->n_keys++];
+    key->colour = colour;
+    (void)snprintf(key->label, sizeof key->label, "%s%.10g", word, number);
+}
+
+/* number * 10^power */
+static void add_tick(struct plot_shading *s, double at, int number, int power)
+{
+    if (s->n_ticks == PLOT_MAX_TICKS)
+        return;
+    struct plot_tick *tick = &s->ticks[s->n_ticks++];
+    tick->at = at;
+    if (power >= -3 && power <= 3)
+        (void)snprintf(tick->label, sizeof tick->label, "%.10g", number * pow(10, power));
+    else
+        (void)snprintf(tick->label, sizeof tick->label, "%de%d", number, power);
+}
+
+static int level(double fraction)
+{
+    return (int)fmin(fmax(fraction * SCALE_SHADES, 0), SCALE_SHADES - 1);
+}
+
+static void fill_scale(struct plot_shading *s)
+{
+    s->legend = PLOT_LEGEND_SCALE;
+    for (int i = 0; i < SCALE_SHADES; i++)
+        s->shades[i] = plot_colour_scale((i + 0.5) / SCALE_SHADES);
+}
+
+/* --- geometry of a triangle */
+
+/* Sides as vectors, from corner k to the next one; returns twice the area. */
+static double measure(const struct plot_mesh *mesh, int32_t t, double side[3][2])
+{
+    const int32_t *v = mesh->corners + 3 * (size_t)t;
+    for (int k = 0; k < 3; k++) {
+        const double *a = mesh->points + 2 * (size_t)v[k], *b = mesh->points + 2 * (size_t)v[(k + 1) % 3];
+        side[k][0] = b[0] - a[0];
+        side[k][1] = b[1] - a[1];
+    }
+    return side[0][0] * side[1][1] - side[0][1] * side[1][0];
+}
+
+/* 0 for a triangle that is flat or clockwise. */
+static double smallest_angle(const struct plot_mesh *mesh, int32_t t)
+{
+    double side[3][2], smallest = 180;
+    const double area2 = measure(mesh, t, side);
+    if (!(area2 > 0))
+        return 0;
+    for (int k = 0; k < 3; k++) {
+        const double *out = side[k], *in = side[(k + 2) % 3];
+        smallest = fmin(smallest, degrees * atan2(area2, -(out[0] * in[0] + out[1] * in[1])));
+    }
+    return smallest;
+}
+
+/* --- one colour, quality, area */
+
+enum tri_status plot_shade_plain(struct plot_shading *s, const struct plot_mesh *mesh, struct tri_error *error)
+{
+    if (begin(s, mesh, 1, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    s->shades[0] = (struct plot_colour){0.93, 0.95, 0.98};
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
+        set(s, t, 0);
+    return TRI_OK;
+}
+
+enum tri_status plot_shade_quality(struct plot_shading *s, const struct plot_mesh *mesh, struct tri_error *error)
+{
+    double least = 60, sum = 0;
+    if (begin(s, mesh, SCALE_SHADES, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const double angle = smallest_angle(mesh, t);
+        set(s, t, level(angle / 60));
+        least = fmin(least, angle);
+        sum += angle;
+    }
+    fill_scale(s);
+    s->title = "smallest angle of each triangle, degrees";
+    for (int a = 0; a <= 60; a += 10)
+        add_tick(s, a / 60.0, a, 0);
+    if (mesh->n_triangles > 0)
+        (void)snprintf(s->fact, sizeof s->fact, "smallest angle %.3g\u00b0, average %.3g\u00b0", least,
+                       sum / mesh->n_triangles);
+    return TRI_OK;
+}
+
+/* Ticks at the powers of ten, or at 1, 2, 5 times them where the range is short. */
+static void add_log_ticks(struct plot_shading *s, double low, double high)
+{
+    const int n_steps = high - low < 3 ? 3 : 1, stride = (int)fmax(1, ceil((high - low) / 8));
+    static const int step[3] = {1, 2, 5};
+    for (int power = (int)floor(low); power <= high; power++) {
+        for (int k = 0; k < n_steps && power % stride == 0; k++) {
+            const double at = power + log10(step[k]);
+            if (at >= low && at <= high)
+                add_tick(s, (at - low) / (high - low), step[k], power);
+        }
+    }
+}
+
+enum tri_status plot_shade_area(struct plot_shading *s, const struct plot_mesh *mesh, struct tri_error *error)
+{
+    const double to_caller = 2 * mesh->exponent * log10(2);
+    double side[3][2], low = INFINITY, high = -INFINITY;
+    if (begin(s, mesh, SCALE_SHADES, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const double area2 = measure(mesh, t, side);
+        if (area2 > 0) {
+            low = fmin(low, log10(area2 / 2) + to_caller);
+            high = fmax(high, log10(area2 / 2) + to_caller);
+        }
+    }
+    if (high < low)
+        low = high = 0;
+    if (high - low < 0.01) { /* all alike: in the middle of the scale */
+        low -= 0.5;
+        high += 0.5;
+    }
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const double area2 = measure(mesh, t, side);
+        set(s, t, area2 > 0 ? level((log10(area2 / 2) + to_caller - low) / (high - low)) : 0);
+    }
+    fill_scale(s);
+    s->title = "area of each triangle";
+    add_log_ticks(s, low, high);
+    return TRI_OK;
+}
+
+/* --- density */
+
+/* Logarithms of the least and the most there is at a pixel, at least a decade apart. */
+static void density_range(const struct plot_density *d, double *low, double *high)
+{
+    double least = 1, most = 0;
+    for (int32_t i = 0; i < d->width * d->height; i++) {
+        least = d->count[i] > 0 && d->count[i] < least ? d->count[i] : least;
+        most = d->count[i] > most ? d->count[i] : most;
+    }
+    *low = log10(least);
+    *high = fmax(log10(most > 0 ? most : 1), *low + 1);
+}
+
+enum tri_status plot_shade_density(struct plot_shading *s, const struct plot_density *d, struct tri_error *error)
+{
+    const struct plot_mesh pixels = {.n_triangles = d->width * d->height};
+    double low, high, most = 0;
+    if (begin(s, &pixels, SCALE_SHADES, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    density_range(d, &low, &high);
+    for (int32_t i = 0; i < pixels.n_triangles; i++) {
+        if (d->count[i] > 0)
+            set(s, i, level((log10(d->count[i]) - low) / (high - low)));
+        else
+            s->shade[i] = SCALE_SHADES;
+        most = fmax(most, d->count[i]);
+    }
+    fill_scale(s);
+    s->density = d;
+    s->title = "triangles at each pixel";
+    add_log_ticks(s, low, high);
+    (void)snprintf(s->fact, sizeof s->fact, "at most %.3g at a pixel", most);
+    return TRI_OK;
+}
+
+/* --- regions */
+
+/* What is no number, in an HDF5 file of others, comes last. */
+static int compare_reals(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y ? 1 : (isnan(x) != 0) - (isnan(y) != 0);
+}
+
+/* Sorts and drops repetitions; returns how many remain. */
+static int32_t distinct_reals(double *value, int32_t n)
+{
+    int32_t kept = 0;
+    qsort(value, (size_t)n, sizeof *value, compare_reals);
+    for (int32_t i = 0; i < n; i++) {
+        if (kept == 0 || compare_reals(&value[i], &value[kept - 1]) > 0)
+            value[kept++] = value[i];
+    }
+    return kept;
+}
+
+static void set_regions(struct plot_shading *s, const double *known, int32_t n_known, const double *value,
+                        int32_t stride, int32_t n)
+{
+    for (int i = 0; i < s->n_shades; i++)
+        s->shades[i] = plot_colour_category(i, 0.5);
+    for (int32_t t = 0; t < n; t++) {
+        const double *at = bsearch(value + (size_t)t * (size_t)stride, known, (size_t)n_known, sizeof *known,
+                                   compare_reals);
+        set(s, t, (int)((at - known) % s->n_shades));
+    }
+    s->legend = n_known <= MAX_KEYS ? PLOT_LEGEND_KEYS : PLOT_LEGEND_NONE;
+    for (int i = 0; s->legend == PLOT_LEGEND_KEYS && i < n_known; i++)
+        add_key(s, s->shades[i], "", known[i]);
+    s->title = "region";
+    (void)snprintf(s->fact, sizeof s->fact, "%ld region%s", (long)n_known, n_known == 1 ? "" : "s");
+}
+
+enum tri_status plot_shade_region(struct plot_shading *s, const struct plot_mesh *mesh, const double *value,
+                                  int32_t stride, struct tri_error *error)
+{
+    const int32_t n = mesh->n_triangles;
+    double *known = malloc(((size_t)n + 1) * sizeof *known);
+    *s = (struct plot_shading){0};
+    if (known == NULL)
+        return no_memory(error);
+    for (int32_t t = 0; t < n; t++)
+        known[t] = value[(size_t)t * (size_t)stride];
+    const int32_t n_known = distinct_reals(known, n);
+    const int n_shades = n_known < 1 ? 1 : n_known < MAX_REGION_SHADES ? (int)n_known : MAX_REGION_SHADES;
+    const enum tri_status status = begin(s, mesh, n_shades, error);
+    if (status == TRI_OK)
+        set_regions(s, known, n_known, value, stride, n);
+    free(known);
+    return status;
+}
+
+/* --- blocks and phases */
+
+static int compare_keys(const void *a, const void *b)
+{
+    const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Distinct (phase, block) with phase >= 0; < 0: out of memory. */
+static int64_t count_blocks(const int32_t *block_phase, int32_t n)
+{
+    int64_t *key = malloc(((size_t)n + 1) * sizeof *key), different = 0;
+    int32_t used = 0;
+    if (key == NULL)
+        return -1;
+    for (int32_t t = 0; t < n; t++) {
+        const int64_t block = block_phase[2 * (size_t)t], phase = block_phase[2 * (size_t)t + 1];
+        if (phase >= 0)
+            key[used++] = phase * ((int64_t)1 << 32) + block;
+    }
+    qsort(key, (size_t)used, sizeof *key, compare_keys);
+    for (int32_t i = 0; i < used; i++)
+        different += i == 0 || key[i] != key[i - 1];
+    free(key);
+    return different;
+}
+
+/* Consecutive blocks get tones far apart. */
+static int tone_of(int32_t block)
+{
+    const double turns = 0.61803398874989485 * block;
+    return (int)(TONES * (turns - floor(turns)));
+}
+
+static void fill_phases(struct plot_shading *s)
+{
+    for (int i = 0; i < OUTSIDE; i++)
+        s->shades[i] = plot_colour_category(i / TONES, (i % TONES + 0.5) / TONES);
+    s->shades[OUTSIDE] = (struct plot_colour){0.78, 0.78, 0.78};
+}
+
+static void add_phase_keys(struct plot_shading *s)
+{
+    for (int phase = 0; phase < MAX_PHASES; phase++) {
+        bool seen = false;
+        for (int tone = 0; tone < TONES; tone++)
+            seen = seen || s->count[phase * TONES + tone] > 0;
+        if (seen)
+            add_key(s, plot_colour_category(phase, 0.5), "phase ", phase);
+    }
+    if (s->count[OUTSIDE] > 0) {
+        add_key(s, s->shades[OUTSIDE], "", 0);
+        (void)snprintf(s->keys[s->n_keys - 1].label, PLOT_LABEL_BYTES, "in no block");
+    }
+}
+
+enum tri_status plot_shade_block(struct plot_shading *s, const struct plot_mesh *mesh, const int32_t *block_phase,
+                                 struct tri_error *error)
+{
+    if (begin(s, mesh, OUTSIDE + 1, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    const int64_t n_blocks = count_blocks(block_phase, mesh->n_triangles);
+    if (n_blocks < 0)
+        return no_memory(error);
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const int32_t block = block_phase[2 * (size_t)t], phase = block_phase[2 * (size_t)t + 1];
+        set(s, t, phase < 0 ? OUTSIDE : phase % MAX_PHASES * TONES + tone_of(block));
+    }
+    fill_phases(s);
+    s->legend = PLOT_LEGEND_KEYS;
+    s->title = "phase of the schedule; tones: blocks";
+    add_phase_keys(s);
+    (void)snprintf(s->fact, sizeof s->fact, "%lld block%s", (long long)n_blocks, n_blocks == 1 ? "" : "s");
+    return TRI_OK;
+}

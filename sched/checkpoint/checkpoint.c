@@ -1,0 +1,472 @@
+/* Files are those of the machine that wrote them: arrays as they lie in memory. A state goes to the disk past the
+ * system's cache, where it can: two to five times as fast (measured), while somebody waits for the end of the run. */
+#define _GNU_SOURCE /* O_DIRECT */
+
+#include "sched/checkpoint/checkpoint.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "sched/checkpoint/folder.h"
+#include "sched/checkpoint/spool.h"
+
+#ifndef O_DIRECT
+#define O_DIRECT 0 /* the system has no such thing */
+#endif
+
+enum { WAITING = 1 << 20 }; /* bytes that are written at a time; a multiple of any block of a disk */
+
+static const uint64_t MANIFEST = UINT64_C(0x336863697274706b); /* a version, too */
+
+static const char *const state_name[2] = {"state-0", "state-1"};
+static const char piece_prefix[] = "piece-";
+static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
+
+/* --- files in the directory */
+
+static void path_of(char path[PAR_CHECKPOINT_PATH], const char *directory, const char *name)
+{
+    snprintf(path, PAR_CHECKPOINT_PATH, "%s/%s", directory, name);
+}
+
+static enum tri_status cannot_write(const char *directory, const char *name, struct tri_error *error)
+{
+    char path[PAR_CHECKPOINT_PATH];
+    path_of(path, directory, name);
+    return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+}
+
+bool par_checkpoint_sync(const char *directory)
+{
+    const int folder = par_folder_open(directory);
+    const bool done = folder >= 0 && par_folder_sync(folder);
+    if (folder >= 0)
+        close(folder);
+    return done;
+}
+
+/* --- manifest */
+
+static uint64_t hash_of(const struct par_manifest *m)
+{
+    return par_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
+}
+
+static bool is_manifest(const struct par_manifest *m)
+{
+    return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
+           m->tiles_bytes >= 0 && m->kind >= PAR_SWEPT_STATE && m->kind <= PAR_RANKS_STATE;
+}
+
+static enum tri_status read_manifest(struct par_manifest *m, const struct par_checkpoint *c, struct tri_error *error)
+{
+    const char *directory = c->directory;
+    int file = par_folder_read(c->folder, manifest_name);
+    if (file < 0)
+        return tri_fail(error, TRI_BAD_INPUT, directory, 0, "holds no checkpoint: %s", strerror(errno));
+    bool whole = par_read_at(file, m, sizeof *m, 0) && is_manifest(m);
+    close(file);
+    if (whole)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, directory, 0, "the checkpoint's manifest is damaged, or of another version");
+}
+
+static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manifest m, struct tri_error *error)
+{
+    int file = par_folder_create(c->folder, fresh_name);
+    m.word = MANIFEST;
+    m.hash = hash_of(&m);
+    bool done = file >= 0 && par_write_at(file, &m, sizeof m, 0) && fsync(file) == 0;
+    if (file >= 0)
+        done = close(file) == 0 && done;
+    if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !par_folder_sync(c->folder))
+        return cannot_write(c->directory, manifest_name, error);
+    c->manifest = m;
+    if (c->told)
+        c->told(c->told_user, m.state_bytes > 0 ? m.triangles : 0);
+    return TRI_OK;
+}
+
+/* The same run's, without a state. */
+static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_t kind)
+{
+    return (struct par_manifest){.of = m->of, .run = m->run, .kind = kind, .made_directory = m->made_directory};
+}
+
+/* --- whose files they are */
+
+/* "piece-0-12" */
+static bool is_piece(const char *name)
+{
+    const char *rest = name + sizeof piece_prefix - 1;
+    if (strncmp(name, piece_prefix, sizeof piece_prefix - 1) != 0 || (rest[0] != '0' && rest[0] != '1') ||
+        rest[1] != '-' || !isdigit((unsigned char)rest[2]))
+        return false;
+    rest += 2;
+    return rest[strspn(rest, "0123456789")] == 0;
+}
+
+/* A new manifest that has not got its name, or has been begun. */
+static bool is_fresh_manifest(int folder)
+{
+    struct par_manifest m;
+    int file = par_folder_read(folder, fresh_name);
+    off_t length = file >= 0 ? lseek(file, 0, SEEK_END) : -1;
+    bool is = length == 0 || (length == sizeof m && par_read_at(file, &m, sizeof m, 0) && is_manifest(&m));
+    if (file >= 0)
+        close(file);
+    return is;
+}
+
+/* Would a file of that name, in a directory without a manifest, be written over or removed, though no run has made it?
+ * Whatever runs make comes after the first manifest, and goes before the last one. */
+static bool is_foreign(int folder, const char *name)
+{
+    if (strcmp(name, fresh_name) == 0)
+        return !is_fresh_manifest(folder);
+    return strcmp(name, tiles_name) == 0 || strcmp(name, state_name[0]) == 0 || strcmp(name, state_name[1]) == 0 ||
+           is_piece(name);
+}
+
+/* Its own descriptor, which closedir closes; NULL: errno says why. */
+static DIR *list_folder(int folder)
+{
+    const int again = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *list = again >= 0 ? fdopendir(again) : NULL;
+    if (again >= 0 && !list)
+        close(again);
+    return list;
+}
+
+static enum tri_status check_names(const struct par_checkpoint *c, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    DIR *list = list_folder(c->folder);
+    if (!list)
+        return tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot be used: %s", strerror(errno));
+    for (const struct dirent *entry; !status && (entry = readdir(list));)
+        if (is_foreign(c->folder, entry->d_name))
+            status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
+                              "holds a file %s, but no checkpoint: choose another folder", entry->d_name);
+    closedir(list);
+    return status;
+}
+
+/* --- opening and closing */
+
+bool par_checkpoint_is_there(const char *directory)
+{
+    char path[PAR_CHECKPOINT_PATH];
+    path_of(path, directory, manifest_name);
+    return access(path, F_OK) == 0;
+}
+
+/* One process at a time; where there are no locks, nobody is kept out. */
+static bool take_directory(struct par_checkpoint *c)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    c->lock = par_folder_extend(c->folder, tiles_name);
+    return c->lock >= 0 && (fcntl(c->lock, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN));
+}
+
+static enum tri_status check_run(const struct par_checkpoint *c, bool resume, uint64_t of, struct tri_error *error)
+{
+    struct par_manifest m;
+    if (!resume && faccessat(c->folder, manifest_name, F_OK, 0) == 0)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds the checkpoint of a run already");
+    enum tri_status status = resume ? read_manifest(&m, c, error) : check_names(c, error);
+    if (!status && resume && m.of != of)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds a checkpoint of another version of the program");
+    return status;
+}
+
+/* `resume`: it is to be read before it is written. */
+static enum tri_status open_folder(struct par_checkpoint *c, bool resume, struct tri_error *error)
+{
+    c->folder = par_folder_open(c->directory);
+    if (c->folder >= 0)
+        return TRI_OK;
+    if (errno == EPERM)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "belongs to another user: choose another folder");
+    if (resume)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds no checkpoint: %s", strerror(errno));
+    return tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot be used: %s", strerror(errno));
+}
+
+enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error)
+{
+    struct par_checkpoint c = par_checkpoint_closed(directory);
+    enum tri_status status = open_folder(&c, true, error);
+    status = status ? status : check_run(&c, true, of, error);
+    par_checkpoint_close(&c, false);
+    return status;
+}
+
+/* The lock, and then, of a run that goes on, what no other process changes any more. */
+static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_error *error)
+{
+    if (take_directory(c))
+        return resume ? read_manifest(&c->manifest, c, error) : TRI_OK;
+    if (c->lock >= 0)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
+    return cannot_write(c->directory, tiles_name, error);
+}
+
+enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *directory, bool resume, uint64_t of,
+                                    struct tri_error *error)
+{
+    *c = par_checkpoint_closed(directory);
+    if (strlen(directory) > PAR_CHECKPOINT_PATH - 32)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
+    bool made = !resume && mkdir(directory, 0777) == 0;
+    if (!resume && !made && errno != EEXIST)
+        return tri_fail(error, TRI_CANNOT_WRITE, directory, 0, "cannot be made: %s", strerror(errno));
+    enum tri_status status = open_folder(c, resume, error);
+    status = status ? status : check_run(c, resume, of, error);
+    if (!status && !resume)
+        status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
+    status = status ? status : take(c, resume, error);
+    path_of(c->tiles_path, directory, tiles_name);
+    c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
+    if (status)
+        par_checkpoint_close(c, false);
+    return status;
+}
+
+int64_t par_checkpoint_next(const struct par_checkpoint *c)
+{
+    return par_checkpoint_has_state(c) ? 1 - c->manifest.which : 0;
+}
+
+int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s%d-%d", piece_prefix, (int)which, rank);
+    path_of(path, directory, name);
+    const int folder = par_folder_open(directory);
+    if (folder < 0)
+        return -1;
+    const int file = fresh ? par_folder_create(folder, name) : par_folder_read(folder, name), fault = errno;
+    close(folder);
+    errno = fault;
+    return file;
+}
+
+/* Of however many ranks there have been. */
+static void remove_pieces(int folder)
+{
+    DIR *list = list_folder(folder);
+    for (const struct dirent *entry; list && (entry = readdir(list));)
+        if (is_piece(entry->d_name))
+            unlinkat(folder, entry->d_name, 0);
+    if (list)
+        closedir(list);
+}
+
+/* The manifest says of all the others that they are a run's: it goes last, and names no state as soon as that goes. */
+static void remove_all(struct par_checkpoint *c)
+{
+    const struct par_manifest m = c->manifest;
+    (void)write_manifest(c, manifest_of_none(&m, m.kind), NULL);
+    remove_pieces(c->folder);
+    unlinkat(c->folder, state_name[0], 0);
+    unlinkat(c->folder, state_name[1], 0);
+    unlinkat(c->folder, tiles_name, 0);
+    unlinkat(c->folder, fresh_name, 0);
+    unlinkat(c->folder, manifest_name, 0);
+    if (m.made_directory)
+        rmdir(c->directory);
+}
+
+void par_checkpoint_close(struct par_checkpoint *c, bool remove)
+{
+    assert(!remove || c->lock >= 0);
+    if (remove)
+        remove_all(c);
+    if (c->lock >= 0)
+        close(c->lock);
+    if (c->folder >= 0)
+        close(c->folder);
+    c->lock = c->folder = c->spool.file = -1;
+}
+
+/* --- what it is of */
+
+enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, struct tri_error *error)
+{
+    if (par_checkpoint_has_state(c) && run != c->manifest.run)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
+                        "is the checkpoint of another run: of another input, or with other switches");
+    c->manifest.run = run;
+    assert(c->lock >= 0);
+    if (ftruncate(c->spool.file, (off_t)c->spool.length) != 0)
+        return cannot_write(c->directory, tiles_name, error);
+    return TRI_OK;
+}
+
+enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_kind kind, struct tri_error *error)
+{
+    enum tri_status status = write_manifest(c, manifest_of_none(&c->manifest, kind), error);
+    if (status)
+        return status;
+    c->spool.length = c->spool.sent = 0;
+    return ftruncate(c->spool.file, 0) == 0 ? TRI_OK : cannot_write(c->directory, tiles_name, error);
+}
+
+/* --- a state's file */
+
+enum { PIECE = 1 << 14 }; /* bytes that go into the hash at a time */
+
+static uint64_t hash_pieces(uint64_t hash, const char *at, size_t n)
+{
+    for (; n > PIECE; n -= PIECE, at += PIECE)
+        hash = par_hash(hash, at, PIECE);
+    return par_hash(hash, at, n);
+}
+
+/* Bytes that are only checked. */
+static void check(struct par_state_file *f, size_t n)
+{
+    char piece[PIECE];
+    while (n > 0 && !f->failed) {
+        const size_t part = n < PIECE ? n : PIECE;
+        f->failed = f->stopped = tri_stop_is_asked(f->stop);
+        if (f->stopped)
+            break;
+        f->failed = !par_read_at(f->file, piece, part, f->place);
+        f->hash = f->failed ? f->hash : par_hash(f->hash, piece, part);
+        f->place += (int64_t)part;
+        n -= part;
+    }
+}
+
+static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcmp(bytes, bytes + 1, n - 1) == 0; }
+
+/* Writes what waits, which ends at f->place. Room that blocks have not used yet, most of a mesh while its first phase
+ * runs, is zero, and stays a hole. The last of it, which is no whole number of blocks, goes by way of the cache, and so
+ * does all where the file system knows no other. */
+static bool write_waiting(const struct par_state_file *f, size_t n)
+{
+    const int64_t place = f->place - (int64_t)n;
+    const int flags = fcntl(f->file, F_GETFL);
+    if (n == WAITING && is_zero(f->waiting, n))
+        return true;
+    if (n == WAITING && par_write_at(f->file, f->waiting, n, place))
+        return true;
+    if (n == WAITING && !(flags & O_DIRECT))
+        return false;
+    return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && par_write_at(f->file, f->waiting, n, place);
+}
+
+static void put_bytes(struct par_state_file *f, const char *at, size_t n)
+{
+    while (n > 0 && !f->failed) {
+        const size_t waits = (size_t)(f->place % WAITING), room = WAITING - waits, part = n < room ? n : room;
+        memcpy(f->waiting + waits, at, part);
+        f->place += (int64_t)part;
+        f->failed = part == room && !write_waiting(f, WAITING);
+        at += part;
+        n -= part;
+    }
+}
+
+void par_carry(struct par_state_file *f, void *bytes, size_t n)
+{
+    if (n == 0 || f->failed)
+        return;
+    if (f->way == PAR_CHECK) {
+        check(f, n);
+    } else if (f->way == PAR_WRITE) {
+        f->hash = hash_pieces(f->hash, bytes, n);
+        put_bytes(f, bytes, n);
+    } else {
+        f->failed = !par_read_at(f->file, bytes, n, f->place);
+        f->hash = f->failed ? f->hash : hash_pieces(f->hash, bytes, n);
+        f->place += (int64_t)n;
+    }
+}
+
+void par_carry_head(struct par_state_file *f, void *bytes, size_t n)
+{
+    const enum par_carrying way = f->way;
+    f->way = way == PAR_CHECK ? PAR_READ : way;
+    par_carry(f, bytes, n);
+    f->way = way;
+}
+
+/* The file of a state, with all of it, on the disk. */
+static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
+                                   par_state_walk *walk, void *user, struct tri_error *error)
+{
+    *to = (struct par_state_file){.file = par_folder_create(c->folder, name), .way = PAR_WRITE};
+    to->failed = to->file < 0;
+    if (posix_memalign((void **)&to->waiting, 1 << 12, WAITING) != 0) {
+        close(to->file);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
+    }
+    if (!to->failed)
+        (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
+    enum tri_status status = walk(to, user, error);
+    bool done = !to->failed && write_waiting(to, (size_t)(to->place % WAITING)) &&
+                ftruncate(to->file, (off_t)to->place) == 0 && fsync(to->file) == 0;
+    const int fault = errno;
+    if (to->file >= 0)
+        done = close(to->file) == 0 && done;
+    free(to->waiting);
+    errno = fault;
+    return status || done ? status : cannot_write(c->directory, name, error);
+}
+
+enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t triangles,
+                                     par_state_walk *walk, void *user, struct tri_error *error)
+{
+    struct par_manifest m = c->manifest;
+    struct par_state_file to;
+    m.which = par_checkpoint_next(c);
+    enum tri_status status = write_state(c, state_name[m.which], &to, walk, user, error);
+    if (status)
+        return status;
+    if (fsync(c->spool.file) != 0)
+        return cannot_write(c->directory, tiles_name, error);
+    m.kind = kind;
+    m.state_bytes = to.place;
+    m.state_hash = to.hash;
+    m.tiles_bytes = c->spool.length;
+    m.triangles = triangles;
+    status = write_manifest(c, m, error);
+    c->saved += !status;
+    return status;
+}
+
+static enum tri_status walk_through(const struct par_checkpoint *c, enum par_carrying way, par_state_walk *walk,
+                                    void *user, struct tri_error *error)
+{
+    const char *name = state_name[c->manifest.which];
+    struct par_state_file from = {.file = par_folder_read(c->folder, name), .way = way};
+    from.stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
+    from.failed = from.file < 0;
+    enum tri_status status = walk(&from, user, error);
+    bool sound = !from.failed && from.place == c->manifest.state_bytes && from.hash == c->manifest.state_hash;
+    if (from.file >= 0)
+        close(from.file);
+    if (status || sound)
+        return status;
+    if (from.stopped)
+        return tri_fail_stopped(error);
+    return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
+}
+
+enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_walk *walk, void *user,
+                                    struct tri_error *error)
+{
+    enum tri_status status = walk_through(c, PAR_CHECK, walk, user, error);
+    return status ? status : walk_through(c, PAR_READ, walk, user, error);
+}

@@ -1,0 +1,323 @@
+/* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
+#include "sched/checkpoint/spool.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const uint64_t TILE = UINT64_C(0x31656c6974697274); /* a version as well */
+
+struct head {
+    uint64_t word;
+    uint64_t hash;     /* of the head without this and the one before, and of the arrays */
+    int64_t bytes;     /* of the arrays */
+    int64_t first_vertex, first_triangle, first_segment;
+    int32_t column, row;
+    int32_t n_vertices, n_triangles, n_segments;
+    int32_t n_attributes;
+};
+
+/* Arrays one after the other, each from a multiple of eight bytes on. */
+struct packed {
+    char *bytes;
+    size_t n;
+};
+
+static inline uint64_t mixed(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * UINT64_C(0x9E3779B97F4A7C15);
+    return hash ^ hash >> 29;
+}
+
+/* Four words at a time, each with a hash of its own: none waits for another's product. */
+uint64_t par_hash(uint64_t hash, const void *bytes, size_t n)
+{
+    enum { LANES = 4 };
+    const char *at = bytes;
+    uint64_t lane[LANES] = {hash, 1, 2, 3}, word[LANES];
+    if (n >= sizeof word) {
+        for (; n >= sizeof word; n -= sizeof word, at += sizeof word) {
+            memcpy(word, at, sizeof word);
+            for (int k = 0; k < LANES; k++)
+                lane[k] = mixed(lane[k], word[k]);
+        }
+        hash = mixed(mixed(mixed(lane[0], lane[1]), lane[2]), lane[3]);
+    }
+    for (; n > 0; n -= n < 8 ? n : 8, at += 8) {
+        word[0] = n < 8 ? n : 0;
+        memcpy(word, at, n < 8 ? n : 8);
+        hash = mixed(hash, word[0]);
+    }
+    return hash;
+}
+
+bool par_write_at(int file, const void *bytes, size_t n, int64_t place)
+{
+    const char *at = bytes;
+    while (n > 0) {
+        ssize_t done = pwrite(file, at, n, (off_t)place);
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done <= 0)
+            return false;
+        at += done;
+        place += done;
+        n -= (size_t)done;
+    }
+    return true;
+}
+
+bool par_read_at(int file, void *bytes, size_t n, int64_t place)
+{
+    char *at = bytes;
+    while (n > 0) {
+        ssize_t done = pread(file, at, n, (off_t)place);
+        if (done < 0 && errno == EINTR)
+            continue;
+        errno = done == 0 ? 0 : errno;
+        if (done <= 0)
+            return false;
+        at += done;
+        place += done;
+        n -= (size_t)done;
+    }
+    return true;
+}
+
+static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
+
+/* --- arrays of a tile, packed; the same walk for both ways */
+
+/* Room for one more array. */
+static void *next(struct packed *p, size_t n)
+{
+    char *at = p->bytes + p->n;
+    memset(at + padded(n) - (padded(n) > 0 ? 8 : 0), 0, padded(n) > 0 ? 8 : 0);
+    p->n += padded(n);
+    return at;
+}
+
+static void put(struct packed *p, const void *array, size_t n)
+{
+    void *at = next(p, n);
+    if (n > 0)
+        memcpy(at, array, n);
+}
+
+/* Vertices below `end`, counted back from there. */
+static bool put_numbers(struct packed *p, const int64_t *number, size_t n, int64_t end)
+{
+    char *at = next(p, 4 * n);
+    bool fits = true;
+    for (size_t i = 0; i < n; i++) {
+        uint64_t back = (uint64_t)(end - number[i]);
+        uint32_t short_back = (uint32_t)back;
+        fits = fits && back == short_back;
+        memcpy(at + 4 * i, &short_back, 4);
+    }
+    return fits;
+}
+
+static size_t bytes_of(const struct head *h)
+{
+    size_t v = (size_t)h->n_vertices, t = (size_t)h->n_triangles, s = (size_t)h->n_segments;
+    return 16 * v + padded(4 * v) + 8 * v * (size_t)h->n_attributes + padded(12 * t) + padded(4 * t) + padded(8 * s) +
+           padded(4 * s);
+}
+
+static struct head head_of(const struct tri_tile *tile, int32_t n_attributes)
+{
+    struct head h;
+    memset(&h, 0, sizeof h); /* what lies between fields is written, too */
+    h.word = TILE;
+    h.first_vertex = tile->first_vertex;
+    h.first_triangle = tile->first_triangle;
+    h.first_segment = tile->first_segment;
+    h.column = tile->column;
+    h.row = tile->row;
+    h.n_vertices = tile->n_vertices;
+    h.n_triangles = tile->n_triangles;
+    h.n_segments = tile->n_segments;
+    h.n_attributes = n_attributes;
+    h.bytes = (int64_t)bytes_of(&h);
+    return h;
+}
+
+static uint64_t hash_of(const struct head *h, const char *arrays)
+{
+    uint64_t hash = par_hash(0, &h->bytes, sizeof *h - offsetof(struct head, bytes));
+    return par_hash(hash, arrays, (size_t)h->bytes);
+}
+
+/* False: a tile reaches back too far. */
+static bool pack(struct packed *p, const struct tri_tile *tile, int32_t n_attributes)
+{
+    size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
+    int64_t end = tile->first_vertex + tile->n_vertices;
+    put(p, tile->points, 16 * v);
+    put(p, tile->point_markers, 4 * v);
+    put(p, tile->attributes, 8 * v * (size_t)n_attributes);
+    bool fits = put_numbers(p, (const int64_t *)tile->corners, 3 * t, end);
+    put(p, tile->regions, 4 * t);
+    fits = put_numbers(p, (const int64_t *)tile->ends, 2 * s, end) && fits;
+    put(p, tile->segment_markers, 4 * s);
+    return fits;
+}
+
+static enum tri_status no_memory(const struct par_spool *spool, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
+}
+
+static enum tri_status fail_writing(const struct par_spool *spool, struct tri_error *error)
+{
+    return tri_fail(error, TRI_CANNOT_WRITE, spool->path, 0, "cannot write: %s", strerror(errno));
+}
+
+/* The system begins to write what has come lately: whoever waits for a state that is to be kept waits for little of it.
+ * A hint, which may be ignored. */
+static void send_off(struct par_spool *spool)
+{
+    enum { SHIP = 1 << 23 };
+    if (spool->length - spool->sent < SHIP)
+        return;
+    (void)posix_fadvise(spool->file, (off_t)spool->sent, (off_t)(spool->length - spool->sent), POSIX_FADV_DONTNEED);
+    spool->sent = spool->length;
+}
+
+static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct head h = head_of(tile, spool->n_attributes);
+    struct packed p = {malloc(sizeof h + (size_t)h.bytes), sizeof h};
+    enum tri_status status = TRI_OK;
+    if (!p.bytes)
+        return no_memory(spool, error);
+    if (!pack(&p, tile, spool->n_attributes))
+        status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
+    assert(p.n == sizeof h + (size_t)h.bytes);
+    h.hash = hash_of(&h, p.bytes + sizeof h);
+    memcpy(p.bytes, &h, sizeof h);
+    if (!status && !par_write_at(spool->file, p.bytes, p.n, spool->length))
+        status = fail_writing(spool, error);
+    spool->length += status ? 0 : (int64_t)p.n;
+    send_off(spool);
+    free(p.bytes);
+    return status;
+}
+
+/* --- all of them again */
+
+static int64_t *numbers(const char *at, size_t n, int64_t end)
+{
+    int64_t *number = malloc((n + 1) * sizeof *number);
+    for (size_t i = 0; number && i < n; i++) {
+        uint32_t back;
+        memcpy(&back, at + 4 * i, 4);
+        number[i] = end - back;
+    }
+    return number;
+}
+
+/* Hands out one tile from its arrays. */
+static enum tri_status hand_out(const struct par_spool *spool, const struct head *h, char *arrays,
+                                struct tri_error *error)
+{
+    size_t v = (size_t)h->n_vertices, t = (size_t)h->n_triangles, s = (size_t)h->n_segments;
+    int64_t end = h->first_vertex + h->n_vertices;
+    struct packed p = {arrays, 0};
+    struct tri_tile tile = {h->column, h->row, h->first_vertex, h->first_triangle, h->first_segment,
+                            h->n_vertices, h->n_triangles, h->n_segments, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
+    const void *at[7];
+    const size_t bytes[7] = {16 * v, 4 * v, 8 * v * (size_t)h->n_attributes, 12 * t, 4 * t, 8 * s, 4 * s};
+    for (int k = 0; k < 7; k++) {
+        at[k] = p.bytes + p.n;
+        p.n += padded(bytes[k]);
+    }
+    int64_t *corners = numbers(at[3], 3 * t, end), *ends = numbers(at[5], 2 * s, end);
+    tile.points = (const double(*)[2])at[0];
+    tile.point_markers = at[1];
+    tile.attributes = at[2];
+    tile.corners = (const int64_t(*)[3])corners;
+    tile.regions = at[4];
+    tile.ends = (const int64_t(*)[2])ends;
+    tile.segment_markers = at[6];
+    enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
+    free(corners);
+    free(ends);
+    return status;
+}
+
+static enum tri_status fail_damaged(const struct par_spool *spool, int64_t place, struct tri_error *error)
+{
+    return tri_fail(error, TRI_BAD_INPUT, spool->path, 0, "damaged at byte %lld", (long long)place);
+}
+
+/* Reads the tile at a place, and its arrays, which are malloc'ed. */
+static enum tri_status read_tile(const struct par_spool *spool, int64_t place, struct head *h, char **arrays,
+                                 struct tri_error *error)
+{
+    int64_t left = spool->length - place - (int64_t)sizeof *h;
+    *arrays = NULL;
+    if (left < 0 || !par_read_at(spool->file, h, sizeof *h, place) || h->word != TILE || h->bytes < 0 ||
+        h->bytes > left || h->n_vertices < 0 || h->n_triangles < 0 || h->n_segments < 0 ||
+        h->n_attributes != spool->n_attributes || (size_t)h->bytes != bytes_of(h))
+        return fail_damaged(spool, place, error);
+    *arrays = malloc((size_t)h->bytes + 1);
+    if (!*arrays)
+        return no_memory(spool, error);
+    if (!par_read_at(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
+        h->hash != hash_of(h, *arrays))
+        return fail_damaged(spool, place, error);
+    return TRI_OK;
+}
+
+static enum tri_status hand_out_again(struct par_spool *spool, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int64_t place = 0; !status && place < spool->length;) {
+        struct head h;
+        char *arrays;
+        status = read_tile(spool, place, &h, &arrays, error);
+        status = status ? status : hand_out(spool, &h, arrays, error);
+        place += status ? 0 : (int64_t)sizeof h + h.bytes;
+        free(arrays);
+    }
+    return status;
+}
+
+/* --- the sink */
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct par_spool *spool = user;
+    spool->n_attributes = stream->n_attributes;
+    enum tri_status status = spool->to->begin ? spool->to->begin(spool->to->user, stream, error) : TRI_OK;
+    return status || !spool->again ? status : hand_out_again(spool, error);
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct par_spool *spool = user;
+    if (spool->again) {
+        spool->again = false;
+        return TRI_OK;
+    }
+    enum tri_status status = keep(spool, tile, error);
+    if (!status && !spool->failed)
+        spool->failed = spool->to->take(spool->to->user, tile, &spool->failure);
+    return status;
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct par_spool *spool = user;
+    (void)error;
+    if (!spool->failed && spool->to->end)
+        spool->failed = spool->to->end(spool->to->user, &spool->failure);
+    return TRI_OK;
+}
+
+struct tri_sink par_spool_sink(struct par_spool *spool) { return (struct tri_sink){spool, begin, take, end}; }

@@ -1,0 +1,39 @@
+/* Tiles in a file, in the order in which they are handed out: so that whoever takes them can be given all of them again
+ * after the process has died. A sink that passes on to another one.
+ *
+ * The file is only appended to. A tile is a head, with a hash over all of the tile, and its arrays; corners take 32
+ * bits, since they are counted back from the last vertex of the tile: up to 2^32 vertices. About 26 bytes a
+ * triangle. */
+#ifndef SCHED_CHECKPOINT_SPOOL_H
+#define SCHED_CHECKPOINT_SPOOL_H
+
+#include <stddef.h>
+
+#include "ptriangle/tiles.h"
+#include "triangle/base/status.h"
+
+struct par_spool {
+    int file;               /* open for reading and writing; -1: none */
+    const char *path;       /* for messages; borrowed */
+    const struct tri_sink *to;
+    int64_t length;         /* bytes of whole tiles in the file */
+    int64_t sent;           /* of these are on their way to the disk */
+    bool again;             /* `begin` hands out what is in the file, and the first tile that comes is one of those */
+    enum tri_status failed; /* `to` has failed, and is told no more; tiles are kept all the same */
+    struct tri_error failure;
+    int32_t n_attributes;
+};
+
+/* As a sink; the spool lives as long as that. TRI_CANNOT_WRITE, TRI_NO_MEMORY; with `again` also TRI_BAD_INPUT, where
+ * the file does not hold whole tiles, and what `to` says. */
+struct tri_sink par_spool_sink(struct par_spool *spool);
+
+/* A hash over bytes that goes on from another one: 0 to begin with. It depends on how they are dealt to calls. For
+ * finding damage, not for enemies. */
+uint64_t par_hash(uint64_t hash, const void *bytes, size_t n);
+
+/* Writes or reads all of so many bytes at a place of a file; false: errno says why, 0: the file ends before. */
+bool par_write_at(int file, const void *bytes, size_t n, int64_t place);
+bool par_read_at(int file, void *bytes, size_t n, int64_t place);
+
+#endif

@@ -1,0 +1,89 @@
+/* The functions of ptriangle/par.h. */
+#include "ptriangle/par.h"
+
+#include "sched/schedule/library.h"
+#include "sched/schedule/schedule.h"
+#include "sched/schedule/threads.h"
+
+/* Passes on what the schedule tells. */
+static void follow(void *user, const struct par_place *place)
+{
+    const struct tri_refine_options *quality = user;
+    quality->told(quality->told_user, place->triangles);
+}
+
+enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, const struct tri_settings *settings,
+                              struct tri_refine_report *report, struct tri_error *error)
+{
+    struct par_options how = *(const struct par_options *)way->user;
+    struct par_report schedule;
+    how.threads = settings->threads > 0 ? settings->threads : 0;
+    how.size_test_in_parallel = settings->callbacks_in_parallel;
+    how.figure = way->figure;
+    how.region_column = way->has_attributes;
+    how.progress = quality->told ? follow : NULL;
+    how.progress_user = (void *)quality; /* which only reads it */
+    enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
+    *report = schedule.total;
+    par_report_free(&schedule);
+    return status;
+}
+
+/* A call of one of the functions below. */
+struct call {
+    struct tri_settings settings; /* the caller's, taken */
+    int threads;
+    struct tri_executor executor;
+    struct par_options how;
+    struct tri_api_way way;
+};
+
+static enum tri_status begin(struct call *call, const struct tri_settings *settings, struct tri_error *error)
+{
+    enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
+    if (status)
+        return status;
+    call->threads = par_threads(call->settings.threads, false);
+    call->executor = par_executor(&call->threads);
+    call->how = par_defaults();
+    call->way = (struct tri_api_way){.refine = par_refine_as, .executor = &call->executor, .user = &call->how};
+    return TRI_OK;
+}
+
+enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
+                             const struct tri_settings *settings, struct tri_error *error)
+{
+    struct call call;
+    enum tri_status status = begin(&call, settings, error);
+    *mesh = NULL;
+    if (status)
+        return status;
+    call.how.by_block = call.settings.numbered_by_block;
+    return tri_api_mesh_new(mesh, figure, &call.settings, &call.way, error);
+}
+
+enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
+{
+    struct call call;
+    enum tri_status status = begin(&call, settings, error);
+    if (status)
+        return status;
+    call.how.by_block = call.settings.numbered_by_block;
+    return tri_api_mesh_refine(mesh, &call.settings, &call.way, error);
+}
+
+enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings, int64_t memory,
+                                const char *scratch, const struct tri_sink *sink, struct tri_error *error)
+{
+    struct call call;
+    if (memory < 0 || !sink || !sink->take)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes, and a bound on memory >= 0");
+    enum tri_status status = begin(&call, settings, error);
+    if (status)
+        return status;
+    call.how.memory = memory;
+    call.how.scratch = scratch;
+    call.how.sink = sink;
+    return tri_api_mesh_stream(figure, &call.settings, &call.way, error);
+}

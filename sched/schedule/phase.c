@@ -1,0 +1,908 @@
+/* Tasks of a phase: deal out worklists and room, run, collect. */
+#include "sched/schedule/phase.h"
+
+#include <assert.h>
+#include <float.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/schedule/theory.h"
+#include "triangle/base/clock.h"
+#include "triangle/size/estimate.h"
+#include "triangle/base/grow.h"
+
+enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
+
+/* A block at work. Every field is its own while the phase runs; others read it before and after. */
+struct task {
+    int32_t block;
+    tri_triangle_id *worklist; /* part of the phase's list */
+    int32_t n_worklist;
+    int32_t expected;       /* triangles, to the order */
+    struct tri_fence fence, active; /* the second in the caller's coordinates */
+    bool has_margin;
+    struct par_view view;
+    struct tri_owners owners;
+    struct tri_refine_options options;
+    struct tri_refine_report report;
+    int64_t made_before;     /* of it, in a phase that goes on */
+    struct tri_refiner *refiner;
+    struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
+    struct par_ids left;  /* what gate and fence left */
+    struct par_ids given_up;
+    struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
+    bool lost;              /* no memory for one of these lists */
+    struct tri_part part;
+    enum par_progress progress;
+    int32_t pauses;         /* so far, for triangles */
+    enum tri_status status;
+    struct tri_error error;
+    double seconds;
+};
+
+struct phase {
+    struct par_state *state;
+    const struct par_partition *partition;
+    int phase;
+    int32_t only;       /* column, or TRI_NONE */
+    int32_t *block_of;  /* [worklist.n] */
+    double *work;       /* [worklist.n] triangles that each will become, to the order */
+    tri_triangle_id *worklist; /* [worklist.n] by block */
+    struct task *tasks;
+    int32_t n_tasks;
+    int32_t *order;     /* [n_tasks] in which tasks are started */
+    int64_t expected;   /* triangles of all tasks, to the order */
+    _Atomic(int64_t) done; /* of these, in tasks that have ended */
+    int64_t before;     /* triangles there were, */
+    _Atomic(int64_t) made; /* and those that such tasks have made */
+    const void *caller; /* address of the own one's `here` */
+    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/owners.h */
+    size_t n_marks;
+};
+
+static void leave_triangle(void *user, tri_triangle_id triangle)
+{
+    struct task *task = user;
+    if (!par_ids_add(&task->left, triangle))
+        task->lost = true;
+}
+
+static void note_given_up(void *user, tri_triangle_id triangle)
+{
+    struct task *task = user;
+    if (!par_ids_add(&task->given_up, triangle))
+        task->lost = true;
+}
+
+static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
+{
+    struct task *task = user;
+    for (int32_t i = 0; i < n; i++)
+        if (!par_ids_add(&task->changed, triangle[i]))
+            task->lost = true;
+}
+
+static void ask_for(void *user, const tri_vertex_id edge[2])
+{
+    struct task *task = user;
+    if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
+        task->lost = true;
+}
+
+/* The paper's test: is the new point in the cells that are active now? */
+static bool is_active(void *user, const double p[2])
+{
+    return tri_fence_holds(user, (struct tri_point){p[0], p[1]});
+}
+
+/* The block that has its turn now and owns triangle t. */
+static int32_t owner_now(const struct phase *p, struct par_locator *locator, tri_triangle_id t)
+{
+    int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
+    if (p->state->share)
+        return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
+    bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
+    return mine ? block : TRI_NONE;
+}
+
+static void assign_share(void *context, size_t share)
+{
+    const struct phase *p = context;
+    const struct tri_mesh *mesh = p->state->mesh;
+    const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
+    struct par_locator locator = PAR_LOST;
+    for (int32_t i = range.first; i < range.last; i++) {
+        tri_triangle_id t = p->state->worklist.item[i];
+        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, &locator, t) : GONE;
+        p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
+    }
+}
+
+/* In as many shares as there can be: each entry takes a while. */
+static void assign_blocks(struct phase *p) { tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); }
+
+/* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
+ * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
+static int32_t expect(int phase, double work)
+{
+    static const double share[PAR_PHASES] = {0.9, 0.38, 0.42, 0.35};
+    double expected = share[phase] * work + 128;
+    return expected < 1e7 ? (int32_t)expected : 10000000;
+}
+
+/* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes
+ * comes before all of them, and stays in the worklist; what has gone is dropped. */
+struct dealing {
+    struct phase *p;
+    size_t shares, bins;
+    int32_t *at;   /* [shares][bins] how many; then where the next one goes */
+    double *work;  /* [shares][bins] */
+    int32_t *kept; /* what stays, and its keys */
+    uint64_t *key;
+    int32_t n_kept;
+};
+
+static struct tri_range dealt_share(const struct dealing *d, size_t share)
+{
+    return tri_share_of(share, d->shares, d->p->state->worklist.n);
+}
+
+static void count_share(void *context, size_t share)
+{
+    const struct dealing *d = context;
+    const struct phase *p = d->p;
+    int32_t *count = d->at + share * d->bins;
+    double *work = d->work + share * d->bins;
+    const struct tri_range range = dealt_share(d, share);
+    for (int32_t i = range.first; i < range.last; i++)
+        if (p->block_of[i] != GONE) {
+            count[p->block_of[i] + 1]++;
+            work[p->block_of[i] + 1] += p->work[i];
+        }
+}
+
+static void deal_share(void *context, size_t share)
+{
+    const struct dealing *d = context;
+    const struct phase *p = d->p;
+    const struct par_keys *key = &p->state->key;
+    int32_t *at = d->at + share * d->bins;
+    const struct tri_range range = dealt_share(d, share);
+    for (int32_t i = range.first; i < range.last; i++) {
+        if (p->block_of[i] == GONE)
+            continue;
+        int32_t to = at[p->block_of[i] + 1]++;
+        if (p->block_of[i] != TRI_NONE) {
+            p->worklist[to - d->n_kept] = p->state->worklist.item[i];
+            continue;
+        }
+        d->kept[to] = p->state->worklist.item[i];
+        if (key->n > 0)
+            d->key[to] = key->item[i];
+    }
+}
+
+/* Counts become places. Adds up the work of all shares in that of the first; returns how many blocks have any. */
+static int32_t add_up_shares(struct dealing *d)
+{
+    int32_t sum = 0, used = 0;
+    for (size_t bin = 0; bin < d->bins; bin++) {
+        int32_t before = sum;
+        for (size_t share = 0; share < d->shares; share++) {
+            int32_t count = d->at[share * d->bins + bin];
+            d->at[share * d->bins + bin] = sum;
+            sum += count;
+            d->work[bin] += share > 0 ? d->work[share * d->bins + bin] : 0;
+        }
+        d->n_kept = bin == 0 ? sum : d->n_kept;
+        used += bin > 0 && sum > before;
+    }
+    return used;
+}
+
+static bool make_tasks(const struct dealing *d, int32_t used)
+{
+    struct phase *p = d->p;
+    p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
+    for (size_t bin = 1; p->tasks && bin < d->bins; bin++) {
+        int32_t end = d->at[(d->shares - 1) * d->bins + bin], begin = d->at[(d->shares - 1) * d->bins + bin - 1];
+        if (end > begin)
+            p->tasks[p->n_tasks++] = (struct task){
+                .block = (int32_t)bin - 1, .worklist = p->worklist + begin - d->n_kept, .n_worklist = end - begin,
+                .expected = expect(p->phase, d->work[bin])};
+    }
+    assert(!p->tasks || p->n_tasks == used);
+    return p->tasks;
+}
+
+static bool deal_all(struct dealing *d)
+{
+    struct par_state *state = d->p->state;
+    tri_execute(&state->executor, d->shares, count_share, d);
+    int32_t used = add_up_shares(d);
+    d->kept = malloc(((size_t)d->n_kept + 1) * sizeof *d->kept);
+    d->key = state->key.n > 0 ? malloc(((size_t)d->n_kept + 1) * sizeof *d->key) : NULL;
+    if (!d->kept || (state->key.n > 0 && !d->key))
+        return false;
+    tri_execute(&state->executor, d->shares, deal_share, d);
+    if (!make_tasks(d, used))
+        return false;
+    free(state->worklist.item);
+    free(state->key.item);
+    state->worklist = (struct par_ids){d->kept, d->n_kept, d->n_kept};
+    state->key = (struct par_keys){d->key, d->key ? d->n_kept : 0, d->key ? d->n_kept : 0};
+    d->kept = NULL;
+    d->key = NULL;
+    return true;
+}
+
+/* Few enough shares for counts not to outgrow what is counted. */
+static bool deal_worklists(struct phase *p)
+{
+    size_t n = (size_t)p->state->worklist.n, bins = (size_t)par_blocks(p->partition) + 1, most = n / bins + 1;
+    struct dealing d = {.p = p, .bins = bins, .shares = most < TRI_MOST_SHARES ? most : TRI_MOST_SHARES};
+    d.at = calloc(d.shares * bins, sizeof *d.at);
+    d.work = calloc(d.shares * bins, sizeof *d.work);
+    bool memory = d.at && d.work && deal_all(&d);
+    free(d.at);
+    free(d.work);
+    free(d.kept);
+    free(d.key);
+    return memory;
+}
+
+/* Is a fence large enough for the paper's margin? */
+static bool can_have_margin(const struct tri_fence *f, double radius)
+{
+    return f->x_max - f->x_min >= 12 * radius && f->y_max - f->y_min >= 12 * radius;
+}
+
+/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches
+ * beyond the fence (Definition 3). */
+static struct tri_fence with_margin(const struct tri_fence *f, double radius)
+{
+    double margin = 2 * radius;
+    return (struct tri_fence){f->x_min + margin, f->y_min + margin, f->x_max - margin, f->y_max - margin};
+}
+
+#ifndef NDEBUG
+/* The gap between two intervals, more rather than less by what rounding of their ends may have taken. */
+static double gap(double low_a, double high_a, double low_b, double high_b)
+{
+    double before = low_b - high_a, after = low_a - high_b;
+    if (before > 0)
+        return before + 4 * DBL_EPSILON * (fabs(low_b) + fabs(high_a));
+    return after > 0 ? after + 4 * DBL_EPSILON * (fabs(low_a) + fabs(high_b)) : 0;
+}
+
+/* Lemma 2, at run time: any two points that different blocks may insert at once are independent, where both blocks are
+ * large enough for a margin. */
+static bool blocks_are_independent(const struct phase *p)
+{
+    const struct tri_point origin = {0, 0};
+    double unit = p->state->mesh->unit;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; k < i; k++) {
+            const struct tri_fence *a = &p->tasks[i].active, *b = &p->tasks[k].active;
+            struct tri_point apart = {gap(a->x_min, a->x_max, b->x_min, b->x_max) / unit,
+                                      gap(a->y_min, a->y_max, b->y_min, b->y_max) / unit};
+            if (p->tasks[i].has_margin && p->tasks[k].has_margin &&
+                !par_independent(origin, apart, p->state->radius * (1 - 1e-9)))
+                return false;
+        }
+    return true;
+}
+#endif
+
+static void set_up(struct phase *p, struct task *task)
+{
+    const struct par_state *state = p->state;
+    double unit = state->mesh->unit;
+    task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
+    task->has_margin = state->options->margin && can_have_margin(&task->fence, state->radius);
+    struct tri_fence active = task->has_margin ? with_margin(&task->fence, state->radius) : task->fence;
+    task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
+                                      active.y_max * unit};
+    task->options = *state->quality;
+    task->options.told = NULL; /* a block is not the mesh */
+    task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
+    task->options.gate_user = &task->active;
+    task->options.fence = &task->fence;
+    task->part = (struct tri_part){note_changes, ask_for, task};
+    task->options.part = state->share && state->share->is_border[task->block] ? &task->part : NULL;
+    task->options.worklist = task->worklist;
+    task->options.n_worklist = task->n_worklist;
+    task->options.deferred = leave_triangle;
+    task->options.deferred_user = task;
+    task->options.given_up = state->counts_remaining ? note_given_up : NULL;
+    task->options.given_up_user = task;
+    task->options.more_room = par_view_more_room;
+    task->options.more_room_user = &task->view;
+}
+
+/* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
+ * the slowest: a little more room where areas made the expectation about right, a good deal more where it was a
+ * guess, and twice that each time. What is too much serves the phases that follow. */
+static int32_t more_for(const struct task *task)
+{
+    double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
+    bool areas = task->options.max_area > 0 || task->options.region_areas;
+    double more = ldexp(fmax(task->expected, 2 * inserted) / (areas ? 16 : 4), task->pauses) + 256;
+    return (int32_t)fmin(more, 2 * inserted + 256);
+}
+
+static enum tri_status reserve_room(struct phase *p, struct tri_error *error)
+{
+    int64_t to_come = 0; /* who goes on has room */
+    p->expected = 0;
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        p->expected += p->tasks[i].expected;
+        to_come += p->tasks[i].progress == PAR_NEW ? p->tasks[i].expected : 0;
+    }
+    return par_room_reserve(&p->state->spare, p->state->mesh, to_come, error);
+}
+
+/* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
+ * follow for the triangles that are left: more triangles each time would stay empty. */
+static int32_t refill(struct task *task)
+{
+    const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
+    const int32_t more = more_for(task), left = par_room_left(&task->view.room, PAR_TRIANGLES);
+    task->view.room.on_segments = all > 0 ? (double)on_segments / (double)all : 0;
+    if (left >= more / 4)
+        return left;
+    task->pauses++;
+    return more;
+}
+
+static enum tri_status extend_room(struct phase *p, struct task *task, struct tri_error *error)
+{
+    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task);
+    if (p->state->options->tight_room > 0)
+        more = p->state->options->tight_room;
+    p->state->report->pauses += task->progress == PAR_FULL;
+    return par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
+}
+
+/* Room for the tasks that wait for it, in canonical order. */
+static enum tri_status deal_room(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; !status && i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        if (task->progress == PAR_ENDED)
+            continue;
+        if (task->asked.n == 0)
+            status = extend_room(p, task, error);
+        task->progress = PAR_READY;
+    }
+    return status;
+}
+
+/* Brings, all at once, the triangles for which tasks wait; tasks that wait for room are left alone. */
+static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
+{
+    struct par_ids asked = {0};
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        memory = memory && !task->lost;
+        for (int32_t k = 0; memory && k < task->asked.n; k++)
+            memory = par_ids_add(&asked, task->asked.item[k]);
+    }
+    enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
+    if (!status && asked.n > 0)
+        status = p->state->share->more(p->state->share->user, &asked, error);
+    free(asked.item);
+    return status;
+}
+
+/* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert
+ * (cavity.c). */
+static bool watch_owners(struct phase *p)
+{
+#ifdef NDEBUG
+    (void)p;
+#else
+    size_t n = (size_t)p->state->mesh->triangle_capacity + 1;
+    if (!tri_resize(&p->mark, n, sizeof *p->mark))
+        return false;
+    for (size_t i = p->n_marks; i < n; i++)
+        p->mark[i] = 0;
+    p->n_marks = n;
+#endif
+    return true;
+}
+
+static enum tri_status new_refiner(struct task *task)
+{
+    enum tri_status status =
+        tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
+    if (!status && task->pause)
+        tri_refiner_go_on(task->refiner, task->pause);
+    if (!status)
+        tri_pause_drop(&task->pause); /* nothing is left in it */
+    return status;
+}
+
+static void run_task(struct phase *p, struct task *task)
+{
+    double began = tri_seconds();
+    assert(task->progress == PAR_READY);
+    task->owners = (struct tri_owners){p->mark, task->block + 1};
+    task->options.owners = p->mark ? &task->owners : NULL;
+    par_view_begin(&task->view, p->state->mesh);
+    task->asked.n = 0;
+    task->status = TRI_OK;
+    if (!task->refiner)
+        task->status = new_refiner(task);
+    if (!task->status)
+        task->status = tri_refiner_run(task->refiner, &task->error);
+    par_view_end(&task->view);
+    task->progress = task->status == TRI_NO_ROOM ? PAR_FULL : task->status == TRI_STOPPED ? PAR_READY : PAR_ENDED;
+    if (task->progress == PAR_ENDED) {
+        tri_refiner_free(task->refiner);
+        task->refiner = NULL;
+    }
+    task->seconds += tri_seconds() - began;
+}
+
+int64_t par_triangles(const struct par_state *state)
+{
+    int64_t n = state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
+    for (int32_t i = 0; i < state->halt.n_blocks; i++)
+        n -= par_ranges_unused(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
+    return n;
+}
+
+/* Each thread has one at an address of its own. */
+static _Thread_local char here;
+
+static void tell(const struct par_state *state, int phase, double done, int64_t triangles)
+{
+    const struct par_options *options = state->options;
+    const struct par_place place = {.level = state->level, .sizes = state->stage == PAR_SIZES && state->sizes_first,
+                                    .column = state->column, .n_columns = state->n_columns, .round = state->round,
+                                    .phase = phase, .done = done, .triangles = triangles};
+    if (options->progress)
+        options->progress(options->progress_user, &place);
+}
+
+void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
+
+static int64_t inserted_by(const struct task *task)
+{
+    return task->report.inserted_free + task->report.inserted_on_segments;
+}
+
+static int64_t least_made_by(const struct task *task) { return inserted_by(task) + task->report.inserted_free; }
+
+/* The calling thread tells of what all have done, as often as it has ended a task itself. A point makes two triangles,
+ * or, on the boundary, one: that is not less than what has been told before. */
+static void note_end(struct phase *p, const struct task *task)
+{
+    const int64_t made = least_made_by(task) - task->made_before;
+    const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
+    const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
+    if (p->caller == &here)
+        tell(p->state, p->phase + 1, (double)done / (double)p->expected, p->before + all);
+}
+
+static void run_next(void *context, size_t index)
+{
+    struct phase *p = context;
+    struct task *task = &p->tasks[p->order[index]];
+    if (task->progress != PAR_READY || tri_stop_is_asked(p->state->mesh->stop))
+        return;
+    run_task(p, task);
+    if (task->progress == PAR_ENDED)
+        note_end(p, task);
+}
+
+/* Runs every task that is ready, until it has ended, is full, or somebody asks for the end. */
+static void run_tasks(struct phase *p)
+{
+    double began = tri_seconds();
+    struct par_report *report = p->state->report;
+    double shared[PAR_SHARINGS]; /* blocks are no equal shares */
+    memcpy(shared, report->seconds_shared, sizeof shared);
+    p->caller = &here;
+    tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
+    memcpy(report->seconds_shared, shared, sizeof shared);
+    double seconds = tri_seconds() - began;
+    report->seconds_refine += seconds;
+    report->phase_seconds[p->phase] += seconds;
+}
+
+static bool is_any(const struct phase *p, enum par_progress progress)
+{
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        if (p->tasks[i].progress == progress)
+            return true;
+    return false;
+}
+
+struct queued {
+    int32_t expected, task;
+};
+
+static int by_expected(const void *left, const void *right)
+{
+    const struct queued *a = left, *b = right;
+    if (a->expected != b->expected)
+        return a->expected > b->expected ? -1 : 1;
+    return (a->task > b->task) - (a->task < b->task);
+}
+
+/* The largest first, so that the last to end are small; or, for tests, at random. */
+static bool order_tasks(struct phase *p)
+{
+    unsigned draw = p->state->options->shuffle;
+    struct queued *queue = malloc(((size_t)p->n_tasks + 1) * sizeof *queue);
+    p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
+    if (queue && p->order) {
+        for (int32_t i = 0; i < p->n_tasks; i++) {
+            draw = draw * 1664525u + 1013904223u;
+            queue[i] = (struct queued){p->state->options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
+        }
+        qsort(queue, (size_t)p->n_tasks, sizeof *queue, by_expected);
+        for (int32_t i = 0; i < p->n_tasks; i++)
+            p->order[i] = queue[i].task;
+    }
+    bool done = queue && p->order;
+    free(queue);
+    return done;
+}
+
+static bool report_block(const struct phase *p, const struct task *task)
+{
+    struct par_report *report = p->state->report;
+    if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
+        return false;
+    report->blocks[report->n_blocks++] = (struct par_block_report){
+        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist, inserted_by(task),
+        task->report.fenced, task->seconds};
+    return true;
+}
+
+void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+{
+    sum->inserted_free += add->inserted_free;
+    sum->inserted_on_segments += add->inserted_on_segments;
+    sum->gated += add->gated;
+    sum->fenced += add->fenced;
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum->given_up[k] += add->given_up[k];
+    sum->hit_limit |= add->hit_limit;
+}
+
+void par_forget_deferred(struct par_report *report) { report->total.gated = report->total.fenced = 0; }
+
+uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
+{
+    int32_t column = block / partition->n_rows, row = block % partition->n_rows;
+    int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
+    return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
+}
+
+/* What a phase has left. */
+struct leftovers {
+    const struct phase *p;
+    _Atomic(uint64_t) *seen; /* bits of triangles */
+    int32_t *before;         /* [n_tasks + 1] left by the tasks before each */
+    int32_t *item;           /* [before[n_tasks]] */
+    uint64_t *key;           /* [before[n_tasks]] */
+};
+
+static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
+{
+    const uint64_t bit = (uint64_t)1 << triangle % 64;
+    return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
+}
+
+/* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
+ * ninefold after the next phase. Two blocks do not leave the same one: each looks at what has two corners in its box,
+ * and boxes of one phase are disjoint. So who comes first does not matter. */
+static void drop_repeated(void *context, size_t index)
+{
+    const struct leftovers *left = context;
+    struct par_ids *own = &left->p->tasks[index].left;
+    int32_t n = 0;
+    for (int32_t k = 0; k < own->n; k++)
+        if (is_new(left, own->item[k]))
+            own->item[n++] = own->item[k];
+    own->n = n;
+}
+
+static void gather_own(void *context, size_t index)
+{
+    const struct leftovers *left = context;
+    const struct phase *p = left->p;
+    const struct par_ids *own = &p->tasks[index].left;
+    const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
+    for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
+        left->item[at] = own->item[k];
+        left->key[at] = key | (uint32_t)k;
+    }
+}
+
+static bool gather_left(struct leftovers *left)
+{
+    const struct phase *p = left->p;
+    const size_t n = (size_t)p->n_tasks;
+    bool memory = true;
+    left->seen = calloc((size_t)p->state->mesh->n_triangles / 64 + 1, sizeof *left->seen);
+    left->before = malloc((n + 1) * sizeof *left->before);
+    if (!left->seen || !left->before)
+        return false;
+    tri_execute(&p->state->executor, n, drop_repeated, left);
+    left->before[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+        memory = memory && !p->tasks[i].lost;
+        left->before[i + 1] = left->before[i] + p->tasks[i].left.n;
+    }
+    left->item = malloc(((size_t)left->before[n] + 1) * sizeof *left->item);
+    left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
+    memory = memory && left->item && left->key;
+    if (memory)
+        tri_execute(&p->state->executor, n, gather_own, left);
+    return memory;
+}
+
+static uint64_t key_of(const struct par_state *state, int32_t i)
+{
+    return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
+}
+
+bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
+{
+    struct par_ids *list = &state->worklist;
+    int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
+    uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
+    if (!items || !keys) {
+        free(items);
+        free(keys);
+        return false;
+    }
+    assert(state->key.n == 0 || state->key.n == list->n);
+    for (int32_t i = 0, at = 0; at < sum; at++) {
+        bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
+        items[at] = old ? list->item[i] : item[k];
+        keys[at] = old ? key_of(state, i) : key[k];
+        assert(at == 0 || keys[at - 1] < keys[at]);
+        i += old;
+        k += !old;
+    }
+    free(state->worklist.item);
+    free(state->key.item);
+    state->worklist = (struct par_ids){items, sum, sum};
+    state->key = (struct par_keys){keys, sum, sum};
+    return true;
+}
+
+static bool gather_changes(const struct phase *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
+            memory = par_ids_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
+    return memory;
+}
+
+static bool gather_given_up(const struct phase *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
+            memory = par_ids_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
+    return memory;
+}
+
+static bool take_back(struct phase *p)
+{
+    struct leftovers left = {.p = p};
+    bool memory = gather_left(&left) &&
+                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
+                  gather_given_up(p);
+    free(left.seen);
+    free(left.before);
+    free(left.item);
+    free(left.key);
+    return memory;
+}
+
+/* Otherwise than for room, or since somebody asks for the end? */
+static bool has_failed(const struct task *task)
+{
+    return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
+}
+
+/* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
+ * one that has failed says. */
+static enum tri_status collect(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool memory = take_back(p);
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        if (!status && has_failed(task)) {
+            status = task->status;
+            tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
+        }
+        par_add_up(&p->state->report->total, &task->report);
+        memory = memory && report_block(p, task);
+        par_room_return(&task->view.room, &p->state->spare);
+        free(task->left.item);
+        free(task->given_up.item);
+        free(task->changed.item);
+        free(task->asked.item);
+        tri_pause_drop(&task->pause);
+        tri_refiner_free(task->refiner);
+    }
+    return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
+}
+
+/* The worklist, dealt to tasks that can begin. */
+static enum tri_status begin_tasks(struct phase *p, struct tri_error *error)
+{
+    struct par_report *report = p->state->report;
+    double began = tri_seconds();
+    assign_blocks(p);
+    double assigned = tri_seconds();
+    bool memory = deal_worklists(p);
+    for (int32_t i = 0; memory && i < p->n_tasks; i++)
+        set_up(p, &p->tasks[i]);
+    assert(!p->state->options->margin || blocks_are_independent(p));
+    if (!memory)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
+    report->seconds_find += assigned - began;
+    report->seconds_deal += tri_seconds() - assigned;
+    return TRI_OK;
+}
+
+/* Room for those that wait, once all others have ended: so what each gets does not depend on when others stopped. */
+static enum tri_status give_room(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    double dealing = tri_seconds();
+    if (!is_any(p, PAR_READY))
+        status = deal_room(p, error);
+    if (!status && !watch_owners(p))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
+    p->state->report->seconds_room += tri_seconds() - dealing;
+    return status;
+}
+
+/* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some are ready to go on. */
+static enum tri_status run_to_end(struct phase *p, struct tri_error *error)
+{
+    double reserving = tri_seconds();
+    enum tri_status status = reserve_room(p, error);
+    p->state->report->seconds_room += tri_seconds() - reserving;
+    do {
+        status = status ? status : give_room(p, error);
+        if (status)
+            break;
+        run_tasks(p);
+        status = is_any(p, PAR_READY) ? tri_fail_stopped(error) : fetch_more(p, error);
+    } while (!status && is_any(p, PAR_FULL));
+    free(p->mark);
+    p->mark = NULL;
+    return status;
+}
+
+/* --- a phase that is halted, and goes on */
+
+/* The tasks of a phase that has been halted. */
+static enum tri_status take_up(struct phase *p, struct tri_error *error)
+{
+    struct par_halt *halt = &p->state->halt;
+    p->tasks = calloc((size_t)halt->n_blocks, sizeof *p->tasks);
+    if (!p->tasks)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
+    free(p->worklist);
+    p->worklist = halt->worklist;
+    for (int32_t i = 0, at = 0; i < halt->n_blocks; at += halt->block[i++].n_worklist) {
+        const struct par_halted *h = &halt->block[i];
+        p->tasks[p->n_tasks++] = (struct task){.block = h->block, .worklist = p->worklist + at,
+                                               .n_worklist = h->n_worklist, .expected = h->expected,
+                                               .pauses = h->pauses, .progress = h->progress, .seconds = h->seconds,
+                                               .report = h->report, .view.room = h->room, .left = h->left,
+                                               .pause = h->pause};
+        set_up(p, &p->tasks[i]);
+        p->tasks[i].made_before = least_made_by(&p->tasks[i]);
+        p->done += h->progress == PAR_ENDED ? h->expected : 0;
+    }
+    free(halt->block);
+    *halt = (struct par_halt){0};
+    return TRI_OK;
+}
+
+/* A refiner is taken apart: its task may go on in another process. */
+static bool leave_refiner(struct task *task)
+{
+    if (!task->refiner)
+        return true;
+    assert(!task->pause);
+    task->pause = malloc(sizeof *task->pause);
+    if (!task->pause)
+        return false;
+    tri_refiner_leave(task->refiner, task->pause);
+    tri_refiner_free(task->refiner);
+    task->refiner = NULL;
+    return true;
+}
+
+/* Where all tasks are, for who goes on; nothing is left here. False: one has failed, or there is no memory, and it is
+ * not halted. */
+static bool halt_tasks(struct phase *p)
+{
+    struct par_halt *halt = &p->state->halt;
+    struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
+    bool memory = block && gather_given_up(p);
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        memory = memory && !p->tasks[i].lost && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
+    if (!memory) {
+        free(block);
+        return false;
+    }
+    *halt = (struct par_halt){.block = block, .worklist = p->worklist};
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        const struct task *task = &p->tasks[i];
+        block[halt->n_blocks++] = (struct par_halted){task->block, task->n_worklist, task->expected, task->pauses,
+                                                      task->progress, task->seconds, task->report, task->view.room,
+                                                      task->left, task->pause};
+        halt->n_worklist += task->n_worklist;
+        free(task->given_up.item);
+    }
+    p->worklist = NULL;
+    p->n_tasks = 0;
+    return true;
+}
+
+/* Begins the phase, or goes on with it; then halts it, where it is stopped and may be kept, or collects what its tasks
+ * have done. */
+static enum tri_status run_phase(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = p->state->halt.n_blocks > 0 ? take_up(p, error) : begin_tasks(p, error);
+    if (status)
+        return status;
+    if (!order_tasks(p))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
+    status = status ? status : run_to_end(p, error);
+    if (status == TRI_STOPPED && p->state->may_halt) {
+        if (halt_tasks(p))
+            return status;
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for blocks that are to go on later");
+    }
+    double merging = tri_seconds();
+    enum tri_status collected = collect(p, error);
+    p->state->report->seconds_merge += tri_seconds() - merging;
+    return collected ? collected : status; /* a failure is told before a stop */
+}
+
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
+                          struct tri_error *error)
+{
+    size_t n = (size_t)state->worklist.n + 1;
+    struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only,
+                      .before = par_triangles(state)};
+    assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
+    p.block_of = malloc(n * sizeof *p.block_of);
+    p.work = malloc(n * sizeof *p.work);
+    p.worklist = malloc(n * sizeof *p.worklist);
+    enum tri_status status = TRI_OK;
+    if (tri_stop_is_asked(state->mesh->stop))
+        status = tri_fail_stopped(error);
+    else if (!p.block_of || !p.work || !p.worklist)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
+    else
+        status = run_phase(&p, error);
+    free(p.block_of);
+    free(p.work);
+    free(p.worklist);
+    free(p.tasks);
+    free(p.order);
+    return status;
+}

@@ -1,0 +1,438 @@
+/* Ranges of the shared arrays. */
+#include "sched/schedule/room.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/base/grow.h"
+
+enum { LEAST_RANGE = 64 };
+
+static const double LEAST_ON_SEGMENTS = 0.125;
+
+/* What one insertion takes at most. */
+static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_TRIANGLES] = 2, [PAR_SUBS] = 1};
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a block");
+}
+
+bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
+{
+    const struct tri_growing arrays[] = {{&ranges->below, sizeof *ranges->below},
+                                         {&ranges->item, sizeof *ranges->item}};
+    return tri_grow_together(arrays, 2, &ranges->capacity, need, 0);
+}
+
+int64_t par_ranges_unused(const struct par_ranges *ranges)
+{
+    int64_t n = 0;
+    for (int32_t i = 0; i < ranges->n; i++)
+        n += ranges->item[i].end - ranges->item[i].next;
+    return n;
+}
+
+/* How many items of a kind there are in a mesh, and how many there can be. */
+struct counts {
+    int32_t *used, *capacity;
+};
+
+static struct counts counts_of(struct tri_mesh *mesh, enum par_kind kind)
+{
+    switch (kind) {
+    case PAR_VERTICES: return (struct counts){&mesh->n_vertices, &mesh->vertex_capacity};
+    case PAR_TRIANGLES: return (struct counts){&mesh->n_triangles, &mesh->triangle_capacity};
+    default: return (struct counts){&mesh->n_subs, &mesh->sub_capacity};
+    }
+}
+
+/* The room's current range of a kind; NULL: it has none. */
+static struct par_range *current_of(struct par_room *room, enum par_kind kind)
+{
+    struct par_ranges *ranges = &room->ranges[kind];
+    return room->current[kind] < ranges->n ? &ranges->item[room->current[kind]] : NULL;
+}
+
+/* The counts of a view become those of the room's current range. */
+static void begin_range(struct par_view *view, enum par_kind kind)
+{
+    const struct par_range *range = current_of(&view->room, kind);
+    struct counts counts = counts_of(&view->mesh, kind);
+    assert(!range || (0 <= range->next && range->next <= range->end));
+    *counts.used = range ? range->next : 0;
+    *counts.capacity = range ? range->end : 0;
+}
+
+/* The room learns how far its current range has been used. */
+static void end_range(struct par_view *view, enum par_kind kind)
+{
+    struct par_range *range = current_of(&view->room, kind);
+    struct counts counts = counts_of(&view->mesh, kind);
+    if (!range)
+        return;
+    assert(range->next <= *counts.used && *counts.used <= range->end && *counts.capacity == range->end);
+    range->next = *counts.used;
+}
+
+enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct par_view *view = user;
+    assert(mesh == &view->mesh);
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        const struct counts counts = counts_of(mesh, kind);
+        assert(*counts.used <= *counts.capacity);
+        while (*counts.capacity - *counts.used < one_insertion[kind]) {
+            end_range(view, kind);
+            if (view->room.current[kind] + 1 >= view->room.ranges[kind].n)
+                return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
+            view->room.current[kind]++;
+            begin_range(view, kind);
+        }
+    }
+    return TRI_OK;
+}
+
+void par_view_begin(struct par_view *view, const struct tri_mesh *shared)
+{
+    view->mesh = *shared;
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
+        begin_range(view, kind);
+}
+
+void par_view_end(struct par_view *view)
+{
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
+        end_range(view, kind);
+}
+
+/* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
+static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
+{
+    return par_ranges_reserve(to, to->n + 1) && par_ranges_reserve(spare, spare->n + spare->dealt + 1);
+}
+
+/* Items of a range that insertions can take: none where not even one fits. */
+static int32_t usable(struct par_range range, enum par_kind kind)
+{
+    int32_t n = range.end - range.next;
+    return n >= one_insertion[kind] ? n : 0;
+}
+
+static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
+{
+    assert(to->n < to->capacity && range.next < range.end);
+    to->item[to->n++] = range;
+    spare->dealt++;
+}
+
+static enum tri_status reserve(struct tri_mesh *shared, enum par_kind kind, int32_t more, struct tri_error *error)
+{
+    switch (kind) {
+    case PAR_VERTICES: return tri_mesh_reserve_vertices(shared, more, error);
+    case PAR_TRIANGLES: return tri_mesh_reserve_triangles(shared, more, error);
+    default: return tri_mesh_reserve_subs(shared, more, error);
+    }
+}
+
+/* A range too short for an insertion, one triangle, is dealt as well, and comes back with the others: it counts for
+ * nothing, and the view passes it over. To sort such out would take a second list of what is free, which marking and
+ * closing gaps would have to look through, too.
+ *
+ * Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
+static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                              enum par_kind kind, int32_t need, struct tri_error *error)
+{
+    struct par_ranges *to = &room->ranges[kind], *from = &spare->ranges[kind];
+    while (need > 0 && from->n > 0) {
+        if (!reserve_deal(to, from))
+            return no_memory(error);
+        struct par_range range = from->item[--from->n];
+        need -= usable(range, kind);
+        deal(to, from, range);
+    }
+    if (need <= 0)
+        return TRI_OK;
+    need = need < LEAST_RANGE ? LEAST_RANGE : need;
+    if (!reserve_deal(to, from))
+        return no_memory(error);
+    enum tri_status status = reserve(shared, kind, need, error);
+    if (status)
+        return status;
+    int32_t *used = counts_of(shared, kind).used;
+    deal(to, from, (struct par_range){*used, *used + need});
+    *used += need;
+    return TRI_OK;
+}
+
+int32_t par_room_left(const struct par_room *room, enum par_kind kind)
+{
+    int32_t left = 0;
+    for (int32_t i = room->current[kind]; i < room->ranges[kind].n; i++)
+        left += usable(room->ranges[kind].item[i], kind);
+    return left;
+}
+
+/* Of this kind, what comes with so many triangles where this share of the points lies on segments. */
+static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segments)
+{
+    switch (kind) {
+    case PAR_VERTICES: return triangles / 2 + triangles / 64 + 16;
+    case PAR_TRIANGLES: return triangles;
+    default: return (int64_t)(0.5 * on_segments * (double)triangles) + 64;
+    }
+}
+
+/* Of the points that are still to come: an eighth, or more where more have been put there. */
+static double on_segments(const struct par_room *room)
+{
+    return room->on_segments > LEAST_ON_SEGMENTS ? room->on_segments : LEAST_ON_SEGMENTS;
+}
+
+enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                                int32_t triangles, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
+        status = extend(room, spare, shared, kind,
+                        (int32_t)wanted_of(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
+    return status;
+}
+
+enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles,
+                                 struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (shared->bound || shared->storage)
+        return TRI_OK;
+    for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
+        int64_t need = wanted_of(kind, triangles, LEAST_ON_SEGMENTS);
+        need -= par_ranges_unused(&spare->ranges[kind]);
+        if (need > 0)
+            status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, error);
+    }
+    return status;
+}
+
+void par_room_return(struct par_room *room, struct par_room *spare)
+{
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        struct par_ranges *from = &room->ranges[kind], *to = &spare->ranges[kind];
+        for (int32_t i = 0; i < from->n; i++) {
+            to->dealt--;
+            if (from->item[i].next < from->item[i].end)
+                to->item[to->n++] = from->item[i];
+        }
+        assert(to->n + to->dealt <= to->capacity);
+    }
+    par_room_free(room);
+}
+
+void par_room_free(struct par_room *room)
+{
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        free(room->ranges[kind].item);
+        free(room->ranges[kind].below);
+    }
+    *room = (struct par_room){0};
+}
+
+void par_room_mark_sub(struct tri_mesh *mesh, tri_sub_id s)
+{
+    mesh->sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
+}
+
+static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
+{
+    switch (kind) {
+    case PAR_VERTICES:
+        mesh->on[at] = TRI_VERTEX_NONE;
+        return;
+    case PAR_TRIANGLES:
+        mesh->tri[at].v[0] = TRI_NONE;
+        return;
+    default:
+        par_room_mark_sub(mesh, at);
+    }
+}
+
+/* Gaps of one kind. */
+struct marking {
+    const struct par_ranges *gaps;
+    struct tri_mesh *mesh;
+    enum par_kind kind;
+};
+
+static void mark_gap(void *context, size_t gap)
+{
+    const struct marking *m = context;
+    for (int32_t at = m->gaps->item[gap].next; at < m->gaps->item[gap].end; at++)
+        mark_free(m->mesh, m->kind, at);
+}
+
+void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
+{
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        struct marking marking = {&spare->ranges[kind], shared, kind};
+        tri_execute(executor, (size_t)spare->ranges[kind].n, mark_gap, &marking);
+    }
+}
+
+/* --- closing: what lies above the new end of an array goes into the gaps below it */
+
+static int by_start(const void *left, const void *right)
+{
+    const struct par_range *a = left, *b = right;
+    return (a->next > b->next) - (a->next < b->next);
+}
+
+/* Brings the gaps in order, and counts what lies below each. */
+static void sort_gaps(struct par_ranges *gaps)
+{
+    int32_t below = 0;
+    if (gaps->n)
+        qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
+    for (int32_t i = 0; i < gaps->n; i++) {
+        assert(i == 0 || gaps->item[i - 1].end <= gaps->item[i].next);
+        gaps->below[i] = below;
+        below += gaps->item[i].end - gaps->item[i].next;
+    }
+}
+
+/* An array whose gaps are being closed. The items from the end downwards go to the unused places from the beginning
+ * upwards. So it can be calculated where an item goes, and no table is needed, for which there might be no memory. */
+struct closing {
+    const struct par_ranges *gaps; /* in order */
+    int32_t count; /* items and unused places */
+    int32_t kept;  /* items at the end: those that lie above it move */
+};
+
+static struct closing closing_of(struct par_ranges *gaps, int32_t count)
+{
+    sort_gaps(gaps);
+    const struct par_range *last = gaps->n > 0 ? &gaps->item[gaps->n - 1] : NULL;
+    int32_t unused = last ? gaps->below[gaps->n - 1] + last->end - last->next : 0;
+    assert(!last || last->end <= count);
+    return (struct closing){gaps, count, count - unused};
+}
+
+/* The last of some ascending numbers that is not above this one; -1: none. */
+static int32_t last_up_to(const struct par_ranges *gaps, bool by_place, int32_t number)
+{
+    int32_t low = 0, high = gaps->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if ((by_place ? gaps->item[middle].next : gaps->below[middle]) <= number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low - 1;
+}
+
+/* Where an item goes that lies above the new end. O(log gaps). */
+static int32_t place_of(const struct closing *c, int32_t item)
+{
+    const int32_t gap = last_up_to(c->gaps, true, item);
+    assert(c->kept <= item && item < c->count && gap >= 0 && c->gaps->item[gap].end <= item);
+    int32_t unused_below = c->gaps->below[gap] + c->gaps->item[gap].end - c->gaps->item[gap].next;
+    int32_t used_above = c->count - 1 - item - (c->count - c->kept - unused_below);
+    int32_t into = last_up_to(c->gaps, false, used_above);
+    int32_t place = c->gaps->item[into].next + used_above - c->gaps->below[into];
+    assert(c->gaps->item[into].next <= place && place < c->gaps->item[into].end && place < c->kept);
+    return place;
+}
+
+/* Calls move for each item that lies above the new end, from the end downwards. */
+static void move_items(const struct closing *c, struct tri_mesh *mesh,
+                       void (*move)(struct tri_mesh *mesh, int32_t from, int32_t to))
+{
+    int32_t end = c->count;
+    for (int32_t gap = c->gaps->n; end > c->kept; end = c->gaps->item[gap].next) {
+        gap--;
+        int32_t first = c->gaps->item[gap].end > c->kept ? c->gaps->item[gap].end : c->kept;
+        for (int32_t item = end - 1; item >= first; item--)
+            move(mesh, item, place_of(c, item));
+    }
+}
+
+static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_triangle_id to)
+{
+    struct tri_triangle *t = &mesh->tri[to];
+    *t = mesh->tri[from];
+    assert(tri_is_live(t));
+    for (int e = 0; e < 3; e++)
+        tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(to, e));
+}
+
+static void close_triangles(struct par_ranges *gaps, struct tri_mesh *mesh)
+{
+    const struct closing closing = closing_of(gaps, mesh->n_triangles);
+    move_items(&closing, mesh, move_triangle);
+    mesh->n_triangles = closing.kept;
+}
+
+static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
+{
+    struct tri_subsegment *s = &mesh->sub[to];
+    *s = mesh->sub[from];
+    for (int side = 0; side < 2; side++)
+        if (s->side[side] != TRI_NONE)
+            *tri_link_at(mesh, s->side[side]) = ~to;
+}
+
+static void close_subs(struct par_ranges *gaps, struct tri_mesh *mesh)
+{
+    const struct closing closing = closing_of(gaps, mesh->n_subs);
+    move_items(&closing, mesh, move_sub);
+    mesh->n_subs = closing.kept;
+}
+
+static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to)
+{
+    size_t n = (size_t)mesh->n_attributes;
+    mesh->xy[to] = mesh->xy[from];
+    mesh->on[to] = mesh->on[from];
+    mesh->vertex_markers[to] = mesh->vertex_markers[from];
+    mesh->feature[to] = mesh->feature[from];
+    if (n)
+        memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
+}
+
+/* Corners learn where vertices have gone. */
+struct renaming {
+    const struct tri_mesh *mesh;
+    const struct closing *vertices;
+};
+
+static void rename_corners(void *context, size_t share)
+{
+    const struct renaming *r = context;
+    const struct tri_range range = tri_share(share, r->mesh->n_triangles);
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        for (int k = 0; k < 3; k++)
+            if (r->mesh->tri[t].v[k] >= r->vertices->kept)
+                r->mesh->tri[t].v[k] = place_of(r->vertices, r->mesh->tri[t].v[k]);
+}
+
+static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    const struct closing closing = closing_of(gaps, mesh->n_vertices);
+    struct renaming renaming = {mesh, &closing};
+    move_items(&closing, mesh, move_vertex);
+    tri_execute(executor, tri_shares(mesh->n_triangles), rename_corners, &renaming);
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            if (mesh->sub[s].v[k] >= closing.kept)
+                mesh->sub[s].v[k] = place_of(&closing, mesh->sub[s].v[k]);
+    mesh->n_vertices = closing.kept;
+}
+
+void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
+{
+    close_triangles(&spare->ranges[PAR_TRIANGLES], shared);
+    close_subs(&spare->ranges[PAR_SUBS], shared);
+    close_vertices(&spare->ranges[PAR_VERTICES], shared, executor);
+    par_room_free(spare);
+}

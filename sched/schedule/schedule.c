@@ -1,0 +1,815 @@
+/* The schedule: pre-refinement, rounds of four phases, what is left over.
+ *
+ * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser
+ * one before it, and so on until a level is small enough for one sequential call. */
+#include "sched/schedule/schedule.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "sched/schedule/by_tile.h"
+#include "sched/schedule/cells.h"
+#include "sched/schedule/phase.h"
+#include "sched/ranks/ranks.h"
+#include "sched/tiles/numbering.h"
+#include "sched/tiles/park.h"
+#include "sched/tiles/remain.h"
+#include "sched/checkpoint/state.h"
+#include "sched/tiles/sweep.h"
+#include "sched/schedule/theory.h"
+#include "sched/schedule/threads.h"
+#include "triangle/refine/census.h"
+#include "triangle/base/clock.h"
+#include "triangle/size/estimate.h"
+#include "triangle/refine/pause.h"
+#include "triangle/base/size_text.h"
+
+/* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
+ * to take a few thousandths of the time. (docs/performance.md) */
+static const double COARSE_PER_CELL = 64;
+
+/* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
+static const double A_LITTLE = 0.25;
+
+enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
+
+struct par_options par_defaults(void) { return (struct par_options){0}; }
+
+void par_report_free(struct par_report *report)
+{
+    par_partition_free(&report->partition);
+    free(report->blocks);
+    report->blocks = NULL;
+    report->n_blocks = report->block_capacity = 0;
+}
+
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
+{
+    for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
+        int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
+        if (block != TRI_NONE)
+            return block;
+    }
+    *phase = -1;
+    return TRI_NONE;
+}
+
+/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
+ * the mesh's units, where squares neither overflow nor underflow. */
+struct coarse_test {
+    const struct par_partition *partition;
+    double share2; /* square of it */
+    double least2; /* no edge shorter than the root of this is too long in any cell */
+    double unit;
+};
+
+static double squared_edge(const double a[2], const double b[2], double unit)
+{
+    double x = b[0] / unit - a[0] / unit, y = b[1] / unit - a[1] / unit;
+    return x * x + y * y;
+}
+
+static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const struct coarse_test *test = user;
+    double unit = test->unit;
+    double longest = fmax(squared_edge(a, b, unit), fmax(squared_edge(b, c, unit), squared_edge(c, a, unit)));
+    (void)area;
+    if (longest <= test->least2)
+        return 0;
+    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3,
+                               (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
+    double size = par_cell_size(test->partition, centre);
+    return longest > test->share2 * size * size;
+}
+
+static double smallest_cell(const struct par_partition *p)
+{
+    double least = HUGE_VAL;
+    for (int32_t c = 0; c + 1 < p->n_columns; c++)
+        least = p->x[c + 1] - p->x[c] < least ? p->x[c + 1] - p->x[c] : least;
+    for (int32_t c = 0; c < p->n_columns; c++) {
+        const double *y = p->y + (size_t)c * (size_t)p->n_rows;
+        for (int32_t r = 0; r + 1 < p->n_rows; r++)
+            least = y[r + 1] - y[r] < least ? y[r + 1] - y[r] : least;
+    }
+    return least > 0 ? least : 0;
+}
+
+static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                    struct tri_error *error);
+
+/* The bounds of a uniform pre-refinement: the same with areas scaled up, as the paper has it, for the area that makes
+ * COARSE_PER_CELL triangles in a cell. */
+static struct tri_refine_options coarse_bounds(const struct tri_refine_options *quality, double cell)
+{
+    struct tri_refine_options coarse = *quality;
+    coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
+    coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
+    return coarse;
+}
+
+/* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
+ * level has at most a quarter of the triangles of the one above. */
+static bool areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
+                         double cell)
+{
+    struct tri_refine_options coarse = coarse_bounds(quality, cell);
+    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
+}
+
+static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
+                                         double cell, int level, struct tri_error *error)
+{
+    struct tri_refine_options coarse = coarse_bounds(quality, cell);
+    bool is_told = level == 0 && !state->report->partition.x; /* of the first schedule, see report_schedule */
+    if (is_told && coarse.min_angle > 0 && quality->max_area > 0) {
+        double area = quality->max_area * coarse.area_scale;
+        state->report->radius_lemma7 = par_radius_lemma7(area, par_rho(coarse.min_angle));
+        state->report->radius_theory = par_radius_tight(area, coarse.min_angle);
+    }
+    return refine_level(state, &coarse, level + 1, error);
+}
+
+static enum tri_status fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
+                                 struct tri_error *error)
+{
+    state->key.n = 0;
+    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
+}
+
+/* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
+ * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
+static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
+                                        const struct par_partition *partition, struct tri_error *error)
+{
+    struct tri_refine_options coarse = *quality;
+    struct tri_refine_report report;
+    double least = smallest_cell(partition);
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
+    coarse.urgent = is_too_long;
+    coarse.urgent_user = &test;
+    coarse.max_steiner = (int64_t)(partition->estimate / 400);
+    struct par_ids long_ones;
+    double began = tri_seconds();
+    enum tri_status status = fill_worklist(state, quality, false, error);
+    if (status)
+        return status;
+    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &state->executor, &long_ones))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
+    assert(long_ones.n <= state->worklist.n);
+    coarse.worklist = long_ones.item;
+    coarse.n_worklist = long_ones.n;
+    double found = tri_seconds(), refined = found;
+    if (long_ones.n > 0) {
+        status = tri_refine(state->mesh, &coarse, &report, error);
+        state->report->total.inserted_free += report.inserted_free;
+        state->report->total.inserted_on_segments += report.inserted_on_segments;
+        refined = tri_seconds();
+        status = status ? status : fill_worklist(state, quality, true, error);
+    }
+    free(long_ones.item);
+    state->report->seconds_prerefine += refined - found;
+    state->report->seconds_find += tri_seconds() - refined + found - began;
+    return status;
+}
+
+/* Ranks keep states of their own. */
+static struct par_checkpoint *checkpoint_of(const struct par_state *state)
+{
+    return state->options->carrier ? NULL : state->options->checkpoint;
+}
+
+/* To its end. top: the mesh is the whole one, and a state may be kept between any two points. */
+static enum tri_status run_refiner(struct par_state *state, struct tri_refiner *refiner, bool top,
+                                   struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = top ? checkpoint_of(state) : NULL;
+    return checkpoint ? par_state_call(checkpoint, state, refiner, error) : tri_refiner_run(refiner, error);
+}
+
+/* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
+static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
+                                   bool top, struct tri_error *error)
+{
+    struct tri_refine_options options = *quality;
+    struct tri_refine_report report = {0};
+    struct tri_refiner *refiner = NULL;
+    if (!all) {
+        options.worklist = state->worklist.item;
+        options.n_worklist = state->worklist.n;
+        if (state->worklist.n == 0)
+            return TRI_OK;
+    }
+    enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    status = status ? status : run_refiner(state, refiner, top, error);
+    tri_refiner_free(refiner);
+    assert(tri_mesh_is_sound(state->mesh));
+    par_add_up(&state->report->total, &report);
+    return status;
+}
+
+/* How long stages work in shares: the executor of a struct par_state. */
+struct timed {
+    struct tri_executor executor;
+    double *seconds; /* [PAR_SHARINGS] */
+};
+
+_Static_assert(1 << (PAR_SHARINGS - 1) == TRI_MOST_SHARES, "the last ones have most shares");
+
+static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    const struct timed *timed = self;
+    double began = tri_seconds();
+    int sharing = 0;
+    while (sharing + 1 < PAR_SHARINGS && n_tasks >> (sharing + 1) > 0)
+        sharing++;
+    timed->executor.run(timed->executor.self, n_tasks, task, context);
+    timed->seconds[sharing] += tri_seconds() - began;
+}
+
+/* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
+static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
+{
+    const struct timed *timed = state->executor.self; /* what it does in shares is told as numbering */
+    double began = tri_seconds();
+    par_tell(state, PAR_NUMBERING);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
+    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &timed->executor, error);
+    assert(status || (state->mesh->n_vertices >= state->n_kept && tri_mesh_is_sound(state->mesh)));
+    state->end = PAR_NUMBERED;
+    state->report->seconds_number += tri_seconds() - began;
+    return status;
+}
+
+/* Closes the gaps that blocks have left unused, by numbering if it is due now. Triangles move. */
+static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    double began = tri_seconds();
+    if (numbering) {
+        par_room_mark(&state->spare, state->mesh, &state->executor);
+        state->report->seconds_merge += tri_seconds() - began;
+        status = number_mesh(state, error);
+        if (!status) {
+            par_room_free(&state->spare);
+            return status;
+        }
+        began = tri_seconds();
+    }
+    par_room_close(&state->spare, state->mesh, &state->executor);
+    assert(tri_mesh_is_sound(state->mesh));
+    state->report->seconds_merge += tri_seconds() - began;
+    return status;
+}
+
+/* Between two steps of what cannot be undone: a state may be kept here. */
+static enum tri_status come_to_border(struct par_state *state, struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = checkpoint_of(state);
+    return checkpoint ? par_state_border(checkpoint, state, false, error) : TRI_OK;
+}
+
+/* What comes now may be stopped, though not all that has been done is in a state. */
+static void let_stop(struct par_state *state)
+{
+    if (checkpoint_of(state))
+        par_state_let_stop(checkpoint_of(state), state);
+}
+
+/* Of the whole mesh a state may be kept between any two points. */
+static enum tri_status run_phase(struct par_state *state, const struct par_partition *partition,
+                                 struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->amid ? checkpoint_of(state) : NULL;
+    return checkpoint ? par_state_phase(checkpoint, state, partition, NULL, TRI_NONE, error)
+                      : par_phase(state, partition, state->phase, TRI_NONE, error);
+}
+
+/* A phase that has been halted may have all of the worklist in its hands. */
+static bool is_work_left(const struct par_state *state) { return state->worklist.n > 0 || state->halt.n_blocks > 0; }
+
+static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
+                                  struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (; !status && state->phase < PAR_PHASES && is_work_left(state); state->phase++) {
+        status = state->amid ? come_to_border(state, error) : TRI_OK;
+        par_tell(state, state->phase + 1);
+        status = status ? status : run_phase(state, partition, error);
+    }
+    return status;
+}
+
+/* Rounds of four phases, from state->round and phase on, until nothing is left to do, each round on blocks four times
+ * as large. */
+static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    assert(par_cells(partition) >= 4);
+    for (; !status && state->round < MAX_ROUNDS; state->round++) {
+        status = run_phases(state, partition, error);
+        state->phase = 0;
+        state->report->rounds++;
+        if (state->worklist.n == 0 || !par_can_coarsen(partition))
+            break;
+        par_partition_coarsen(partition);
+    }
+    state->report->deferred += state->report->total.fenced; /* finish_schedule clears it in the total */
+    return status;
+}
+
+static enum tri_status refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+                                       struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, partition);
+    enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
+    state->end = PAR_DELIVERED;
+    par_tiles_free(&tiles);
+    return status;
+}
+
+/* Measured: bytes a triangle at the peak, where all stay in memory and are numbered. */
+static const double BYTES_IN_MEMORY = 74;
+
+/* The share of the triangles that one mesh may have up to which an estimate does not ask for more than it has. */
+static const double SURELY_ONE_MESH = 0.8;
+
+/* Would the whole mesh be too large for memory, or for one mesh? */
+static bool is_too_much(const struct par_state *state, double triangles)
+{
+    const struct par_options *options = state->options;
+    return options->sink && !options->carrier &&
+           (options->sweep || triangles > SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
+            (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
+}
+
+static void note_size(struct par_state *state)
+{
+    struct par_report *report = state->report;
+    report->most_live = state->mesh->n_triangles > report->most_live ? state->mesh->n_triangles : report->most_live;
+}
+
+/* What a sweep that cannot go on has to be undone with. */
+struct before {
+    struct tri_mesh mesh;
+    struct par_ids worklist;
+    struct par_report report;
+};
+
+static enum tri_status remember(const struct par_state *state, struct before *before, struct tri_error *error)
+{
+    *before = (struct before){.report = *state->report};
+    for (int32_t i = 0; i < state->worklist.n; i++)
+        if (!par_ids_add(&before->worklist, state->worklist.item[i]))
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
+    return tri_mesh_copy(&before->mesh, state->mesh, error);
+}
+
+/* The mesh as it was, and the worklist. What the sink has taken it forgets when it is told of the beginning again. */
+static void go_back(struct par_state *state, struct before *before)
+{
+    struct par_ids worklist = state->worklist;
+    struct par_report *report = state->report;
+    int64_t live = report->most_live;
+    tri_mesh_swap(state->mesh, &before->mesh);
+    state->worklist = before->worklist;
+    before->worklist = worklist;
+    state->key.n = 0;
+    state->gone = 0;
+    par_room_free(&state->spare);
+    before->report.blocks = report->blocks; /* they may have moved */
+    before->report.block_capacity = report->block_capacity;
+    *report = before->report;
+    report->most_live = live;
+}
+
+/* *done: the mesh has been handed out, and is gone. Else everything is as before. */
+static enum tri_status try_to_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+                                    struct tri_error *error)
+{
+    struct before before;
+    enum tri_status status = remember(state, &before, error);
+    state->n_schedules++;
+    state->round = 0;
+    status = status ? status : par_sweep(state, partition, done, error);
+    note_size(state);
+    if (!status && !*done) {
+        go_back(state, &before);
+        state->n_schedules--;
+    }
+    free(before.worklist.item);
+    tri_mesh_drop(&before.mesh);
+    return status;
+}
+
+static enum tri_status fail_without_scratch(const struct par_state *state, double triangles, struct tri_error *error)
+{
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                    "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
+                    tri_size_text(BYTES_IN_MEMORY * triangles).text,
+                    tri_size_text((double)state->options->memory).text);
+}
+
+/* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
+ * again. If that leaves something over, or cannot be, it moves to files as it grows. */
+static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
+                                    struct tri_error *error)
+{
+    const struct par_options *options = state->options;
+    enum tri_status status = TRI_OK;
+    bool can_sweep = state->may_number && (options->sink->begin || !options->scratch);
+    bool swept = false;
+    state->stays = true;
+    if (can_sweep)
+        status = try_to_sweep(state, partition, &swept, error);
+    if (swept) {
+        state->report->way = PAR_SWEPT;
+        state->end = PAR_DELIVERED;
+    }
+    if (status || swept)
+        return status;
+    if (!options->scratch)
+        return fail_without_scratch(state, partition->estimate, error);
+    return tri_refine_check(state->mesh, state->quality, &state->executor, error);
+}
+
+/* A phase that has been halted ends as it is; a state that has been kept has what is needed to go on. */
+static void end_halt(struct par_state *state)
+{
+    for (int32_t i = 0; i < state->halt.n_blocks; i++)
+        par_add_up(&state->report->total, &state->halt.block[i].report);
+    par_halt_drop(&state->halt, &state->spare);
+}
+
+/* What no block could do, and what blocks have left unused. */
+static enum tri_status finish_schedule(struct par_state *state, const struct tri_refine_options *quality, bool top,
+                                       enum tri_status status, struct tri_error *error)
+{
+    double last = tri_seconds();
+    end_halt(state);
+    if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
+        par_room_mark(&state->spare, state->mesh, &state->executor);
+        status = refine_rest(state, quality, false, top, error);
+    }
+    state->amid = false;
+    state->report->seconds_last += tri_seconds() - last;
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
+    par_forget_deferred(state->report);
+    return status ? status : closed;
+}
+
+/* What is told of the first schedule of the whole mesh. */
+static enum tri_status report_schedule(struct par_state *state, const struct par_partition *partition,
+                                       struct tri_error *error)
+{
+    struct par_report *report = state->report;
+    if (report->partition.x)
+        return TRI_OK;
+    report->schedule = state->n_schedules;
+    report->columns = partition->n_columns;
+    report->rows = partition->n_rows;
+    report->radius_measured = state->radius * state->mesh->unit;
+    report->prerefined = state->mesh->n_triangles;
+    return par_partition_copy(&report->partition, partition, error);
+}
+
+/* top: the mesh is the whole one, not what comes before its schedule. */
+static enum tri_status run_and_finish(struct par_state *state, const struct tri_refine_options *quality,
+                                      struct par_partition *partition, bool top, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (!state->paused) { /* else the rounds are over */
+        status = run_rounds(state, partition, error);
+        note_size(state);
+        if (top)
+            state->report->left_over += state->worklist.n;
+    }
+    return finish_schedule(state, quality, top, status, error);
+}
+
+/* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
+static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
+                                    struct par_partition *partition, bool top, struct tri_error *error)
+{
+    enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
+    state->quality = quality;
+    if (!status && top) {
+        par_partition_free(&state->cells);
+        status = par_partition_copy(&state->cells, partition, error);
+    }
+    if (!status && top && (state->may_number || state->then) && state->options->sink && state->options->carrier)
+        status = refine_on_ranks(state, partition, error);
+    else if (!status && top && !state->stays && is_too_much(state, partition->estimate))
+        status = leave_memory(state, partition, error);
+    if (status || state->end == PAR_DELIVERED)
+        return status;
+    state->n_schedules++;
+    state->round = state->phase = 0;
+    state->amid = top;
+    return run_and_finish(state, quality, partition, top, error);
+}
+
+/* From where a checkpoint's state is, in the phases of a schedule. */
+static enum tri_status go_on(struct par_state *state, const struct tri_refine_options *quality,
+                             struct tri_error *error)
+{
+    struct par_partition partition;
+    enum tri_status status = par_partition_copy(&partition, &state->cells, error);
+    if (status)
+        return status;
+    for (int round = 0; round < state->round; round++)
+        par_partition_coarsen(&partition);
+    state->quality = quality;
+    status = run_and_finish(state, quality, &partition, true, error);
+    par_partition_free(&partition);
+    return status;
+}
+
+static double cell_size(const struct par_state *state, double estimate)
+{
+    return state->options->cell_triangles > 0 ? state->options->cell_triangles : par_triangles_in_cell(estimate);
+}
+
+/* The schedule on one level, after a pre-refinement. */
+static enum tri_status schedule_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                      double estimate, double cell, struct tri_error *error)
+{
+    struct par_partition partition;
+    double began = tri_seconds();
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &state->executor,
+                                                error);
+    state->report->seconds_partition += tri_seconds() - began;
+    if (status)
+        return status;
+    state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
+    state->level = level;
+    par_tell(state, 0);
+    if (areas_decide(state, quality, estimate, cell)) {
+        status = prerefine_uniform(state, quality, cell, level, error);
+        began = tri_seconds();
+        status = status ? status : fill_worklist(state, quality, false, error);
+        state->report->seconds_find += tri_seconds() - began;
+    } else {
+        status = prerefine_graded(state, quality, &partition, error);
+    }
+    state->level = level; /* again */
+    if (!status)
+        status = run_schedule(state, quality, &partition, level == 0, error);
+    par_partition_free(&partition);
+    return status;
+}
+
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
+{
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
+    state->report->seconds_partition += tri_seconds() - began;
+    return estimate;
+}
+
+/* The first points of a sequential call, as many as would make this many triangles; *done: they were enough. */
+static enum tri_status refine_a_little(struct par_state *state, const struct tri_refine_options *quality,
+                                       double triangles, bool *done, struct tri_error *error)
+{
+    struct tri_refine_options options = *quality;
+    struct tri_refine_report report;
+    double began = tri_seconds();
+    options.max_steiner = (int64_t)(triangles / 2);
+    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    *done = !report.hit_limit;
+    report.hit_limit = false;
+    par_add_up(&state->report->total, &report);
+    state->report->seconds_prerefine += tri_seconds() - began;
+    return status;
+}
+
+/* Refines to these bounds: sequentially if the work is little, else by the schedule. What areas and the triangles that
+ * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
+ * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
+ * what then remains is guessed better. */
+static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                    struct tri_error *error)
+{
+    double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
+    double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
+    if (estimate >= large && sure < large) {
+        bool done;
+        enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
+        if (status || done)
+            return status;
+        estimate = estimate_of(state, quality, &sure);
+        cell = cell_size(state, estimate);
+    }
+    if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
+        return schedule_level(state, quality, level, estimate, cell, error);
+    double began = tri_seconds();
+    enum tri_status status = refine_rest(state, quality, true, level == 0, error);
+    *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += tri_seconds() - began;
+    return status;
+}
+
+/* The schedule behind that for sizes, on its cells: on ranks each has its part of the mesh by now, and nobody could cut
+ * the whole of it anew. Triangles hardly larger than a share of a cell need no coarse mesh before. */
+static enum tri_status refine_again(struct par_state *state, const struct tri_refine_options *quality,
+                                    struct tri_error *error)
+{
+    struct par_partition partition;
+    double began = tri_seconds(), sure;
+    if (!state->stays && !state->options->scratch && state->options->memory > 0) {
+        double estimate = estimate_of(state, quality, &sure);
+        if (is_too_much(state, estimate))
+            return fail_without_scratch(state, estimate, error);
+    }
+    enum tri_status status = par_partition_copy(&partition, &state->cells, error);
+    if (status)
+        return status;
+    status = fill_worklist(state, quality, false, error);
+    if (!status)
+        status = par_park_expect(state->park, state->mesh, par_order_bytes(&state->worklist), error);
+    if (!status && !par_order_by_tile(state, &partition, 0, par_blocks(&partition)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
+    state->report->seconds_find += tri_seconds() - began;
+    if (!status)
+        status = run_schedule(state, quality, &partition, true, error);
+    par_partition_free(&partition);
+    return status;
+}
+
+/* The schedule of a stage, or what of it is still to be done. */
+static enum tri_status refine_stage(struct par_state *state, const struct tri_refine_options *quality,
+                                    enum par_stage stage, struct tri_error *error)
+{
+    if (state->stage > stage)
+        return TRI_OK;
+    if (state->amid)
+        return go_on(state, quality, error);
+    if (state->paused)
+        return refine_rest(state, quality, true, true, error);
+    const bool begun = state->stage < stage;
+    state->stage = stage;
+    enum tri_status status = begun ? come_to_border(state, error) : TRI_OK;
+    if (status)
+        return status;
+    return state->cells.x ? refine_again(state, quality, error) : refine_level(state, quality, 0, error);
+}
+
+/* Triangles of different sizes meet everywhere in a mesh that comes out of a coarse one by stages. So where areas
+ * decide on sizes these are brought about first, with an easy bound, and then the angles on a mesh of one size.
+ * (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of 28%.) */
+static enum tri_status refine_sizes_first(struct par_state *state, const struct tri_refine_options *quality,
+                                          struct tri_error *error)
+{
+    struct tri_refine_options easy = *quality;
+    easy.min_angle = TRI_SIZES_ANGLE;
+    return refine_stage(state, &easy, PAR_SIZES, error);
+}
+
+/* What a schedule cannot do, one call does. */
+static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
+{
+    return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
+           quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
+}
+
+/* Refines by schedules: two where angles are dear. */
+static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
+                                          struct tri_error *error)
+{
+    struct tri_refine_options usual = *quality;
+    usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    if (!state->sizes_first && state->stage == PAR_SIZES)
+        state->stage = PAR_BOUNDS; /* the first */
+    const bool may_number = !state->options->by_block;
+    state->then = may_number ? &usual : NULL;
+    enum tri_status status = state->sizes_first ? refine_sizes_first(state, &usual, error) : TRI_OK;
+    state->then = NULL;
+    state->may_number = may_number;
+    if (!status && state->end != PAR_DELIVERED)
+        status = refine_stage(state, &usual, PAR_BOUNDS, error);
+    return status;
+}
+
+/* Hands out a mesh that is finished, tile by tile if it is numbered. */
+static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, state->end == PAR_NUMBERED ? &state->cells : NULL);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
+    if (status)
+        return status;
+    if (state->options->count_remaining && !state->options->carrier)
+        par_remain_count_all(state);
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    status = par_tiles_whole(&tiles, error);
+    if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
+        (void)par_state_border(state->options->checkpoint, state, true, NULL);
+    return status;
+}
+
+/* Numbers, and hands out, what has not gone yet. */
+static enum tri_status deliver(struct par_state *state, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (state->end == PAR_DELIVERED)
+        return TRI_OK;
+    if (state->report->levels > 0 && !state->options->by_block && state->end != PAR_NUMBERED)
+        status = number_mesh(state, error);
+    state->stage = PAR_FINISHED;
+    status = status ? status : come_to_border(state, error);
+    let_stop(state);
+    return !status && state->options->sink ? hand_out(state, error) : status;
+}
+
+/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
+static bool is_bounded(const struct par_options *options)
+{
+    return options->memory > 0 && (options->scratch || !options->sink);
+}
+
+static void clean_up(struct par_state *state)
+{
+    struct par_report *report = state->report;
+    report->parked = state->park ? par_park_bytes(state->park) : 0;
+    if (report->parked > 0 && report->way == PAR_IN_MEMORY)
+        report->way = PAR_PARKED;
+    if (checkpoint_of(state))
+        par_state_end(checkpoint_of(state), state);
+    tri_pause_drop(&state->paused);
+    par_halt_drop(&state->halt, &state->spare);
+    if (state->options->park)
+        *state->options->park = state->park;
+    else
+        par_park_close(state->park, state->mesh);
+    if (state->end == PAR_DELIVERED || (report->way != PAR_IN_MEMORY && !state->options->park))
+        tri_mesh_drop(state->mesh);
+    free(state->worklist.item);
+    free(state->key.item);
+    free(state->remaining.item);
+    par_partition_free(&state->cells);
+    par_room_free(&state->spare);
+}
+
+/* By a schedule or by one call; and to the sink. */
+static enum tri_status refine_and_deliver(struct par_state *state, const struct tri_refine_options *quality,
+                                          bool sequential, struct tri_error *error)
+{
+    double began = tri_seconds();
+    enum tri_status status = TRI_OK;
+    if (!sequential)
+        status = refine_by_schedule(state, quality, error);
+    else if (state->stage < PAR_FINISHED)
+        status = refine_rest(state, quality, true, true, error);
+    if (sequential)
+        state->report->seconds_last += tri_seconds() - began;
+    state->quality = quality; /* all that was asked for */
+    return status ? status : deliver(state, error);
+}
+
+/* On several ranks: they would wait for each other where they do not make the same mesh. */
+static enum tri_status check_ranks(const struct par_state *state, enum tri_status status, struct tri_error *error)
+{
+    struct par_carrier *carrier = state->options->carrier;
+    if (!carrier)
+        return status;
+    return par_expect_same(carrier, status ? 0 : par_state_run(state),
+                           "the ranks do not begin with the same figure and settings", status, error);
+}
+
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                           const struct par_options *options, struct par_report *report, struct tri_error *error)
+{
+    double began = tri_seconds();
+    assert(tri_mesh_is_sound(mesh));
+    assert(!options->park || !options->sink);
+    *report = (struct par_report){.threads = par_threads(options->threads, false)};
+    if (options->park)
+        *options->park = NULL;
+    struct timed timed = {par_executor(&report->threads), report->seconds_shared};
+    struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
+                              .executor = {run_timed, &timed},
+                              .n_kept = mesh->n_vertices};
+    bool sequential = must_be_sequential(quality, options);
+    bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
+    enum tri_status status = tri_refine_prepare(mesh, &state.executor, error);
+    status = status || can_sweep ? status : tri_refine_check(mesh, quality, &state.executor, error);
+    status = check_ranks(&state, status, error);
+    if (!status && is_bounded(options))
+        status = par_park_open(&state.park, mesh, options->sink || options->park ? options->scratch : NULL,
+                               options->memory, error);
+    if (status)
+        return status;
+    if (state.park)
+        timed.executor = par_park_executor(state.park, timed.executor);
+    /* Of the mesh as it came: a run that goes on from a checkpoint decides the same. */
+    state.sizes_first = !sequential && tri_sizes_come_first(mesh, quality, &state.executor);
+    if (checkpoint_of(&state))
+        status = par_state_begin(options->checkpoint, &state, error);
+    status = status ? status : refine_and_deliver(&state, quality, sequential, error);
+    status = par_park_status(state.park, status, error);
+    clean_up(&state);
+    assert(options->sink || tri_mesh_is_sound(mesh));
+    report->seconds_total = tri_seconds() - began;
+    return status;
+}

@@ -1,0 +1,52 @@
+/* Radius bound, independence, buffer zone. */
+#include "sched/schedule/theory.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "triangle/geometry/degrees.h"
+
+static double sine(double degrees)
+{
+    double cosine = tri_cos_degrees(degrees);
+    return sqrt(1 - cosine * cosine);
+}
+
+double par_rho(double min_angle)
+{
+    assert(min_angle > 0 && min_angle <= 60);
+    return 1 / (2 * sine(min_angle));
+}
+
+double par_radius_lemma7(double max_area, double rho) { return 2 * rho * sqrt(rho) * sqrt(max_area); }
+
+double par_radius_tight(double max_area, double min_angle)
+{
+    double s = sine(min_angle);
+    assert(min_angle > 0 && min_angle < 90);
+    return sqrt(max_area / (2 * s * s * sine(2 * min_angle)));
+}
+
+double par_area_for_radius(double radius, double rho) { return radius * radius / (4 * rho * rho * rho); }
+
+static double distance2(struct tri_point p, struct tri_point q)
+{
+    double x = p.x - q.x, y = p.y - q.y;
+    return x * x + y * y;
+}
+
+bool par_independent(struct tri_point p, struct tri_point q, double radius)
+{
+    return distance2(p, q) >= 16 * radius * radius;
+}
+
+bool par_in_buffer_zone(struct tri_point p, struct tri_point c, double radius)
+{
+    return distance2(p, c) < 4 * radius * radius;
+}
+
+double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    double area2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return distance2(a, b) * distance2(b, c) * distance2(c, a) / (4 * area2 * area2);
+}

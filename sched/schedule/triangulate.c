@@ -1,0 +1,42 @@
+/* triangulate() of libptriangle.a: as that of libtriangle.a, but refines on several threads.
+ *
+ * It defines the same functions as triangle/dropin/triangulate.c, and no others: see there. */
+#include "triangle/dropin/triangle.h"
+
+#include "sched/schedule/schedule.h"
+#include "sched/schedule/threads.h"
+#include "triangle/dropin/run.h"
+
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
+{
+    const struct triangulate_options *options = user;
+    struct par_options how = par_defaults();
+    struct par_report schedule;
+    how.threads = options->threads > 0 ? options->threads : 0;
+    how.size_test_in_parallel = options->unsuitable_in_parallel != 0;
+    enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
+    *report = schedule.total;
+    par_report_free(&schedule);
+    return status;
+}
+
+static int run(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+               struct triangulateio *vorout, const struct triangulate_options *options, bool aloud)
+{
+    int threads = par_threads(options ? options->threads : 0, false);
+    const struct tri_executor executor = par_executor(&threads);
+    return tri_io_triangulate(switches, in, out, vorout, options, aloud, refine, &executor);
+}
+
+int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                     struct triangulateio *vorout, const struct triangulate_options *options)
+{
+    return run(switches, in, out, vorout, options, false);
+}
+
+int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
+                struct triangulateio *vorout)
+{
+    return run(switches, in, out, vorout, NULL, true);
+}

@@ -1,0 +1,175 @@
+/* Triangles are judged in shares, and gathered in the order of the shares. */
+#include "sched/schedule/worklist.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "sched/schedule/theory.h"
+
+#include "triangle/refine/census.h"
+#include "triangle/base/grow.h"
+
+bool par_ids_grow(struct par_ids *ids)
+{
+    assert(ids->n >= 0 && ids->n <= ids->capacity);
+    return tri_grow(&ids->item, &ids->capacity, ids->n + 1, sizeof *ids->item);
+}
+
+static int ascending(const void *left, const void *right)
+{
+    const int32_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+int32_t par_sort_unique(int32_t *item, int32_t n)
+{
+    int32_t kept = 0;
+    if (n > 0)
+        qsort(item, (size_t)n, sizeof *item, ascending);
+    for (int32_t i = 0; i < n; i++)
+        if (i == 0 || item[i] != item[kept - 1])
+            item[kept++] = item[i];
+    return kept;
+}
+
+int32_t par_ids_find(const struct par_ids *ids, int32_t id)
+{
+    int32_t low = 0, high = ids->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (ids->item[middle] < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *triangles, int32_t n_triangles)
+{
+    set->word = calloc((size_t)n_triangles / 64 + 1, sizeof *set->word);
+    for (int32_t i = 0; set->word && i < triangles->n; i++) {
+        assert(triangles->item[i] >= 0 && triangles->item[i] < n_triangles);
+        set->word[triangles->item[i] / 64] |= (uint64_t)1 << triangles->item[i] % 64;
+    }
+    return set->word;
+}
+
+struct finding {
+    struct tri_mesh *mesh;
+    const struct tri_refine_options *bounds;
+    const struct par_ids *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
+    tri_triangle_id *found;       /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+    double radius2[TRI_MOST_SHARES];
+};
+
+/* Brings together what the shares of n have found. */
+static int32_t gather(const struct finding *f, int32_t n)
+{
+    int32_t filled = 0;
+    for (size_t share = 0; share < tri_shares(n); share++) {
+        int32_t first = tri_share(share, n).first;
+        assert(f->n[share] <= tri_share(share, n).last - first && filled <= first);
+        for (int32_t i = 0; i < f->n[share]; i++)
+            f->found[filled++] = f->found[first + i];
+    }
+    return filled;
+}
+
+/* Puts those of the worklist that are as old as it between n others of the range. All are in order, and so is what
+ * comes of them. */
+static int32_t add_old(const struct finding *f, struct tri_range range, tri_triangle_id *found, int32_t n)
+{
+    const struct tri_triangle *tri = f->mesh->tri;
+    int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
+    for (int32_t i = begin; i < end; i++)
+        all += tri[f->worklist->item[i]].life == 0;
+    for (int32_t i = end - 1, at = all; i >= begin; i--) {
+        tri_triangle_id old = f->worklist->item[i];
+        assert(i == begin || f->worklist->item[i - 1] < old); /* in order, and each once */
+        if (tri[old].life != 0)
+            continue;
+        while (n > 0 && found[n - 1] > old)
+            found[--at] = found[--n];
+        found[--at] = old;
+    }
+    return all;
+}
+
+/* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
+ * triangle when it was filled: who has a higher number was born since. */
+static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
+{
+    int32_t n = 0;
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        if (f->mesh->tri[t].life != 0)
+            found[n++] = t;
+    n = tri_find_work_among(f->mesh, f->bounds, found, n, found);
+    return add_old(f, range, found, n);
+}
+
+static double largest_radius2(const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n)
+{
+    double largest = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const tri_vertex_id *v = mesh->tri[triangle[i]].v;
+        double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
+        largest = r2 > largest ? r2 : largest;
+    }
+    return largest;
+}
+
+static void fill_share(void *context, size_t share)
+{
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->mesh->n_triangles);
+    tri_triangle_id *found = f->found + range.first;
+    f->n[share] = f->worklist ? find_newborn(f, range, found)
+                          : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
+    f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        f->mesh->tri[t].life = 0;
+}
+
+enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
+                                  const struct tri_refine_options *quality, bool known,
+                                  const struct tri_executor *executor, double *radius, struct tri_error *error)
+{
+    int32_t n = mesh->n_triangles;
+    struct finding f = {mesh, quality, known ? worklist : NULL, malloc(((size_t)n + 1) * sizeof *f.found), {0}, {0}};
+    double largest2 = 0;
+    if (!f.found)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    tri_execute(executor, tri_shares(n), fill_share, &f);
+    for (size_t share = 0; share < tri_shares(n); share++)
+        largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
+    free(worklist->item);
+    *worklist = (struct par_ids){f.found, gather(&f, n), n + 1};
+    assert(worklist->n <= n && largest2 >= 0);
+    *radius = sqrt(largest2);
+    return TRI_OK;
+}
+
+static void filter_share(void *context, size_t share)
+{
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->worklist->n);
+    f->n[share] = tri_find_work_among(f->mesh, f->bounds, f->worklist->item + range.first, range.last - range.first,
+                                      f->found + range.first);
+}
+
+bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,
+                         const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                         struct par_ids *found)
+{
+    struct finding f = {(struct tri_mesh *)mesh, bounds, worklist, malloc(((size_t)worklist->n + 1) * sizeof *f.found),
+                        {0}, {0}};
+    *found = (struct par_ids){f.found, 0, worklist->n};
+    if (!f.found)
+        return false;
+    tri_execute(executor, tri_shares(worklist->n), filter_share, &f);
+    found->n = gather(&f, worklist->n);
+    return true;
+}

@@ -1,0 +1,145 @@
+/* Lists become rows by counting, share by share, and runs in place. */
+#include "sched/tiles/finds.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/tiles/deal.h"
+
+/* Free ids in runs shorter than this are forgotten; a run takes the room of two ids. */
+enum { SHORTEST_RUN = 8 };
+
+bool par_finds_begin(struct par_finds *finds, int32_t n_rows)
+{
+    *finds = (struct par_finds){.n_rows = n_rows};
+    finds->count = calloc((size_t)PAR_FIND_SHARES * (size_t)n_rows, sizeof *finds->count);
+    finds->start = malloc(((size_t)n_rows + 1) * sizeof *finds->start);
+    return finds->count && finds->start;
+}
+
+void par_finds_forget(struct par_finds *finds)
+{
+    const struct par_finds kept = {.n_rows = finds->n_rows, .start = finds->start, .n = finds->n};
+    for (int s = 0; s < PAR_FIND_SHARES; s++) {
+        free(finds->found[s].item);
+        free(finds->notes[s].item);
+        free(finds->runs[s].item);
+    }
+    free(finds->count);
+    free(finds->item);
+    free(finds->piece);
+    free(finds->first_piece);
+    *finds = kept;
+}
+
+void par_finds_free(struct par_finds *finds)
+{
+    par_finds_forget(finds);
+    free(finds->start);
+}
+
+static void add_up(struct par_finds *finds)
+{
+    finds->n = par_add_up_counts(finds->count, PAR_FIND_SHARES, finds->n_rows, finds->start);
+}
+
+static void deal_share(void *context, size_t share)
+{
+    struct par_finds *finds = context;
+    const struct par_runs *runs = &finds->runs[share];
+    const int32_t *from = finds->found[share].item;
+    int32_t *at = finds->count + share * (size_t)finds->n_rows;
+    for (int32_t i = 0; i < runs->n; i++) {
+        const struct par_run run = runs->item[i];
+        memcpy(finds->item + at[run.row], from, (size_t)run.n * sizeof *from);
+        at[run.row] += run.n;
+        from += run.n;
+    }
+}
+
+bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor)
+{
+    add_up(finds);
+    finds->item = malloc(((size_t)finds->n + 1) * sizeof *finds->item);
+    if (finds->item)
+        tri_execute(executor, PAR_FIND_SHARES, deal_share, finds);
+    return finds->item;
+}
+
+static void count_pieces(const struct par_finds *finds)
+{
+    int32_t *count = finds->first_piece + 1;
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
+        for (int32_t i = 0; i < finds->runs[share].n; i++)
+            count[finds->runs[share].item[i].row]++;
+    for (int32_t row = 1; row < finds->n_rows; row++)
+        count[row] += count[row - 1];
+}
+
+/* From the last to the first, so that each row's beginning is found where its end was. */
+static void sort_pieces(const struct par_finds *finds)
+{
+    int32_t *end = finds->first_piece + 1;
+    for (size_t share = PAR_FIND_SHARES; share-- > 0;) {
+        const struct par_runs *runs = &finds->runs[share];
+        int32_t at = finds->found[share].n;
+        for (int32_t i = runs->n; i-- > 0;) {
+            const struct par_run run = runs->item[i];
+            at -= run.n;
+            finds->piece[--end[run.row]] =
+                (struct par_piece){finds->found[share].item + at, finds->notes[share].item + at, run.n};
+        }
+        assert(at == 0 && finds->notes[share].n == finds->found[share].n);
+    }
+}
+
+bool par_finds_sort(struct par_finds *finds)
+{
+    int32_t n = 0, *first = finds->first_piece = calloc((size_t)finds->n_rows + 2, sizeof *first);
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
+        n += finds->runs[share].n;
+    finds->piece = malloc(((size_t)n + 1) * sizeof *finds->piece);
+    if (!first || !finds->piece)
+        return false;
+    add_up(finds);
+    count_pieces(finds);
+    sort_pieces(finds);
+    memmove(first, first + 1, (size_t)finds->n_rows * sizeof *first);
+    first[finds->n_rows] = n;
+    return true;
+}
+
+void par_finds_to_runs(struct par_ids *list)
+{
+    int32_t n = 0;
+    for (int32_t i = 0, first = 0; i < list->n; i++) {
+        if (i + 1 < list->n && list->item[i + 1] == list->item[i] + 1)
+            continue;
+        if (i + 1 - first >= SHORTEST_RUN) {
+            int32_t begin = list->item[first], end = list->item[i] + 1;
+            assert(n + 2 <= i + 1);
+            list->item[n++] = begin;
+            list->item[n++] = end;
+        }
+        first = i + 1;
+    }
+    list->n = n;
+}
+
+bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to)
+{
+    if (!par_ranges_reserve(to, to->n + to->dealt + runs->n / 2))
+        return false;
+    for (int32_t i = 0; i < runs->n; i += 2)
+        to->item[to->n++] = (struct par_range){runs->item[i], runs->item[i + 1]};
+    return true;
+}
+
+bool par_finds_give(const struct par_finds *finds, struct par_ranges *to)
+{
+    bool memory = true;
+    for (int s = 0; memory && s < PAR_FIND_SHARES; s++)
+        memory = par_finds_add_runs(&finds->found[s], to);
+    return memory;
+}

@@ -1,0 +1,184 @@
+/* One lock, one condition. INVARIANT under the lock: `bytes` is the sum over the list and the tile in hand; status is
+ * set once. */
+#include "sched/tiles/queue.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/schedule/threads.h"
+#include "triangle/base/status.h"
+
+struct par_queued {
+    struct par_queued *next;
+    int64_t bytes;
+    struct tri_tile tile; /* its arrays lie behind this struct */
+};
+
+/* --- copies */
+
+static void *put(char **at, const void *data, size_t size)
+{
+    void *copy = *at;
+    if (size > 0)
+        memcpy(copy, data, size);
+    *at += size;
+    return copy;
+}
+
+/* Wide numbers first, so that all are aligned. NULL: no memory. */
+static struct par_queued *copy_of(const struct tri_tile *tile, int32_t n_attributes)
+{
+    const size_t n = (size_t)tile->n_vertices, m = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
+    const size_t attributes = n * (size_t)n_attributes * sizeof *tile->attributes;
+    const size_t size = sizeof(struct par_queued) + n * 20 + attributes + m * 28 + s * 20;
+    struct par_queued *copy = malloc(size);
+    if (!copy)
+        return NULL;
+    *copy = (struct par_queued){.bytes = (int64_t)size, .tile = *tile};
+    char *at = (char *)(copy + 1);
+    copy->tile.points = put(&at, tile->points, n * sizeof *tile->points);
+    copy->tile.attributes = put(&at, tile->attributes, attributes);
+    copy->tile.corners = put(&at, tile->corners, m * sizeof *tile->corners);
+    copy->tile.ends = put(&at, tile->ends, s * sizeof *tile->ends);
+    copy->tile.point_markers = put(&at, tile->point_markers, n * sizeof *tile->point_markers);
+    copy->tile.regions = put(&at, tile->regions, m * sizeof *tile->regions);
+    copy->tile.segment_markers = put(&at, tile->segment_markers, s * sizeof *tile->segment_markers);
+    assert(at == (char *)copy + size);
+    return copy;
+}
+
+/* --- the thread */
+
+/* The tile that is next, taken from the list; NULL: none will come. Under the lock. */
+static struct par_queued *next_of(struct par_queue *q)
+{
+    while (!q->first && !q->closing)
+        pthread_cond_wait(&q->changed, &q->lock);
+    struct par_queued *next = q->first;
+    if (next)
+        q->first = next->next;
+    if (!q->first)
+        q->last = NULL;
+    return next;
+}
+
+static void *hand_on(void *user)
+{
+    struct par_queue *q = user;
+    struct tri_error error = {0};
+    struct par_queued *next;
+    pthread_mutex_lock(&q->lock);
+    while ((next = next_of(q))) {
+        const bool wanted = q->status == TRI_OK;
+        pthread_mutex_unlock(&q->lock);
+        const enum tri_status status = wanted ? q->to->take(q->to->user, &next->tile, &error) : TRI_OK;
+        const int64_t bytes = next->bytes;
+        free(next);
+        pthread_mutex_lock(&q->lock);
+        q->bytes -= bytes;
+        if (status) {
+            q->status = status;
+            q->error = error;
+        }
+        pthread_cond_broadcast(&q->changed);
+    }
+    pthread_mutex_unlock(&q->lock);
+    return NULL;
+}
+
+/* Waits until all tiles have been handed on, or, where they are to be dropped, until the one in hand has. */
+static void finish(struct par_queue *q, bool drop)
+{
+    if (!q->running)
+        return;
+    pthread_mutex_lock(&q->lock);
+    q->closing = true;
+    if (drop && !q->status)
+        q->status = TRI_STOPPED;
+    pthread_cond_broadcast(&q->changed);
+    pthread_mutex_unlock(&q->lock);
+    pthread_join(q->thread, NULL);
+    q->running = q->closing = false;
+    assert(!q->first && q->bytes == 0);
+}
+
+/* --- the sink */
+
+static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
+{
+    if (q->status && error)
+        *error = q->error;
+    return q->status;
+}
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct par_queue *q = user;
+    finish(q, true);
+    q->status = TRI_OK;
+    q->n_attributes = stream->n_attributes;
+    enum tri_status status = q->to->begin ? q->to->begin(q->to->user, stream, error) : TRI_OK;
+    if (!status)
+        q->running = par_thread_start(&q->thread, hand_on, q);
+    return status;
+}
+
+static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct tri_error *error)
+{
+    pthread_mutex_lock(&q->lock);
+    while (!q->status && q->bytes > 0 && q->bytes + copy->bytes > q->most_bytes)
+        pthread_cond_wait(&q->changed, &q->lock);
+    const enum tri_status status = tell(q, error);
+    if (!status) {
+        *(q->last ? &q->last->next : &q->first) = copy;
+        q->last = copy;
+        q->bytes += copy->bytes;
+        pthread_cond_broadcast(&q->changed);
+    }
+    pthread_mutex_unlock(&q->lock);
+    if (status)
+        free(copy);
+    return status;
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct par_queue *q = user;
+    if (!q->running)
+        return q->to->take(q->to->user, tile, error);
+    struct par_queued *copy = copy_of(tile, q->n_attributes);
+    if (copy)
+        return add(q, copy, error);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for a tile of %d triangles", (int)tile->n_triangles);
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct par_queue *q = user;
+    finish(q, false);
+    enum tri_status status = tell(q, error);
+    return status || !q->to->end ? status : q->to->end(q->to->user, error);
+}
+
+/* --- the queue */
+
+bool par_queue_begin(struct par_queue *queue, const struct tri_sink *to, int64_t most_bytes)
+{
+    *queue = (struct par_queue){.to = to, .most_bytes = most_bytes};
+    if (pthread_mutex_init(&queue->lock, NULL) != 0)
+        return false;
+    if (pthread_cond_init(&queue->changed, NULL) == 0)
+        return true;
+    pthread_mutex_destroy(&queue->lock);
+    return false;
+}
+
+struct tri_sink par_queue_sink(struct par_queue *queue) { return (struct tri_sink){queue, begin, take, end}; }
+
+void par_queue_free(struct par_queue *queue)
+{
+    finish(queue, true);
+    pthread_cond_destroy(&queue->changed);
+    pthread_mutex_destroy(&queue->lock);
+}

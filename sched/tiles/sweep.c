@@ -1,0 +1,164 @@
+/* Columns in turn: refine, look for what is left behind, hand out. */
+#include "sched/tiles/sweep.h"
+
+#include <assert.h>
+
+#include "sched/tiles/ahead.h"
+#include "sched/tiles/park.h"
+#include "sched/tiles/remain.h"
+#include "sched/checkpoint/state.h"
+#include "triangle/base/clock.h"
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
+}
+
+struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition)
+{
+    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
+                              .n_kept = state->n_kept, .sink = state->options->sink,
+                              .figure = state->options->figure, .region_column = state->options->region_column,
+                              .n_threads = state->report->threads};
+}
+
+/* Something that no block could do lies left of x, where every block has had its turn. */
+static bool is_left_behind(const struct par_state *state, double x)
+{
+    const struct tri_mesh *mesh = state->mesh;
+    for (int32_t i = 0; i < state->worklist.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[state->worklist.item[i]];
+        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
+            return true;
+    }
+    return false;
+}
+
+/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
+static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column, bool *left,
+                                     struct tri_error *error)
+{
+    double began = tri_seconds(), end = par_fence(tiles->partition, column, 0).x_max;
+    *left = is_left_behind(state, end);
+    enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
+    if (!status && !*left && state->counts_remaining)
+        par_remain_count(state, end);
+    if (!status && !*left)
+        status = par_tiles_column(tiles, column, &state->spare, error);
+    state->gone = tiles->n_triangles;
+    state->report->seconds_number += tri_seconds() - began;
+    return status;
+}
+
+static enum tri_status refine_column(struct par_state *state, const struct par_tiles *tiles, int32_t column,
+                                     struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    return checkpoint ? par_state_phase(checkpoint, state, tiles->partition, tiles, column, error)
+                      : par_phase(state, tiles->partition, state->phase, column, error);
+}
+
+/* The blocks of an odd column, and those of the even one behind it, from state->phase on. */
+static enum tri_status refine_columns(struct par_state *state, const struct par_tiles *tiles, int32_t odd,
+                                      struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    assert(odd % 2 == 1);
+    state->column = odd / 2 + 1;
+    for (; !status && state->phase < PAR_PHASES; state->phase += !status) {
+        int32_t column = state->phase < 2 ? odd : odd - 1;
+        par_tell(state, state->phase + 1);
+        if (column < tiles->partition->n_columns)
+            status = refine_column(state, tiles, column, error);
+    }
+    return status;
+}
+
+/* A column from its beginning, or from where the state is amid it. */
+static enum tri_status go_through(struct par_state *state, const struct par_tiles *tiles,
+                                  const struct par_ahead *ahead, int32_t odd, struct tri_error *error)
+{
+    if (!state->amid && !par_ahead_give(ahead, state, odd))
+        return no_memory(error);
+    state->phase = state->amid ? state->phase : 0;
+    state->amid = true;
+    enum tri_status status = refine_columns(state, tiles, odd, error);
+    if (status)
+        return status;
+    state->amid = false;
+    state->phase = 0;
+    return TRI_OK;
+}
+
+static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, int32_t odd,
+                                 struct tri_error *error)
+{
+    enum tri_status status = par_tiles_end(tiles, error);
+    if (status || !state->options->checkpoint)
+        return status;
+    return par_state_last_column(state->options->checkpoint, state, tiles, odd, error);
+}
+
+/* From column `odd` on, until something is left behind. */
+static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
+                                     int32_t odd, bool *left, struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    enum tri_status status = TRI_OK;
+    for (; !status && !*left && odd <= tiles->partition->n_columns; odd += 2) {
+        status = go_through(state, tiles, ahead, odd, error);
+        if (status || odd == 1)
+            continue;
+        status = finish_column(state, tiles, odd - 2, left, error);
+        if (!status && !*left && checkpoint)
+            status = par_state_column(checkpoint, state, tiles, odd + 2, error);
+    }
+    return status || *left ? status : end_tiles(state, tiles, odd, error);
+}
+
+/* *odd: the column to begin with, for which the worklist is as the sweep had it then. */
+static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, struct par_ahead *ahead,
+                                   int32_t *odd, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    *odd = 0; /* unless there is a state */
+    state->n_columns = (tiles->partition->n_columns + 1) / 2;
+    if (!par_ahead_make(ahead, state, tiles->partition))
+        status = no_memory(error);
+    else if (state->options->checkpoint)
+        status = par_state_begin_sweep(state->options->checkpoint, state, tiles, odd, error);
+    else
+        status = par_tiles_begin(tiles, tiles->partition->estimate, error);
+    const bool fresh = *odd == 0;
+    *odd = fresh ? 1 : *odd;
+    if (fresh)
+        state->worklist.n = 0;
+    state->counts_remaining = state->options->count_remaining && (fresh || state->counts_remaining);
+    if (!status && state->counts_remaining && fresh && !par_remain_begin(state))
+        status = no_memory(error);
+    return status;
+}
+
+enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+                          struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, partition);
+    struct par_ahead ahead;
+    bool left = false;
+    int32_t odd;
+    enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
+    status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    if (!status && state->counts_remaining)
+        par_remain_settle(state);
+    state->counts_remaining = state->amid = false;
+    state->column = state->n_columns = 0;
+    par_ahead_free(&ahead);
+    if (!status && left && state->options->checkpoint)
+        status = par_state_give_up_sweep(state->options->checkpoint, state, error);
+    *done = !status && !left;
+    state->report->rounds++;
+    state->report->deferred += state->report->total.fenced;
+    par_forget_deferred(state->report);
+    par_tiles_free(&tiles);
+    return status;
+}

@@ -1,0 +1,213 @@
+/* What comes before and after the columns, and a mesh that is in memory as a whole.
+ *
+ * Such a mesh is handed out as it is. Where it has been numbered by tiles, vertices, triangles and subsegments of a
+ * tile follow on each other, and the tile of each follows from its place: so a tile's ends are found by bisection. */
+#include "sched/tiles/tiles.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/tiles/tile_copy.h"
+
+enum { PIECE = 1 << 16 }; /* items of a mesh without tiles that are handed out at a time */
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the tiles of the mesh");
+}
+
+/* --- what comes first */
+
+/* Who stands where in the caller's order; NULL: no memory. */
+static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
+{
+    tri_vertex_id *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
+    for (tri_vertex_id v = 0; vertex && v < n_kept; v++)
+        vertex[par_shown(mesh, v)] = v;
+    return vertex;
+}
+
+static bool copy_kept(const struct par_tiles *tiles, struct par_tile_copy *copy)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    tri_vertex_id *vertex = caller_order(mesh, tiles->n_kept);
+    bool memory = par_tile_copy_reserve(copy, mesh, tiles->n_kept, 0, 0) && vertex;
+    for (int32_t i = 0; memory && i < tiles->n_kept; i++) {
+        par_tile_copy_vertex(copy, mesh, vertex[i], i);
+        if (tiles->figure && i < mesh->n_input)
+            memcpy(copy->points[i], &tiles->figure->points[2 * (size_t)i], sizeof copy->points[i]);
+    }
+    free(vertex);
+    return memory;
+}
+
+static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
+{
+    struct par_tile_copy copy = {0};
+    struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = tiles->n_kept};
+    bool memory = copy_kept(tiles, &copy);
+    par_tile_copy_show(&copy, &tile);
+    enum tri_status status = memory ? tiles->sink->take(tiles->sink->user, &tile, error) : no_memory(error);
+    tiles->n_vertices = tiles->n_kept;
+    par_tile_copy_free(&copy);
+    return status;
+}
+
+/* Attributes of the triangles in each region. */
+static bool copy_regions(const struct tri_mesh *mesh, int32_t n_columns, double **regions)
+{
+    size_t n = (size_t)n_columns;
+    *regions = malloc((size_t)mesh->n_regions * n * sizeof **regions + 1);
+    for (int32_t r = 0; *regions && n > 0 && r < mesh->n_regions; r++)
+        memcpy(*regions + (size_t)r * n, tri_region_attributes(mesh, r), n * sizeof **regions);
+    return *regions;
+}
+
+enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    double *regions;
+    struct tri_stream stream = {.n_attributes = mesh->n_attributes, .n_regions = mesh->n_regions, .estimate = estimate,
+                                .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column,
+                                .n_ranks = tiles->n_ranks > 0 ? tiles->n_ranks : 1, .rank = tiles->rank,
+                                .first_vertex = tiles->first[0], .first_triangle = tiles->first[1],
+                                .first_segment = tiles->first[2]};
+    if (!copy_regions(mesh, stream.n_columns, &regions))
+        return no_memory(error);
+    stream.regions = regions;
+    enum tri_status status = TRI_OK;
+    if (tiles->sink->begin)
+        status = tiles->sink->begin(tiles->sink->user, &stream, error);
+    free(regions);
+    return status || tiles->kept_elsewhere ? status : hand_out_kept(tiles, error);
+}
+
+enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
+{
+    return tiles->sink->end ? tiles->sink->end(tiles->sink->user, error) : TRI_OK;
+}
+
+/* --- the whole mesh */
+
+static int32_t last_tile(const struct par_tiles *tiles, const tri_vertex_id *vertex, int n)
+{
+    int32_t last = -1;
+    for (int k = 0; k < n; k++) {
+        int32_t tile = par_block_at(tiles->partition, 0, tiles->mesh->xy[vertex[k]]);
+        last = tile > last ? tile : last;
+    }
+    return last;
+}
+
+static int32_t tile_of_vertex(const struct par_tiles *tiles, tri_vertex_id v) { return last_tile(tiles, &v, 1); }
+static int32_t tile_of_triangle(const struct par_tiles *tiles, tri_triangle_id t)
+{
+    return last_tile(tiles, tiles->mesh->tri[t].v, 3);
+}
+static int32_t tile_of_sub(const struct par_tiles *tiles, tri_sub_id s)
+{
+    return last_tile(tiles, tiles->mesh->sub[s].v, 2);
+}
+
+/* The first of items low .. high - 1, which are sorted by tile, that lies in a later one. */
+static int32_t end_of(const struct par_tiles *tiles, int32_t tile, int32_t low, int32_t high,
+                      int32_t (*tile_of)(const struct par_tiles *tiles, int32_t item))
+{
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (tile_of(tiles, middle) <= tile)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void copy_items(const struct tri_mesh *mesh, const struct tri_tile *tile, const struct par_tile_copy *copy)
+{
+    for (int32_t i = 0; i < tile->n_vertices; i++)
+        par_tile_copy_vertex(copy, mesh, (int32_t)tile->first_vertex + i, i);
+    for (int32_t i = 0; i < tile->n_triangles; i++) {
+        const struct tri_triangle *t = &mesh->tri[tile->first_triangle + i];
+        copy->regions[i] = t->region;
+        for (int k = 0; k < 3; k++)
+            copy->corners[i][k] = par_shown(mesh, t->v[k]);
+    }
+    for (int32_t i = 0; i < tile->n_segments; i++) {
+        const struct tri_subsegment *s = &mesh->sub[tile->first_segment + i];
+        copy->segment_markers[i] = s->marker;
+        for (int k = 0; k < 2; k++)
+            copy->ends[i][k] = par_shown(mesh, s->v[k]);
+    }
+}
+
+/* Hands out what follows, up to these numbers. */
+static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, tri_vertex_id vertex,
+                                      tri_triangle_id triangle, tri_sub_id sub, struct tri_error *error)
+{
+    int32_t n_rows = tiles->partition ? tiles->partition->n_rows : 1;
+    struct par_tile_copy copy = {0};
+    struct tri_tile tile = {.column = tile_id / n_rows, .row = tile_id % n_rows, .first_vertex = tiles->n_vertices,
+                            .first_triangle = tiles->n_triangles, .first_segment = tiles->n_segments,
+                            .n_vertices = vertex - (int32_t)tiles->n_vertices,
+                            .n_triangles = triangle - (int32_t)tiles->n_triangles,
+                            .n_segments = sub - (int32_t)tiles->n_segments};
+    if (tile.n_vertices + tile.n_triangles + tile.n_segments == 0)
+        return TRI_OK;
+    enum tri_status status = TRI_OK;
+    if (par_tile_copy_reserve(&copy, tiles->mesh, tile.n_vertices, tile.n_triangles, tile.n_segments)) {
+        copy_items(tiles->mesh, &tile, &copy);
+        par_tile_copy_show(&copy, &tile);
+        status = tiles->sink->take(tiles->sink->user, &tile, error);
+    } else {
+        status = no_memory(error);
+    }
+    par_tile_copy_free(&copy);
+    tiles->n_vertices = vertex;
+    tiles->n_triangles = triangle;
+    tiles->n_segments = sub;
+    return status;
+}
+
+static int32_t piece_end(int64_t first, int32_t n) { return n - first > PIECE ? (int32_t)first + PIECE : n; }
+
+/* What has no tiles, piece by piece: all vertices before triangles, so that corners may be any of them. */
+static enum tri_status hand_out_pieces(struct par_tiles *tiles, struct tri_error *error)
+{
+    const struct tri_mesh *m = tiles->mesh;
+    enum tri_status status = TRI_OK;
+    while (!status && tiles->n_vertices < m->n_vertices)
+        status = hand_out_up_to(tiles, 0, piece_end(tiles->n_vertices, m->n_vertices), (int32_t)tiles->n_triangles,
+                                (int32_t)tiles->n_segments, error);
+    while (!status && tiles->n_triangles < m->n_triangles)
+        status = hand_out_up_to(tiles, 0, m->n_vertices, piece_end(tiles->n_triangles, m->n_triangles),
+                                (int32_t)tiles->n_segments, error);
+    while (!status && tiles->n_segments < m->n_subs)
+        status = hand_out_up_to(tiles, 0, m->n_vertices, m->n_triangles, piece_end(tiles->n_segments, m->n_subs),
+                                error);
+    return status;
+}
+
+double par_tiles_expected(const struct par_tiles *tiles)
+{
+    return tiles->partition ? tiles->partition->estimate : tiles->mesh->n_triangles;
+}
+
+enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    int32_t n_tiles = tiles->partition ? par_blocks(tiles->partition) : 0;
+    enum tri_status status = par_tiles_begin(tiles, par_tiles_expected(tiles), error);
+    for (int32_t tile = 0; !status && tile < n_tiles; tile++) {
+        if (tri_stop_is_asked(mesh->stop))
+            return tri_fail_stopped(error);
+        tri_vertex_id v = end_of(tiles, tile, (int32_t)tiles->n_vertices, mesh->n_vertices, tile_of_vertex);
+        tri_triangle_id t = end_of(tiles, tile, (int32_t)tiles->n_triangles, mesh->n_triangles, tile_of_triangle);
+        tri_sub_id s = end_of(tiles, tile, (int32_t)tiles->n_segments, mesh->n_subs, tile_of_sub);
+        status = hand_out_up_to(tiles, tile, v, t, s, error);
+    }
+    if (!status)
+        status = hand_out_pieces(tiles, error);
+    return status ? status : par_tiles_end(tiles, error);
+}

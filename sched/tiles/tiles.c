@@ -1,0 +1,539 @@
+/* One column of tiles at a time: find its vertices and number them, find its triangles and subsegments, whose corners
+ * have their numbers then, hand out, let go; in shares or tile by tile, in parallel.
+ *
+ * The record of a final triangle, where nobody else looks any more, becomes what is handed out of it, so that the
+ * numbers of its corners, which lie scattered, are fetched once. */
+#include "sched/tiles/tiles.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/tiles/finds.h"
+#include "sched/tiles/pipeline.h"
+#include "sched/tiles/tile_fill.h"
+#include "triangle/base/grow.h"
+#include "triangle/geometry/hilbert.h"
+
+/* In place of a row: the column's turn has been, or is to come. */
+enum { EARLIER = -1, LATER = -2 };
+
+enum { NO_NUMBER = -1 };
+
+struct par_column {
+    struct par_tiles *tiles;
+    int32_t column;
+    int32_t first_tile;
+    int64_t first_vertex;           /* the number of the first one in it */
+    double begin, end;              /* all triangles left of the end are final */
+    struct par_finds vertices, triangles, subs;
+    struct par_ids straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
+    bool no_memory[PAR_FIND_SHARES];
+    bool is_short; /* of its vertices it knows no more than how many there are in each row */
+};
+
+/* --- what belongs to the column */
+
+/* The tile of places that mostly lie in the same one as the last. */
+struct place_finder {
+    struct tri_fence fence;
+    int32_t tile;
+};
+
+static const struct place_finder LOST = {.fence = {1, 1, 0, 0}};
+
+static int32_t find_tile(struct place_finder *f, const struct par_partition *p, struct tri_point q)
+{
+    if (!tri_fence_holds(&f->fence, q)) {
+        f->tile = par_block_at(p, 0, q);
+        f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
+    }
+    assert(tri_fence_holds(&f->fence, q));
+    return f->tile;
+}
+
+/* Vertices that have no number. */
+static void find_vertices(void *context, size_t share)
+{
+    struct par_column *c = context;
+    struct par_tiles *tiles = c->tiles;
+    const struct tri_mesh *mesh = tiles->mesh;
+    struct tri_range range = par_finds_share(share, mesh->n_vertices);
+    struct place_finder place = LOST;
+    struct par_finder finder = par_finder_of(&c->vertices, share);
+    for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
+        if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
+            mesh->xy[v].x < c->begin)
+            continue;
+        par_find(&finder, v, find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile);
+    }
+    c->no_memory[share] = !par_finder_end(&finder);
+}
+
+/* The vertices that have been numbered, in the order of their numbers. */
+static void find_numbered(void *context, size_t share)
+{
+    struct par_column *c = context;
+    const struct par_tiles *tiles = c->tiles;
+    struct tri_range range = par_finds_share(share, tiles->mesh->n_vertices);
+    struct par_ids *found = &c->vertices.found[share];
+    bool memory = true;
+    for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
+        const int64_t place = tiles->number[v] - c->first_vertex;
+        if (tiles->mesh->on[v] == TRI_VERTEX_NONE || place < 0 || place >= c->vertices.n)
+            continue;
+        c->vertices.item[place] = v;
+        memory = par_ids_add(found, v) && memory;
+    }
+    c->no_memory[share] = !memory;
+}
+
+/* The row of numbers that mostly are of the same one as the last. */
+struct row_of_numbers {
+    int64_t first;
+    int32_t count, row;
+};
+
+static int32_t find_row(const struct par_column *c, struct row_of_numbers *last, int64_t number)
+{
+    if ((uint64_t)(number - last->first) < (uint64_t)last->count)
+        return last->row;
+    const int32_t *start = c->vertices.start;
+    const int32_t place = (int32_t)(number - c->first_vertex);
+    assert(place >= 0 && place < c->vertices.n);
+    const int32_t row = par_holder_of(start, c->vertices.n_rows, place);
+    *last = (struct row_of_numbers){c->first_vertex + start[row], start[row + 1] - start[row], row};
+    return row;
+}
+
+/* Has this number, or its lack, a vertex behind the column? */
+static inline bool is_later(const struct par_column *c, int64_t number)
+{
+    return number < 0 || number >= c->first_vertex + c->vertices.n;
+}
+
+/* The row of the last tile among those of some vertices, of which new ones are told apart by their numbers. */
+static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const tri_vertex_id *v,
+                        const int64_t *number, int n)
+{
+    const struct par_tiles *tiles = c->tiles;
+    int64_t last = NO_NUMBER;
+    int32_t row = EARLIER;
+    for (int k = 0; k < n; k++) {
+        if (v[k] >= tiles->n_kept) {
+            if (is_later(c, number[k]))
+                return LATER;
+            last = number[k] > last ? number[k] : last;
+            continue;
+        }
+        int32_t of_kept = tiles->kept_tile[v[k]] - c->first_tile;
+        if (of_kept >= c->vertices.n_rows)
+            return LATER;
+        row = of_kept > row ? of_kept : row;
+    }
+    int32_t of_new = last >= c->first_vertex ? find_row(c, hint, last) : EARLIER;
+    return of_new > row ? of_new : row;
+}
+
+/* A triangle that somebody refers to later. */
+static bool has_number(const struct par_column *c, const tri_vertex_id v[3], const int64_t number[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (v[k] >= c->tiles->n_kept && !is_later(c, number[k]))
+            return true;
+    return false;
+}
+
+/* So that the memory works on many at once. */
+static inline void fetch_numbers(const int64_t *numbers, const tri_vertex_id v[3])
+{
+    for (int k = 0; k < 3 && v[0] != TRI_NONE; k++)
+        __builtin_prefetch(&numbers[v[k]]);
+}
+
+static void find_triangles(void *context, size_t share)
+{
+    enum { AHEAD = 16 };
+    struct par_column *c = context;
+    const struct tri_mesh *mesh = c->tiles->mesh;
+    const int64_t *numbers = c->tiles->number;
+    struct tri_range range = par_finds_share(share, mesh->n_triangles);
+    struct row_of_numbers hint = {0};
+    struct par_finder finder = par_finder_of(&c->triangles, share);
+    bool memory = true;
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        const tri_vertex_id *v = mesh->tri[t].v;
+        __builtin_prefetch(&mesh->tri[t + 4 * AHEAD < range.last ? t + 4 * AHEAD : t]);
+        if (t + AHEAD < range.last)
+            fetch_numbers(numbers, mesh->tri[t + AHEAD].v);
+        if (v[0] == TRI_NONE)
+            continue;
+        const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
+        int32_t row = last_row(c, &hint, v, number, 3);
+        if (row >= 0) {
+            const int64_t first = c->first_vertex + c->vertices.start[row];
+            par_find_noted(&finder, t, row, par_final_make(&mesh->tri[t], number, first, mesh->n_input));
+        } else if (row == LATER && has_number(c, v, number)) {
+            memory = par_ids_add(&c->straddling[share], t) && memory;
+        }
+    }
+    c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
+}
+
+static int32_t row_of_sub(const struct par_column *c, tri_sub_id s)
+{
+    struct row_of_numbers hint = {0};
+    const tri_vertex_id *v = c->tiles->mesh->sub[s].v;
+    const int64_t number[2] = {c->tiles->number[v[0]], c->tiles->number[v[1]]};
+    return last_row(c, &hint, v, number, 2);
+}
+
+/* What is right of the column is met again later. */
+static void find_subs(void *context, size_t share)
+{
+    struct par_column *c = context;
+    const struct tri_mesh *mesh = c->tiles->mesh;
+    struct tri_range range = par_finds_share(share, mesh->n_subs);
+    struct par_finder finder = par_finder_of(&c->subs, share);
+    for (tri_sub_id s = range.first; s < range.last; s++) {
+        int32_t row = mesh->sub[s].v[0] == TRI_NONE ? EARLIER : row_of_sub(c, s);
+        if (row >= 0)
+            par_find(&finder, s, row);
+    }
+    c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
+}
+
+static bool memory_has_lasted(const struct par_column *c)
+{
+    bool memory = true;
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        memory = memory && !c->no_memory[s];
+    return memory;
+}
+
+/* --- what each vertex has here */
+
+static void place_kept(void *context, size_t share)
+{
+    struct par_tiles *tiles = context;
+    struct tri_range range = tri_share(share, tiles->n_kept);
+    struct place_finder place = LOST;
+    for (tri_vertex_id v = range.first; v < range.last; v++)
+        tiles->kept_tile[v] = find_tile(&place, tiles->partition, tiles->mesh->xy[v]);
+}
+
+static bool know_kept(struct par_tiles *tiles)
+{
+    if (tiles->kept_tile)
+        return true;
+    tiles->kept_tile = malloc(((size_t)tiles->n_kept + 1) * sizeof *tiles->kept_tile);
+    if (tiles->kept_tile)
+        tri_execute(tiles->executor, tri_shares(tiles->n_kept), place_kept, tiles);
+    return tiles->kept_tile;
+}
+
+/* Numbers are where the mesh is, in files, too. */
+static void free_numbers(struct par_tiles *tiles)
+{
+    if (tiles->is_in_files)
+        tri_mesh_extra_free(tiles->mesh, tiles->number);
+    else
+        free(tiles->number);
+    tiles->number = NULL;
+}
+
+static bool grow_numbers(struct par_tiles *tiles, size_t n)
+{
+    if (!tiles->mesh->storage)
+        return tri_resize(&tiles->number, n, sizeof *tiles->number);
+    int64_t *number = tri_mesh_extra(tiles->mesh, n * sizeof *number);
+    if (!number)
+        return false;
+    if (tiles->capacity > 0)
+        memcpy(number, tiles->number, (size_t)tiles->capacity * sizeof *number);
+    free_numbers(tiles);
+    tiles->number = number;
+    tiles->is_in_files = true;
+    return true;
+}
+
+bool par_tiles_reserve(struct par_tiles *tiles)
+{
+    int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
+    assert(tiles->n_kept <= tiles->mesh->n_vertices && tiles->mesh->n_vertices <= now);
+    if (!know_kept(tiles))
+        return false;
+    if (now <= before)
+        return true;
+    if (!grow_numbers(tiles, (size_t)now))
+        return false;
+    for (tri_vertex_id v = before; v < now; v++)
+        tiles->number[v] = v < tiles->n_kept ? v : NO_NUMBER;
+    tiles->capacity = now;
+    return true;
+}
+
+/* --- tile by tile */
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
+}
+
+static struct tri_tile tile_of(const struct par_column *c, int32_t r)
+{
+    const struct par_tiles *tiles = c->tiles;
+    int32_t v = c->vertices.start[r], t = c->triangles.start[r], s = c->subs.start[r];
+    return (struct tri_tile){.column = c->column, .row = r, .first_vertex = c->first_vertex + v,
+                             .first_triangle = tiles->n_triangles + t, .first_segment = tiles->n_segments + s,
+                             .n_vertices = c->vertices.start[r + 1] - v, .n_triangles = c->triangles.start[r + 1] - t,
+                             .n_segments = c->subs.start[r + 1] - s};
+}
+
+static enum tri_status number_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
+{
+    const struct par_column *c = context;
+    struct par_tile_job *job = &c->tiles->job[slot];
+    int32_t first = c->vertices.start[row], n = c->vertices.start[row + 1] - first, *order = c->vertices.item + first;
+    if (!par_tile_job_reserve(job, 2 * (int64_t)n))
+        return no_memory(error);
+    tri_hilbert_order_coarse(c->tiles->mesh->xy, order, n, job->scratch);
+    for (int32_t i = 0; i < n; i++)
+        c->tiles->number[order[i]] = c->first_vertex + first + i;
+    return TRI_OK;
+}
+
+static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
+{
+    const struct par_column *c = context;
+    struct par_tile_job *job = &c->tiles->job[slot];
+    job->tile = tile_of(c, row);
+    const int32_t *first = c->triangles.first_piece + row;
+    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.piece + first[0],
+                                     first[1] - first[0], c->subs.item + c->subs.start[row]};
+    return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
+}
+
+static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
+{
+    const struct par_column *c = context;
+    const struct tri_sink *sink = c->tiles->sink;
+    const struct tri_tile *tile = &c->tiles->job[slot].tile;
+    (void)row;
+    bool is_empty = tile->n_vertices + tile->n_triangles + tile->n_segments == 0;
+    return is_empty ? TRI_OK : sink->take(sink->user, tile, error);
+}
+
+static struct par_pipeline pipeline_of(struct par_column *c)
+{
+    int32_t threads = c->tiles->n_threads > 0 ? c->tiles->n_threads : 1;
+    return (struct par_pipeline){.n = c->vertices.n_rows, .n_slots = c->tiles->n_jobs, .n_threads = threads,
+                                 .context = c};
+}
+
+/* Two more than threads: while one tile is taken another is ready. */
+static bool reserve_jobs(struct par_tiles *tiles)
+{
+    tiles->n_jobs = tiles->n_threads > 1 ? tiles->n_threads + 2 : 1;
+    if (!tiles->job)
+        tiles->job = calloc((size_t)tiles->n_jobs, sizeof *tiles->job);
+    return tiles->job;
+}
+
+/* --- what has been handed out goes */
+
+/* Numbered corners of triangles that stay. */
+static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
+{
+    const struct par_tiles *tiles = c->tiles;
+    bool memory = true;
+    *stay = (struct par_ids){0};
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        for (int32_t i = 0; i < c->straddling[s].n; i++)
+            for (int k = 0; k < 3; k++) {
+                tri_vertex_id v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
+                if (v >= tiles->n_kept && tiles->number[v] >= 0)
+                    memory = memory && par_ids_add(stay, v);
+            }
+    stay->n = par_sort_unique(stay->item, stay->n);
+    return memory;
+}
+
+/* Of a list of vertices, ascending, those that do not stay go; they are left in it. */
+static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay, struct par_ids *list)
+{
+    int32_t left = 0, k = list->n > 0 ? par_ids_find(stay, list->item[0]) : 0;
+    for (int32_t i = 0; i < list->n; i++) {
+        tri_vertex_id v = list->item[i];
+        while (k < stay->n && stay->item[k] < v)
+            k++;
+        if (k < stay->n && stay->item[k] == v)
+            continue;
+        tiles->mesh->on[v] = TRI_VERTEX_NONE;
+        tiles->number[v] = NO_NUMBER;
+        list->item[left++] = v;
+    }
+    list->n = left;
+}
+
+struct leaving {
+    struct par_column *column;
+    const struct par_ids *stay;
+};
+
+/* What a share has found, triangles having gone when they were handed out. */
+static void leave(void *context, size_t share)
+{
+    const struct leaving *l = context;
+    struct par_column *c = l->column;
+    struct par_ids *subs = &c->subs.found[share];
+    let_vertices_go(c->tiles, l->stay, &c->vertices.found[share]);
+    for (int32_t i = 0; i < subs->n; i++)
+        par_room_mark_sub(c->tiles->mesh, subs->item[i]);
+    par_finds_to_runs(&c->vertices.found[share]);
+    par_finds_to_runs(&c->triangles.found[share]);
+    par_finds_to_runs(subs);
+}
+
+static bool let_go(struct par_column *c, struct par_room *spare)
+{
+    struct par_ids stay, *held = &c->tiles->held;
+    if (!corners_that_stay(c, &stay)) {
+        free(stay.item);
+        return false;
+    }
+    struct leaving leaving = {c, &stay};
+    tri_execute(c->tiles->executor, PAR_FIND_SHARES, leave, &leaving);
+    let_vertices_go(c->tiles, &stay, held);
+    par_finds_to_runs(held);
+    bool memory = par_finds_add_runs(held, &spare->ranges[PAR_VERTICES]) &&
+                  par_finds_give(&c->vertices, &spare->ranges[PAR_VERTICES]) &&
+                  par_finds_give(&c->triangles, &spare->ranges[PAR_TRIANGLES]) &&
+                  par_finds_give(&c->subs, &spare->ranges[PAR_SUBS]);
+    free(held->item);
+    *held = stay;
+    return memory;
+}
+
+/* --- a column */
+
+static bool begin_column(struct par_column *c, struct par_tiles *tiles, int32_t column)
+{
+    const struct tri_fence fence = par_fence(tiles->partition, column, 0);
+    assert(column % 2 == 1 && column < tiles->partition->n_columns);
+    *c = (struct par_column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
+                             .first_vertex = tiles->n_vertices,
+                         .begin = fence.x_min, .end = fence.x_max};
+    int32_t n_rows = tiles->partition->n_rows;
+    return par_finds_begin(&c->vertices, n_rows) && par_finds_begin(&c->triangles, n_rows) &&
+           par_finds_begin(&c->subs, n_rows) && par_tiles_reserve(tiles) && reserve_jobs(tiles);
+}
+
+static enum tri_status number_column(struct par_column *c, struct tri_error *error)
+{
+    const struct tri_executor *executor = c->tiles->executor;
+    tri_execute(executor, PAR_FIND_SHARES, find_vertices, c);
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->vertices, executor))
+        return no_memory(error);
+    struct par_pipeline pipeline = pipeline_of(c);
+    pipeline.make = number_tile;
+    return par_pipeline_run(&pipeline, executor, error);
+}
+
+/* Lists of vertices go until they are wanted: those of all columns are as many as the mesh has. */
+static void shorten(struct par_column *c)
+{
+    par_finds_forget(&c->vertices);
+    c->is_short = true;
+}
+
+static bool lengthen(struct par_column *c)
+{
+    c->vertices.item = malloc(((size_t)c->vertices.n + 1) * sizeof *c->vertices.item);
+    if (c->vertices.item)
+        tri_execute(c->tiles->executor, PAR_FIND_SHARES, find_numbered, c);
+    c->is_short = false;
+    return c->vertices.item && memory_has_lasted(c);
+}
+
+static enum tri_status hand_out_column(struct par_column *c, struct tri_error *error)
+{
+    const struct tri_executor *executor = c->tiles->executor;
+    if (c->is_short && !lengthen(c))
+        return no_memory(error);
+    tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
+    tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
+    if (!memory_has_lasted(c) || !par_finds_sort(&c->triangles) || !par_finds_deal(&c->subs, executor))
+        return no_memory(error);
+    struct par_pipeline pipeline = pipeline_of(c);
+    pipeline.make = fill_tile;
+    pipeline.take = take_tile;
+    return par_pipeline_run(&pipeline, executor, error);
+}
+
+void par_column_free(struct par_column *c)
+{
+    if (!c)
+        return;
+    par_finds_free(&c->vertices);
+    par_finds_free(&c->triangles);
+    par_finds_free(&c->subs);
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        free(c->straddling[s].item);
+    free(c);
+}
+
+static enum tri_status number_next(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
+                                   struct tri_error *error)
+{
+    struct par_column *c = *numbered = calloc(1, sizeof *c);
+    if (!c)
+        return no_memory(error);
+    enum tri_status status = begin_column(c, tiles, column) ? number_column(c, error) : no_memory(error);
+    tiles->n_vertices += c->vertices.n;
+    return status;
+}
+
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
+                                 struct tri_error *error)
+{
+    enum tri_status status = number_next(tiles, column, numbered, error);
+    if (!status)
+        shorten(*numbered);
+    return status;
+}
+
+enum tri_status par_tiles_hand_out(struct par_column *c, struct par_room *spare, struct tri_error *error)
+{
+    struct par_tiles *tiles = c->tiles;
+    enum tri_status status = hand_out_column(c, error);
+    if (!status && !let_go(c, spare))
+        status = no_memory(error);
+    tiles->n_triangles += c->triangles.n;
+    tiles->n_segments += c->subs.n;
+    return status;
+}
+
+enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
+                                 struct tri_error *error)
+{
+    struct par_column *c;
+    par_room_mark(spare, tiles->mesh, tiles->executor);
+    enum tri_status status = number_next(tiles, column, &c, error);
+    status = status ? status : par_tiles_hand_out(c, spare, error);
+    par_column_free(c);
+    return status;
+}
+
+void par_tiles_free(struct par_tiles *tiles)
+{
+    for (int32_t i = 0; tiles->job && i < tiles->n_jobs; i++)
+        par_tile_job_free(&tiles->job[i]);
+    free(tiles->job);
+    free_numbers(tiles);
+    free(tiles->kept_tile);
+    free(tiles->held.item);
+    tiles->job = NULL;
+    tiles->kept_tile = NULL;
+    tiles->held = (struct par_ids){0};
+}

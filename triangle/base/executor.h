@@ -1,0 +1,61 @@
+/* How work in independent pieces is run: the one thing that this folder asks of whoever owns threads.
+ *
+ * triangle/ knows no threads. What can be done in pieces is cut into numbered tasks and handed to a caller's executor;
+ * a NULL executor stands for doing one task after another. No result may depend on the order in which tasks run. */
+#ifndef TRIANGLE_BASE_EXECUTOR_H
+#define TRIANGLE_BASE_EXECUTOR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_executor {
+    /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads, and returns
+     * when all have returned; what they wrote is then visible to the caller. Tasks do not fail and do not call run. */
+    void (*run)(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context);
+    void *self;
+};
+
+static inline void tri_execute(const struct tri_executor *executor, size_t n_tasks,
+                               void (*task)(void *context, size_t index), void *context)
+{
+    if (executor && n_tasks > 1) {
+        executor->run(executor->self, n_tasks, task, context);
+        return;
+    }
+    for (size_t i = 0; i < n_tasks; i++)
+        task(context, i);
+}
+
+/* Work on n items in as many shares as are worth a task each, but no more than TRI_MOST_SHARES. */
+enum { TRI_MOST_SHARES = 64, TRI_WORTH_A_TASK = 1 << 15 };
+
+struct tri_range {
+    int32_t first, last; /* first .. last - 1 */
+};
+
+static inline size_t tri_shares(int32_t n)
+{
+    size_t shares = (size_t)n / TRI_WORTH_A_TASK + 1, most = TRI_MOST_SHARES;
+    return shares < most ? shares : most;
+}
+
+/* The items of share i of so many, equal but for one item. */
+static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
+{
+    int64_t k = (int64_t)i, of = (int64_t)shares;
+    struct tri_range range = {(int32_t)(n * k / of), (int32_t)(n * (k + 1) / of)};
+    return range;
+}
+
+/* The items of share i < tri_shares(n). */
+static inline struct tri_range tri_share(size_t i, int32_t n) { return tri_share_of(i, tri_shares(n), n); }
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

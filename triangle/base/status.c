@@ -1,0 +1,20 @@
+/* The one way to report a failure. */
+#include "triangle/base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
+                         const char *format, ...)
+{
+    if (error) {
+        va_list arguments;
+        va_start(arguments, format);
+        error->status = status;
+        error->line = line;
+        snprintf(error->file, sizeof error->file, "%s", file ? file : "");
+        vsnprintf(error->text, sizeof error->text, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}

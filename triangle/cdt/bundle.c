@@ -1,0 +1,343 @@
+/* Paths that are shared by pieces along the same vertices.
+ *
+ * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
+ * resolutions of its line, along it and for as many triangles again beyond its ends; of two stops within APART of each
+ * other along the line, the first alone is one. The pieces from stop to stop run through all the stops between them.
+ * Where some of these pieces overlap, they are cut there, and one of each elementary piece is left (tri_share_stops).
+ *
+ * THEOREM (distance; docs/theory.md, bundles). A piece is cut at vertices within 2 ALONG resolutions of its own line,
+ * those of its larger end.
+ *
+ * COST. A carrier costs at most four times what it crosses. Once MOST_IN_VAIN triangles for each piece and vertex have
+ * been looked at for nothing, the pieces that are left stay as they are. */
+#include "triangle/cdt/bundle.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/cdt/crossing.h"
+#include "triangle/base/grow.h"
+#include "triangle/base/heap_sort.h"
+#include "triangle/geometry/predicates.h"
+
+/* In resolutions. */
+static const double ALONG = 1.25, APART = 2;
+
+enum { MOST_IN_VAIN = 64 };
+
+struct bundles {
+    const struct tri_mesh *mesh;
+    struct tri_piece *piece; /* [n]; from == to: it has been shared */
+    int32_t n, n_vertices;
+    int32_t *carrier, n_carriers; /* [n] the pieces that are no edges, the longest first */
+    int32_t *first, *incident; /* pieces incident[first[v] .. first[v + 1] - 1] are listed at v */
+    struct tri_point a, b;     /* the carrier's ends */
+    tri_vertex_id *stop;       /* [n_vertices] the first n_stops, along the carrier */
+    int32_t *place;            /* [n_vertices] among the stops, or TRI_NONE */
+    int32_t n_stops;
+    int32_t *member;           /* [n] the pieces from stop to stop */
+    int32_t (*reach)[2];       /* [n] of each of them */
+    int32_t n_members;
+    struct tri_piece *result;
+    int32_t n_results, result_capacity;
+    int64_t looked_at, in_vain;
+    uint32_t step; /* see tri_stop_is_due */
+};
+
+/* --- pieces by vertex */
+
+static tri_vertex_id listed_at(const struct bundles *b, const int32_t *degree, int32_t i)
+{
+    tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
+    return degree[from] <= degree[to] ? from : to;
+}
+
+static void list_pieces(struct bundles *b, int32_t *degree)
+{
+    for (int32_t i = 0; i < b->n; i++) {
+        degree[b->piece[i].from]++;
+        degree[b->piece[i].to]++;
+    }
+    for (int32_t i = 0; i < b->n; i++)
+        b->first[listed_at(b, degree, i)]++;
+    for (tri_vertex_id v = 0; v < b->n_vertices; v++)
+        b->first[v + 1] += b->first[v];
+    for (int32_t i = b->n - 1; i >= 0; i--)
+        b->incident[--b->first[listed_at(b, degree, i)]] = i;
+}
+
+/* --- stops */
+
+static double along(const struct bundles *b, tri_vertex_id v)
+{
+    struct tri_point q = b->mesh->xy[v];
+    return (b->b.x - b->a.x) * (q.x - b->a.x) + (b->b.y - b->a.y) * (q.y - b->a.y);
+}
+
+static void try_stop(struct bundles *b, tri_vertex_id v)
+{
+    if (v >= b->n_vertices || b->place[v] != TRI_NONE)
+        return;
+    struct tri_point q = b->mesh->xy[v];
+    if (tri_line_distance(b->a, b->b, q) > ALONG * tri_resolution(q))
+        return;
+    b->place[v] = b->n_stops;
+    b->stop[b->n_stops++] = v;
+}
+
+static int corner_of(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v)
+{
+    const tri_vertex_id *corner = mesh->tri[t].v;
+    return corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
+}
+
+/* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
+static void walk(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
+{
+    const struct tri_mesh *mesh = b->mesh;
+    const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
+    int e = corner_of(mesh, t, from);
+    if (tri_orient2d(p, q, mesh->xy[mesh->tri[t].v[tri_prev[e]]]) <= 0) { /* along its left edge */
+        tri_halfedge beyond = tri_across(mesh, tri_code(t, tri_next[e]));
+        t = beyond == TRI_NONE ? t : tri_of(beyond);
+        e = corner_of(mesh, t, from);
+    }
+    const tri_vertex_id *v = mesh->tri[t].v;
+    for (int k = 0; k < 3; k++)
+        try_stop(b, v[k]);
+    if (tri_orient2d(p, q, mesh->xy[v[tri_prev[e]]]) <= 0)
+        return; /* along the hull */
+    for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
+        tri_halfedge code = tri_across(mesh, tri_code(t, e));
+        if (code == TRI_NONE)
+            return;
+        t = tri_of(code);
+        e = tri_edge(code);
+        tri_vertex_id o = mesh->tri[t].v[e];
+        b->looked_at++;
+        try_stop(b, o);
+        if (o == to)
+            end = 2 * step + 2;
+        e = tri_orient2d(p, q, mesh->xy[o]) > 0 ? tri_next[e] : tri_prev[e];
+    }
+}
+
+static bool is_before(const void *context, int32_t v, int32_t w)
+{
+    const struct bundles *b = context;
+    double at_v = along(b, v), at_w = along(b, w);
+    return at_v != at_w ? at_v < at_w : v < w;
+}
+
+/* In their order, each APART from the one before. */
+static void sort_stops(struct bundles *b)
+{
+    double x = b->b.x - b->a.x, y = b->b.y - b->a.y, length = sqrt(x * x + y * y);
+    int32_t kept = 0;
+    tri_heap_sort(b->stop, b->n_stops, is_before, b);
+    for (int32_t k = 0; k < b->n_stops; k++) {
+        tri_vertex_id v = b->stop[k];
+        double apart = APART * length * tri_resolution(b->mesh->xy[v]);
+        b->place[v] = TRI_NONE;
+        if (kept > 0 && along(b, v) - along(b, b->stop[kept - 1]) <= apart)
+            continue;
+        b->place[v] = kept;
+        b->stop[kept++] = v;
+    }
+    b->n_stops = kept;
+}
+
+static void forget_stops(struct bundles *b)
+{
+    for (int32_t k = 0; k < b->n_stops; k++)
+        b->place[b->stop[k]] = TRI_NONE;
+    b->n_stops = 0;
+}
+
+/* --- bundles */
+
+static bool is_earlier(const void *context, int32_t i, int32_t k)
+{
+    const struct tri_piece *piece = context;
+    return piece[i].course.first < piece[k].course.first;
+}
+
+/* The pieces from stop to stop, in their order; how many elementary pieces they cover, each as often as it is. */
+static int64_t find_members(struct bundles *b)
+{
+    int64_t sum = 0;
+    b->n_members = 0;
+    for (int32_t k = 0; k < b->n_stops; k++)
+        for (int32_t i = b->first[b->stop[k]]; i < b->first[b->stop[k] + 1]; i++) {
+            const struct tri_piece *piece = &b->piece[b->incident[i]];
+            if (piece->from != piece->to && b->place[piece->from] != TRI_NONE && b->place[piece->to] != TRI_NONE)
+                b->member[b->n_members++] = b->incident[i];
+        }
+    tri_heap_sort(b->member, b->n_members, is_earlier, b->piece);
+    for (int32_t m = 0; m < b->n_members; m++) {
+        int32_t p = b->place[b->piece[b->member[m]].from], q = b->place[b->piece[b->member[m]].to];
+        b->reach[m][0] = p < q ? p : q;
+        b->reach[m][1] = p < q ? q : p;
+        sum += b->reach[m][1] - b->reach[m][0];
+    }
+    return sum;
+}
+
+/* What the members are shared out to takes their place. */
+static bool keep(struct bundles *b, const struct tri_piece *shared, int32_t n)
+{
+    if (!tri_grow(&b->result, &b->result_capacity, b->n_results + n, sizeof *b->result))
+        return false;
+    memcpy(b->result + b->n_results, shared, (size_t)n * sizeof *shared);
+    b->n_results += n;
+    for (int32_t m = 0; m < b->n_members; m++)
+        b->piece[b->member[m]].to = b->piece[b->member[m]].from;
+    return true;
+}
+
+static bool share(struct bundles *b)
+{
+    int64_t sum = find_members(b);
+    int32_t n = b->n_members;
+    if (n < 2)
+        return true;
+    struct tri_piece *shared = malloc((size_t)n * sizeof *shared);
+    for (int32_t m = 0; shared && m < n; m++)
+        shared[m] = b->piece[b->member[m]];
+    bool room = shared && tri_share_stops(b->stop, b->n_stops, b->reach, &shared, &n);
+    if (room && n < sum) /* else they do not overlap */
+        room = keep(b, shared, n);
+    free(shared);
+    return room;
+}
+
+/* --- carriers */
+
+static bool is_longer(const void *context, int32_t i, int32_t k)
+{
+    const struct bundles *b = context;
+    const struct tri_point *xy = b->mesh->xy;
+    double li = tri_distance2(xy[b->piece[i].from], xy[b->piece[i].to]);
+    double lk = tri_distance2(xy[b->piece[k].from], xy[b->piece[k].to]);
+    return li != lk ? li > lk : i < k;
+}
+
+/* Is it worth while to walk along the piece? */
+static bool leave(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t, tri_vertex_id *from,
+                  tri_vertex_id *to)
+{
+    *t = find_exit(context, from, to);
+    const tri_vertex_id *v = *t == TRI_NONE ? NULL : b->mesh->tri[*t].v;
+    return v && v[0] != *to && v[1] != *to && v[2] != *to;
+}
+
+/* The way back goes farther beyond `from`, and by the other side where the line runs through vertices; where find_exit
+ * exchanges the ends there is one way alone. */
+static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
+{
+    tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
+    const int32_t n_results = b->n_results;
+    const int64_t looked_at = b->looked_at;
+    tri_triangle_id t;
+    if (from == to || !leave(b, find_exit, context, &t, &from, &to))
+        return true;
+    b->a = b->mesh->xy[from];
+    b->b = b->mesh->xy[to];
+    walk(b, t, from, to);
+    tri_vertex_id back_from = to, back_to = from;
+    if (leave(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
+        walk(b, t, back_from, back_to);
+    sort_stops(b);
+    bool room = share(b);
+    forget_stops(b);
+    if (b->n_results == n_results)
+        b->in_vain += b->looked_at - looked_at;
+    return room;
+}
+
+static bool carry_all(struct bundles *b, tri_exit *find_exit, void *context)
+{
+    const int64_t most = MOST_IN_VAIN * ((int64_t)b->n + b->n_vertices);
+    bool room = true;
+    for (int32_t i = 0; room && i < b->n_carriers && b->in_vain < most; i++) {
+        if (tri_stop_is_due(b->mesh->stop, &b->step))
+            break;
+        room = carry(b, b->carrier[i], find_exit, context);
+    }
+    return room;
+}
+
+static bool list_carriers(struct bundles *b, tri_exit *find_exit, void *context)
+{
+    b->carrier = malloc((size_t)b->n * sizeof *b->carrier);
+    for (int32_t i = 0; b->carrier && i < b->n; i++) {
+        tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
+        tri_triangle_id t;
+        if (leave(b, find_exit, context, &t, &from, &to))
+            b->carrier[b->n_carriers++] = i;
+    }
+    if (b->carrier)
+        tri_heap_sort(b->carrier, b->n_carriers, is_longer, b);
+    return b->carrier;
+}
+
+static bool begin(struct bundles *b)
+{
+    size_t vertices = (size_t)b->n_vertices, n = (size_t)b->n;
+    b->first = calloc(vertices + 1, sizeof *b->first);
+    b->incident = malloc(n * sizeof *b->incident);
+    b->stop = malloc(vertices * sizeof *b->stop);
+    b->place = calloc(vertices, sizeof *b->place);
+    b->member = malloc(n * sizeof *b->member);
+    b->reach = malloc(n * sizeof *b->reach);
+    if (!b->first || !b->incident || !b->stop || !b->place || !b->member || !b->reach)
+        return false;
+    list_pieces(b, b->place); /* which holds degrees until here */
+    for (size_t v = 0; v < vertices; v++)
+        b->place[v] = TRI_NONE;
+    return true;
+}
+
+/* The pieces that no bundle has taken follow what has come of those. */
+static bool add_others(struct bundles *b)
+{
+    if (!tri_grow(&b->result, &b->result_capacity, b->n_results + b->n, sizeof *b->result))
+        return false;
+    for (int32_t i = 0; i < b->n; i++)
+        if (b->piece[i].from != b->piece[i].to)
+            b->result[b->n_results++] = b->piece[i];
+    return true;
+}
+
+static void free_bundles(struct bundles *b)
+{
+    free(b->carrier);
+    free(b->first);
+    free(b->incident);
+    free(b->stop);
+    free(b->place);
+    free(b->member);
+    free(b->reach);
+    free(b->result);
+}
+
+static bool share_all(struct bundles *b, tri_exit *find_exit, void *context)
+{
+    return begin(b) && carry_all(b, find_exit, context) && add_others(b);
+}
+
+bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
+                       tri_exit *find_exit, void *context, int64_t *looked_at)
+{
+    struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
+    bool room = *n < 2 || list_carriers(&b, find_exit, context);
+    if (room && b.n_carriers > 0 && (room = share_all(&b, find_exit, context))) {
+        *piece = b.result;
+        *n = b.n_results;
+        b.result = b.piece;
+    }
+    *looked_at += b.looked_at;
+    free_bundles(&b);
+    return room;
+}

@@ -1,0 +1,434 @@
+/* Floods over triangles that stop at segments.
+ *
+ * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever
+ * meet at a subsegment; removing the dead ones needs to tell subsegments alone. */
+#include "triangle/cdt/carve.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/mesh/locate.h"
+#include "triangle/geometry/predicates.h"
+
+struct flood {
+    struct tri_mesh *mesh;
+    int32_t *stack;    /* [n_triangles]: each triangle is pushed at most once a flood */
+    uint8_t *dead;     /* [n_triangles] 0: live */
+    struct tri_carve_report report;
+    struct tri_emptied holes;
+};
+
+static void kill_from(struct flood *f, tri_triangle_id start)
+{
+    int32_t n = 0;
+    assert(start >= 0 && start < f->mesh->n_triangles);
+    if (f->dead[start])
+        return;
+    f->dead[start] = 1;
+    f->stack[n++] = start;
+    while (n > 0) {
+        tri_triangle_id t = f->stack[--n];
+        for (int e = 0; e < 3; e++) {
+            tri_link link = f->mesh->tri[t].n[e];
+            if (link >= 0 && !f->dead[tri_of(link)]) {
+                assert(n < f->mesh->n_triangles);
+                f->dead[tri_of(link)] = 1;
+                f->stack[n++] = tri_of(link);
+            }
+        }
+    }
+}
+
+/* Is there a subsegment behind the link along which no segment of the input runs? That is an edge of the hull. */
+static bool is_bare_hull(const struct tri_mesh *mesh, tri_link link)
+{
+    return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
+}
+
+static void kill_concavities(struct flood *f)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+        for (int e = 0; e < 3; e++)
+            if (is_bare_hull(mesh, mesh->tri[t].n[e]))
+                kill_from(f, t);
+}
+
+/* --- depth (carve.h, even_odd) */
+
+enum { UNSEEN, WAITING, SEEN };
+
+/* Triangles by depth: those of the depth that is being flooded on the stack, those behind its barriers in `next`. */
+struct dive {
+    const struct tri_mesh *mesh;
+    uint8_t *state;         /* [n_triangles] */
+    int32_t *stack, *next;  /* [n_triangles] */
+    int32_t n, n_next;
+};
+
+static void visit(struct dive *d, tri_triangle_id t)
+{
+    if (d->state[t] == SEEN)
+        return;
+    assert(d->n < d->mesh->n_triangles);
+    d->state[t] = SEEN;
+    d->stack[d->n++] = t;
+}
+
+static void put_off(struct dive *d, tri_triangle_id t)
+{
+    if (d->state[t] != UNSEEN)
+        return;
+    assert(d->n_next < d->mesh->n_triangles);
+    d->state[t] = WAITING;
+    d->next[d->n_next++] = t;
+}
+
+static void cross(struct dive *d, tri_halfedge code)
+{
+    tri_link link = *tri_link_at(d->mesh, code);
+    tri_halfedge other = tri_across(d->mesh, code);
+    if (other == TRI_NONE)
+        return;
+    if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
+        put_off(d, tri_of(other));
+    else
+        visit(d, tri_of(other));
+}
+
+/* Triangles at the hull, at depth 0, or behind a barrier. Those at depth 0 are on the stack first. */
+static void enter(struct dive *d, bool keep_hull)
+{
+    const struct tri_mesh *mesh = d->mesh;
+    for (int pass = 0; pass < 2; pass++)
+        for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+            for (int e = 0; e < 3; e++) {
+                tri_link link = mesh->tri[t].n[e];
+                if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
+                    continue;
+                const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
+                bool barrier = parent->odd || (keep_hull && parent->segment == TRI_NONE);
+                if (pass == 0 && !barrier)
+                    visit(d, t);
+                if (pass == 1 && barrier)
+                    put_off(d, t);
+            }
+}
+
+/* INVARIANT: a depth is flooded to its end before the next begins; so the first depth at which a triangle is seen is
+ * the least. A triangle waits at most once, and visit() may overtake it. */
+static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
+{
+    enter(d, keep_hull);
+    for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
+        while (d->n > 0) {
+            tri_triangle_id t = d->stack[--d->n];
+            assert(d->state[t] == SEEN);
+            f->dead[t] |= even;
+            for (int e = 0; e < 3; e++)
+                cross(d, tri_code(t, e));
+        }
+        int32_t n = d->n_next;
+        d->n_next = 0;
+        for (int32_t k = 0; k < n; k++)
+            visit(d, d->next[k]);
+    }
+}
+
+static enum tri_status kill_even(struct flood *f, bool keep_hull, struct tri_error *error)
+{
+    size_t n = (size_t)f->mesh->n_triangles + 1;
+    struct dive d = {f->mesh, calloc(n, 1), f->stack, malloc(n * sizeof *d.next), 0, 0};
+    enum tri_status status = TRI_OK;
+    if (d.state && d.next)
+        kill_depths(f, &d, keep_hull);
+    else
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the depth of %d triangles",
+                          (int)f->mesh->n_triangles);
+    free(d.state);
+    free(d.next);
+    return status;
+}
+
+/* --- places */
+
+/* The faces of n places, given `width` numbers apart, x and y first; to be freed. */
+static enum tri_status locate(const struct tri_mesh *mesh, const double *places, int32_t n, int32_t width,
+                              int32_t **faces, struct tri_error *error)
+{
+    struct tri_point *points = malloc(((size_t)n + 1) * sizeof *points);
+    assert(n >= 0 && width >= 2);
+    *faces = malloc(((size_t)n + 1) * sizeof **faces);
+    enum tri_status status = TRI_OK;
+    if (!points || !*faces)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    for (int32_t k = 0; !status && k < n; k++) {
+        const double *at = places + (size_t)k * (size_t)width;
+        points[k] = tri_to_units(mesh, at[0], at[1]);
+    }
+    status = status ? status : tri_locate_faces(mesh, points, n, *faces, error);
+    free(points);
+    return status;
+}
+
+static bool is_at(struct tri_point p, struct tri_point q) { return p.x == q.x && p.y == q.y; }
+
+/* Does a subsegment end at corner k of triangle t? */
+static bool ends_sub(const struct tri_mesh *mesh, tri_triangle_id t, int k)
+{
+    tri_vertex_id v = mesh->tri[t].v[k];
+    tri_triangle_id at = t;
+    do {
+        const tri_vertex_id *corner = mesh->tri[at].v;
+        int e = corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
+        tri_link beyond = mesh->tri[at].n[tri_next[e]];
+        assert(corner[e] == v);
+        if (beyond < 0)
+            return true;
+        at = tri_of(beyond);
+    } while (at != t);
+    return false;
+}
+
+/* Does q lie on a subsegment? The triangle is what tri_locate_faces tells of it, which then has q on its boundary. */
+static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    bool on_sub = false;
+    for (int k = 0; k < 3; k++)
+        if (is_at(mesh->xy[v[k]], q))
+            return ends_sub(mesh, t, k);
+    for (int e = 0; e < 3; e++) {
+        double side = tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q);
+        if (side < 0)
+            return false;
+        on_sub = on_sub || (side == 0 && mesh->tri[t].n[e] < 0);
+    }
+    return on_sub;
+}
+
+static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
+{
+    int32_t *faces;
+    enum tri_status status = locate(f->mesh, pslg->holes, pslg->n_holes, 2, &faces, error);
+    for (int32_t k = 0; !status && k < pslg->n_holes; k++) {
+        const double *at = &pslg->holes[2 * (size_t)k];
+        if (faces[k] == TRI_NONE)
+            continue;
+        if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1]))) {
+            f->report.between++;
+        } else if (!f->dead[faces[k]]) {
+            f->holes.first = f->holes.n++ == 0 ? k : f->holes.first;
+            kill_from(f, faces[k]);
+        }
+    }
+    free(faces);
+    return status;
+}
+
+/* Gives the region to what no region has reached yet. */
+static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
+{
+    struct tri_triangle *tri = f->mesh->tri;
+    int32_t n = 0;
+    assert(!f->dead[start] && tri[start].region == 0);
+    f->stack[n++] = start;
+    tri[start].region = region;
+    while (n > 0) {
+        tri_triangle_id t = f->stack[--n];
+        for (int e = 0; e < 3; e++) {
+            tri_link link = tri[t].n[e];
+            if (link >= 0 && tri[tri_of(link)].region == 0) {
+                assert(n < f->mesh->n_triangles);
+                tri[tri_of(link)].region = region;
+                f->stack[n++] = tri_of(link);
+            }
+        }
+    }
+}
+
+static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
+{
+    struct tri_mesh *mesh = f->mesh;
+    if (!tri_resize(&mesh->regions, (size_t)pslg->n_regions + 1, sizeof *mesh->regions))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
+    assert(mesh->n_regions == 1 && !mesh->columns); /* "no region" alone */
+    mesh->n_regions = pslg->n_regions + 1;
+    int32_t *faces;
+    enum tri_status status = locate(mesh, pslg->regions, pslg->n_regions, 4, &faces, error);
+    for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
+        const double *r = &pslg->regions[4 * (size_t)k];
+        mesh->regions[k + 1] = (struct tri_region){r[2], r[3]};
+        if (faces[k] != TRI_NONE && !f->dead[faces[k]] && mesh->tri[faces[k]].region == 0)
+            spread(f, faces[k], k + 1);
+    }
+    free(faces);
+    return status;
+}
+
+void tri_mark_vertices(struct tri_mesh *mesh)
+{
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            if (mesh->sub[s].marker && !mesh->vertex_markers[mesh->sub[s].v[k]])
+                mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
+}
+
+/* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
+ * three parts of the triangle do not overlap, nor do triangles. */
+static void guard_boundary(const struct flood *f, tri_triangle_id t)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    const struct tri_triangle *at = &mesh->tri[t];
+    assert(f->dead[t] && tri_is_live(at));
+    struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
+    struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
+                                 tri_round_coordinate((a.y + b.y + c.y) / 3)};
+    bool inside = tri_is_inside(a, b, c, centroid);
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0) {
+            struct tri_parent *parent = &mesh->parents[mesh->sub[~at->n[e]].parent];
+            parent->guard = inside ? centroid : mesh->xy[parent->v[1]];
+        }
+}
+
+static void remove_dead(struct flood *f)
+{
+    struct tri_mesh *mesh = f->mesh;
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+        if (f->dead[t])
+            guard_boundary(f, t);
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
+        struct tri_triangle *at = &mesh->tri[t];
+        if (!f->dead[t])
+            continue;
+        for (int e = 0; e < 3; e++) {
+            assert(at->n[e] < 0 || f->dead[tri_of(at->n[e])]);
+            if (at->n[e] < 0)
+                mesh->sub[~at->n[e]].side[tri_side(&mesh->sub[~at->n[e]], at->v[tri_next[e]])] = TRI_NONE;
+        }
+        at->v[0] = at->v[1] = at->v[2] = TRI_NONE;
+    }
+    tri_mesh_compact(mesh);
+}
+
+/* --- what is left, in order */
+
+/* Subsegments and their parents on the way to their new places. */
+struct sorting {
+    int32_t *start; /* [n_segments + 2] where the next one of each input segment goes; last, those of none: the hull */
+    struct tri_subsegment *sub; /* [n_subs] */
+    struct tri_parent *parent;  /* [n_subs] */
+};
+
+static bool has_triangle(const struct tri_subsegment *s) { return s->side[0] != TRI_NONE || s->side[1] != TRI_NONE; }
+
+/* Counting sort of the subsegments that have a triangle by input segment; returns how many they are. */
+static int32_t sort_subs(const struct tri_mesh *mesh, struct sorting *to, int32_t n_segments)
+{
+    int32_t kept = 0;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        int32_t k = mesh->parents[mesh->sub[s].parent].segment;
+        assert(k == TRI_NONE || (k >= 0 && k < n_segments));
+        if (has_triangle(&mesh->sub[s]))
+            to->start[(k == TRI_NONE ? n_segments : k) + 1]++, kept++;
+    }
+    for (int32_t k = 0; k <= n_segments; k++)
+        to->start[k + 1] += to->start[k];
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        const struct tri_parent *parent = &mesh->parents[mesh->sub[s].parent];
+        if (!has_triangle(&mesh->sub[s]))
+            continue;
+        int32_t at = to->start[parent->segment == TRI_NONE ? n_segments : parent->segment]++;
+        to->sub[at] = mesh->sub[s];
+        to->parent[at] = *parent;
+    }
+    assert(to->start[n_segments] == kept);
+    return kept;
+}
+
+static void adopt_subs(struct tri_mesh *mesh, const struct sorting *from, int32_t kept)
+{
+    for (tri_sub_id s = 0; s < kept; s++) {
+        mesh->sub[s] = from->sub[s];
+        mesh->sub[s].parent = s;
+        mesh->parents[s] = from->parent[s];
+        for (int side = 0; side < 2; side++)
+            if (mesh->sub[s].side[side] != TRI_NONE)
+                *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
+    }
+    mesh->n_subs = mesh->n_parents = kept;
+}
+
+static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_subs + 1;
+    struct sorting s = {calloc((size_t)n_segments + 2, sizeof *s.start), malloc(n * sizeof *s.sub),
+                        malloc(n * sizeof *s.parent)};
+    enum tri_status status = TRI_OK;
+    assert(mesh->n_subs <= mesh->n_parents);
+    if (s.start && s.sub && s.parent)
+        adopt_subs(mesh, &s, sort_subs(mesh, &s, n_segments));
+    else
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
+    free(s.start);
+    free(s.sub);
+    free(s.parent);
+    return status;
+}
+
+/* What goes is marked. */
+static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const struct tri_carve_options *options,
+                            struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (options->even_odd)
+        status = kill_even(f, options->keep_hull, error);
+    else if (!options->keep_hull)
+        kill_concavities(f);
+    if (!status && !options->ignore_holes)
+        status = kill_holes(f, pslg, error);
+    if (!status && !memchr(f->dead, 0, (size_t)f->mesh->n_triangles))
+        status = tri_why_empty(&f->report.why, f->mesh, options->even_odd, options->keep_hull, &f->holes, error);
+    return status;
+}
+
+enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
+                          struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_triangles + 1;
+    assert(mesh->n_subs == mesh->n_parents); /* one each */
+    struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack), .dead = calloc(n, 1)};
+    enum tri_status status = TRI_OK;
+    if (!f.stack || !f.dead)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
+    tri_mark_vertices(mesh);
+    if (!status && mesh->n_triangles > 0) {
+        status = kill(&f, pslg, options, error);
+        if (!status && options->spread_regions)
+            status = spread_regions(&f, pslg, error);
+        if (!status)
+            remove_dead(&f);
+    }
+    if (options->report)
+        *options->report = f.report;
+    free(f.stack);
+    free(f.dead);
+    return status ? status : order_subs(mesh, pslg->n_segments, error);
+}
+
+void tri_mark_boundary(struct tri_mesh *mesh)
+{
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        struct tri_subsegment *sub = &mesh->sub[s];
+        if (!tri_is_boundary(sub))
+            continue;
+        if (sub->marker == 0)
+            sub->marker = 1;
+        for (int k = 0; k < 2; k++)
+            if (mesh->vertex_markers[sub->v[k]] == 0)
+                mesh->vertex_markers[sub->v[k]] = 1;
+    }
+}

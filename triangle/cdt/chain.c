@@ -1,0 +1,251 @@
+/* Subsegments that are one straight segment.
+ *
+ * A vertex is a joint where exactly two subsegments end, of one marker and both on the boundary or both inside, and run
+ * on as far as rounding tells. A chain of joints lies between two vertices that are none, or is closed.
+ *
+ * RULE. A chain becomes one parent where all of it keeps to the line between its ends. Else it is cut at the vertex
+ * that is farthest from that line (Douglas & Peucker 1973), and so on; of vertices as far, up to the tolerance or half
+ * of that distance if it is less, at the first. Why: docs/theory.md, chains.
+ *
+ * INVARIANT. The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c). So
+ * the parents of a refined mesh come back, and with them its corners (small_angle.h), narrow spaces and sizes.
+ *
+ * COST. From the DEEP-th cut within a cut on, chains are halved: n vertices cost at most n * (DEEP + log2(n)). */
+#include "triangle/cdt/chain.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/cdt/crossing.h"
+
+enum { MANY = -2, DEEP = 32 };
+
+struct chains {
+    struct tri_mesh *mesh;
+    tri_sub_id *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
+    bool *seen;     /* [n_subs] */
+    /* The chain in hand: from vertex[0] by sub[0] to vertex[1], and so on to vertex[n]. */
+    tri_vertex_id *vertex; /* [n_subs + 1] */
+    tri_sub_id *sub;       /* [n_subs] */
+    int32_t n;
+};
+
+static void list_ends(struct chains *c)
+{
+    const struct tri_mesh *mesh = c->mesh;
+    for (size_t i = 0; i < 2 * (size_t)mesh->n_vertices; i++)
+        c->at[i] = TRI_NONE;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++) {
+            tri_sub_id *at = &c->at[2 * (size_t)mesh->sub[s].v[k]];
+            at[at[0] == TRI_NONE ? 0 : 1] = at[1] == TRI_NONE ? s : MANY;
+        }
+}
+
+static tri_vertex_id other_end(const struct tri_mesh *mesh, tri_sub_id s, tri_vertex_id v)
+{
+    return mesh->sub[s].v[mesh->sub[s].v[0] == v];
+}
+
+/* Of v from the segment between a and b. */
+static double distance_from(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
+{
+    struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
+    double dot = (p.x - at.x) * (q.x - at.x) + (p.y - at.y) * (q.y - at.y);
+    return dot < 0 ? tri_line_distance(p, q, at) : sqrt(fmin(tri_distance2(p, at), tri_distance2(q, at)));
+}
+
+static double tolerance(const struct tri_mesh *mesh, tri_vertex_id v)
+{
+    return TRI_CHAIN_ASTRAY * tri_resolution(mesh->xy[v]);
+}
+
+/* Does v lie between a and b on their line? */
+static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
+{
+    struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
+    double dot = (p.x - at.x) * (q.x - at.x) + (p.y - at.y) * (q.y - at.y);
+    return dot < 0 && tri_line_distance(p, q, at) <= tolerance(mesh, v);
+}
+
+static bool is_joint(const struct chains *c, tri_vertex_id v)
+{
+    const tri_sub_id *at = &c->at[2 * (size_t)v];
+    const struct tri_mesh *mesh = c->mesh;
+    if (at[0] < 0 || at[1] < 0)
+        return false;
+    const struct tri_subsegment *a = &mesh->sub[at[0]], *b = &mesh->sub[at[1]];
+    return a->marker == b->marker && tri_is_boundary(a) == tri_is_boundary(b) &&
+           is_between(mesh, other_end(mesh, at[0], v), other_end(mesh, at[1], v), v);
+}
+
+/* The subsegment behind joint v for who comes by s. */
+static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
+{
+    const tri_sub_id *at = &c->at[2 * (size_t)v];
+    assert((at[0] == s) != (at[1] == s));
+    return at[at[0] == s];
+}
+
+static void append(struct chains *c, tri_sub_id s)
+{
+    assert(c->n < c->mesh->n_subs && !c->seen[s]);
+    c->seen[s] = true;
+    c->sub[c->n] = s;
+    c->vertex[c->n + 1] = other_end(c->mesh, s, c->vertex[c->n]);
+    c->n++;
+}
+
+static void turn_chain(struct chains *c)
+{
+    for (int32_t i = 0, k = c->n; i < k; i++, k--) {
+        tri_vertex_id v = c->vertex[i];
+        c->vertex[i] = c->vertex[k];
+        c->vertex[k] = v;
+    }
+    for (int32_t i = 0, k = c->n - 1; i < k; i++, k--) {
+        tri_sub_id s = c->sub[i];
+        c->sub[i] = c->sub[k];
+        c->sub[k] = s;
+    }
+}
+
+/* Takes in hand the chain that begins with subsegment s at a vertex, and lets it run the way of s. It ends where it
+ * began if it is closed. */
+static void follow(struct chains *c, tri_sub_id s, tri_vertex_id from)
+{
+    c->n = 0;
+    c->vertex[0] = from;
+    append(c, s);
+    for (tri_vertex_id v = c->vertex[1]; v != from && is_joint(c, v); v = c->vertex[c->n])
+        append(c, beyond(c, v, c->sub[c->n - 1]));
+    if (c->mesh->sub[s].v[0] != from)
+        turn_chain(c);
+}
+
+/* Where the chain from its vertex i to its vertex k has to be cut; 0: nowhere. */
+static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
+{
+    const struct tri_mesh *mesh = c->mesh;
+    const tri_vertex_id *v = c->vertex;
+    bool straight = true;
+    double most = 0;
+    for (int32_t j = i + 1; j < k; j++) {
+        straight = straight && is_between(mesh, v[i], v[k], v[j]);
+        most = fmax(most, distance_from(mesh, v[i], v[k], v[j]));
+    }
+    int32_t cut = 0;
+    for (int32_t j = i + 1; j < k && !straight; j++) {
+        double distance = distance_from(mesh, v[i], v[k], v[j]);
+        if (distance >= fmax(0.5 * most, most - tolerance(mesh, v[j])) && (cut == 0 || v[j] < v[cut]))
+            cut = j;
+    }
+    assert(straight == (cut == 0));
+    return cut;
+}
+
+/* All subsegments of a parent run its way. */
+static void turn(struct tri_subsegment *s)
+{
+    tri_vertex_id v = s->v[0];
+    tri_halfedge side = s->side[0];
+    s->v[0] = s->v[1];
+    s->v[1] = v;
+    s->side[0] = s->side[1];
+    s->side[1] = side;
+}
+
+/* From its vertex i to its vertex k. */
+static void unite(const struct chains *c, int32_t i, int32_t k)
+{
+    struct tri_mesh *mesh = c->mesh;
+    tri_parent_id parent = mesh->sub[c->sub[i]].parent;
+    mesh->parents[parent].v[0] = c->vertex[i];
+    mesh->parents[parent].v[1] = c->vertex[k];
+    mesh->parents[parent].guard = mesh->xy[c->vertex[i]];
+    for (int32_t j = i; j < k; j++) {
+        struct tri_subsegment *s = &mesh->sub[c->sub[j]];
+        if (s->v[0] != c->vertex[j])
+            turn(s);
+        s->parent = parent;
+        if (j > i)
+            mesh->on[c->vertex[j]] = parent;
+    }
+}
+
+static void unite_straight(const struct chains *c, int32_t i, int32_t k, int depth)
+{
+    if (k - i == 1)
+        return;
+    int32_t cut = farthest(c, i, k);
+    if (cut == 0) {
+        unite(c, i, k);
+        return;
+    }
+    cut = depth < DEEP ? cut : i + (k - i) / 2;
+    unite_straight(c, i, cut, depth + 1);
+    unite_straight(c, cut, k, depth + 1);
+}
+
+/* Parents without a subsegment go. */
+static void number_parents(struct tri_mesh *mesh, tri_parent_id *number)
+{
+    tri_parent_id n = 0;
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
+        number[p] = TRI_NONE;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        assert(mesh->sub[s].parent >= 0 && mesh->sub[s].parent < mesh->n_parents);
+        number[mesh->sub[s].parent] = 0;
+    }
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
+        if (number[p] != TRI_NONE) {
+            mesh->parents[n] = mesh->parents[p];
+            number[p] = n++;
+        }
+    mesh->n_parents = n;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        mesh->sub[s].parent = number[mesh->sub[s].parent];
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
+        assert(mesh->on[v] < 0 || number[mesh->on[v]] != TRI_NONE);
+        mesh->on[v] = mesh->on[v] >= 0 ? number[mesh->on[v]] : mesh->on[v];
+    }
+}
+
+static void unite_all(struct chains *c)
+{
+    struct tri_mesh *mesh = c->mesh;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            if (!c->seen[s] && !is_joint(c, mesh->sub[s].v[k])) {
+                follow(c, s, mesh->sub[s].v[k]);
+                unite_straight(c, 0, c->n, 0);
+            }
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        if (!c->seen[s]) { /* closed */
+            follow(c, s, mesh->sub[s].v[0]);
+            unite_straight(c, 0, c->n, 0);
+        }
+}
+
+enum tri_status tri_unite_chains(struct tri_mesh *mesh, struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_subs;
+    struct chains c = {.mesh = mesh,
+                       .at = malloc(2 * (size_t)mesh->n_vertices * sizeof *c.at + 1),
+                       .seen = calloc(n + 1, sizeof *c.seen),
+                       .vertex = malloc((n + 1) * sizeof *c.vertex),
+                       .sub = malloc(n * sizeof *c.sub + 1)};
+    tri_parent_id *number = malloc((size_t)mesh->n_parents * sizeof *number + 1);
+    bool done = c.at && c.seen && c.vertex && c.sub && number;
+    if (done) {
+        list_ends(&c);
+        unite_all(&c);
+        number_parents(mesh, number);
+    }
+    free(number);
+    free(c.sub);
+    free(c.vertex);
+    free(c.seen);
+    free(c.at);
+    return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_subs);
+}

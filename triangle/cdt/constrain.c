@@ -1,0 +1,853 @@
+/* Segments into a Delaunay triangulation: each becomes a chain of subsegments, laid piece by piece.
+ *
+ * RULES (docs/theory.md, constraining segments). A vertex on the piece ends it (1); so does a vertex beside it that
+ * coordinates do not tell from one on it (2). Where the piece crosses a subsegment, both get a vertex in common (3).
+ * When all are laid, a subsegment with an apex beside it is laid again through that (4). No vertex ever moves.
+ *
+ * INVARIANT. Between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
+ * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
+ *
+ * THEOREM (end). Laying ends, with all segments laid or with an error that names one. For rules 1, 2 and 4 take a
+ * vertex from between the ends of pieces, in the order along the first segment there, and rule 3 is applied a bounded
+ * number of times. Debug builds assert each comes_between.
+ *
+ * Source of the idea: snap rounding (Hobby 1999), here without a grid. Order of the rounds: Amenta, Choi & Rote 2003.
+ * */
+#include "triangle/cdt/constrain.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/cdt/bundle.h"
+#include "triangle/refine/cavity.h"
+#include "triangle/cdt/crossing.h"
+#include "triangle/cdt/flip.h"
+#include "triangle/base/grow.h"
+#include "triangle/mesh/interpolate.h"
+#include "triangle/mesh/locate.h"
+#include "triangle/cdt/overlap.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/cdt/recover.h"
+#include "triangle/base/scatter.h"
+
+enum { BESIDE = 3 };
+enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
+enum { ROUNDS = 24 }; /* as many as make the first one small in any input */
+enum { HUB = 16 }; /* triangles around a vertex: with more it may be a hub */
+
+/* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
+ * others. */
+static const double NEAR = 0.5, APART = 2;
+
+static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
+
+struct layer {
+    struct tri_mesh *mesh;
+    const struct tri_pslg *pslg;
+    struct tri_cavity cavity;
+    struct tri_recovery recovery;
+    struct tri_flips flips;
+    tri_triangle_id *corner; /* [corner_capacity] a triangle at each vertex */
+    int32_t corner_capacity;
+    struct tri_course *course; /* [course_capacity] of each subsegment */
+    int32_t course_capacity;
+    struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
+    int32_t n_pieces, piece_capacity;
+    int32_t segment; /* the input segment that is being laid */
+    int64_t crossings, crossings_left; /* how often rule 3 may be applied, in all and from here on */
+    bool runs_along; /* has one met a vertex before its end? */
+    uint32_t step; /* see tri_stop_is_due */
+    struct tri_constrain_report *report;
+    struct tri_error *error;
+};
+
+static enum tri_status no_memory(struct layer *l)
+{
+    return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
+}
+
+static bool push_piece(struct layer *l, tri_vertex_id from, tri_vertex_id to, struct tri_course course)
+{
+    assert(from >= 0 && from < l->mesh->n_vertices && to >= 0 && to < l->mesh->n_vertices);
+    if (from == to)
+        return true;
+    bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
+    if (room)
+        l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
+    return room;
+}
+
+static int corner_of(const struct tri_triangle *t, tri_vertex_id v)
+{
+    assert(t->v[0] == v || t->v[1] == v || t->v[2] == v);
+    return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
+}
+
+/* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
+static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
+{
+    int k = corner_of(&mesh->tri[t], v);
+    tri_halfedge code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
+    return code == TRI_NONE ? TRI_NONE : tri_of(code);
+}
+
+/* Does the ray from a (corner k of t) to q leave through t: right edge included, left edge not? */
+static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
+    double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
+    if (r == 0) /* on the line of the right edge: ahead, not behind? */
+        return (right.x - a.x) * (q.x - a.x) + (right.y - a.y) * (q.y - a.y) > 0;
+    return r > 0 && s < 0;
+}
+
+static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[k]], left = mesh->xy[at->v[tri_prev[k]]];
+    return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
+}
+
+/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
+struct rotation {
+    tri_vertex_id vertex;
+    tri_triangle_id start, t;
+    struct tri_point q;
+    bool clockwise;
+};
+
+static struct rotation rotate_from(const struct layer *l, tri_vertex_id a, struct tri_point q)
+{
+    assert(l->corner[a] != TRI_NONE);
+    return (struct rotation){a, l->corner[a], l->corner[a], q, false};
+}
+
+/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
+ * the next one is at hand. After the last one r->t is TRI_NONE. */
+static tri_triangle_id rotate(const struct layer *l, struct rotation *r)
+{
+    tri_triangle_id t = r->t;
+    int k = corner_of(&l->mesh->tri[t], r->vertex);
+    if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
+        return t;
+    r->t = turn(l->mesh, t, r->vertex, !r->clockwise);
+    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
+        r->clockwise = true;
+        r->t = turn(l->mesh, r->start, r->vertex, false);
+    } else if (r->t == r->start) {
+        r->t = TRI_NONE;
+    }
+    return TRI_NONE;
+}
+
+/* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
+ * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
+ * end with fewer triangles. Remembered as the corner, so that the edges of a fan in order cost O(1) each. */
+static tri_triangle_id find_exit(struct layer *l, tri_vertex_id *a, tri_vertex_id *b)
+{
+    const tri_vertex_id from = *a, to = *b;
+    tri_triangle_id found = TRI_NONE;
+    struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
+    int end = 0;
+    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
+        end = n < HUB ? (n++, 0) : 1 - end;
+    if (found == TRI_NONE)
+        return TRI_NONE;
+    *a = end == 0 ? from : to;
+    *b = end == 0 ? to : from;
+    return l->corner[*a] = found;
+}
+
+static int32_t marker_of(const struct layer *l, struct tri_course course)
+{
+    return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
+}
+
+static bool set_course(struct layer *l, tri_sub_id s, struct tri_course course)
+{
+    bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
+    if (room)
+        l->course[s] = course;
+    return room;
+}
+
+static bool mark_edge(struct layer *l, tri_triangle_id t, int e, struct tri_course course)
+{
+    struct tri_mesh *mesh = l->mesh;
+    tri_link link = mesh->tri[t].n[e];
+    tri_vertex_id from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
+    if (link < 0) {
+        assert(~link < mesh->n_subs);
+        l->course[~link] = tri_course_both(l->course[~link], course);
+        return true;
+    }
+    if (tri_mesh_reserve_subs(mesh, 1, l->error))
+        return false;
+    tri_sub_id s = tri_mesh_add_sub(mesh, from, to, 0, course.first);
+    mesh->sub[s].side[0] = tri_code(t, e);
+    mesh->sub[s].side[1] = link;
+    mesh->tri[t].n[e] = ~s;
+    *tri_link_at(mesh, link) = ~s;
+    return set_course(l, s, course);
+}
+
+static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
+{
+    assert(segment >= 0 && segment < l->pslg->n_segments);
+    return l->mesh->xy[l->pslg->segments[2 * segment + k]];
+}
+
+/* Does v lie within so many resolutions (of the segment's larger end) of the line of an input segment? */
+static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, double resolutions)
+{
+    const int32_t *ends = &l->pslg->segments[2 * segment];
+    if (v == ends[0] || v == ends[1])
+        return true; /* nearly always */
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
+    double resolution = fmax(tri_resolution(a), tri_resolution(b));
+    return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
+}
+
+/* > 0: q comes after p in the order along an input segment; 0: they are one place. What is as far along it is ordered
+ * across it. The sign is exact: that of a turn, for the first of them with both points turned by a right angle. */
+static double advance(const struct layer *l, int32_t segment, struct tri_point p, struct tri_point q)
+{
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1), from = {-p.y, p.x}, to = {-q.y, q.x};
+    double along = tri_turn(a, b, from, to);
+    return along != 0 ? along : tri_turn(a, b, p, q);
+}
+
+/* Does q come between the ends of the piece, in the order along its segment? See THEOREM. */
+static bool comes_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+{
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
+    double first = advance(l, piece->course.first, a, q), second = advance(l, piece->course.first, q, b);
+    return (first > 0 && second > 0) || (first < 0 && second < 0);
+}
+
+/* Does q lie between the ends of the piece, along the piece itself? */
+static bool lies_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+{
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
+    double x = b.x - a.x, y = b.y - a.y; /* from either end, since q may be next to it */
+    return x * (q.x - a.x) + y * (q.y - a.y) > 0 && x * (q.x - b.x) + y * (q.y - b.y) < 0;
+}
+
+/* By its ends: files may count from 0 or from 1. */
+static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
+{
+    const double unit = l->mesh->unit; /* a power of two */
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
+    return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
+                    "the segment from (%.17g, %.17g) to (%.17g, %.17g) cannot be kept to its line: "
+                    "too much lies within rounding of it", unit * a.x, unit * a.y, unit * b.x, unit * b.y);
+}
+
+static enum tri_status check_distance(const struct layer *l, struct tri_course course, tri_vertex_id v)
+{
+    int32_t segment[2] = {course.first, course.marked};
+    for (int k = 0; k < 2; k++)
+        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
+            return cannot_keep(l, segment[k]);
+    return TRI_OK;
+}
+
+/* Makes ab, whose gap begins in triangle t, a subsegment. */
+static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
+                                struct tri_course course)
+{
+    struct tri_mesh *mesh = l->mesh;
+    enum tri_status status = check_distance(l, course, a);
+    status = status ? status : check_distance(l, course, b);
+    if (status)
+        return status;
+    int k = corner_of(&mesh->tri[t], a);
+    bool right = mesh->tri[t].v[tri_next[k]] == b;
+    if (right || mesh->tri[t].v[tri_prev[k]] == b)
+        return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
+    tri_halfedge code;
+    status = tri_recover_edge(&l->recovery, mesh, t, a, b, &code, l->error);
+    if (status)
+        return status;
+    for (int32_t i = 0; i < l->recovery.n_crossed; i++)
+        for (int c = 0; c < 3; c++)
+            l->corner[mesh->tri[tri_of(l->recovery.crossed[i])].v[c]] = tri_of(l->recovery.crossed[i]);
+    l->corner[a] = l->corner[b] = tri_of(code);
+    return mark_edge(l, tri_of(code), tri_edge(code), course) ? TRI_OK : no_memory(l);
+}
+
+static bool keep_corners(struct layer *l, tri_vertex_id v)
+{
+    bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
+    if (!room)
+        return false;
+    l->flips.corner = l->corner;
+    for (int32_t i = 0; i < l->cavity.n_edges; i++) {
+        const struct tri_triangle *t = &l->mesh->tri[l->cavity.edge[i].triangle];
+        for (int k = 0; k < 3; k++)
+            l->corner[t->v[k]] = l->cavity.edge[i].triangle;
+    }
+    return l->corner[v] != TRI_NONE;
+}
+
+/* Takes subsegment s, which has triangles on both sides, out of the mesh; the last one takes its number. */
+static bool take_up(struct layer *l, tri_sub_id s)
+{
+    struct tri_mesh *mesh = l->mesh;
+    tri_halfedge left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
+    assert(left != TRI_NONE && right != TRI_NONE);
+    assert(*tri_link_at(mesh, left) == ~s && *tri_link_at(mesh, right) == ~s);
+    *tri_link_at(mesh, left) = right;
+    *tri_link_at(mesh, right) = left;
+    tri_sub_id last = --mesh->n_subs;
+    mesh->sub[s] = mesh->sub[last];
+    l->course[s] = l->course[last];
+    for (int side = 0; s != last && side < 2; side++)
+        if (mesh->sub[s].side[side] != TRI_NONE)
+            *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
+    return tri_flip_touch(&l->flips, tri_of(left)) && tri_flip_touch(&l->flips, tri_of(right)) &&
+           tri_flip_legalise(&l->flips);
+}
+
+/* The triangle that holds q (TRI_NONE outside the hull, which is convex), by a walk from triangle t. */
+static tri_triangle_id locate(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
+        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        if (next == t || next == TRI_NONE)
+            return next;
+        t = next;
+    }
+    return TRI_NONE;
+}
+
+/* A subsegment that is an edge of triangle t and has q on it; TRI_NONE if there is none. */
+static tri_sub_id sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0 && tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) == 0)
+            return ~at->n[e];
+    return TRI_NONE;
+}
+
+/* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
+ * place. TRI_NONE where there is none. */
+static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
+{
+    const struct tri_point step = {tri_resolution(*p), tri_resolution(*p)};
+    for (int i = 0; i < TRI_PLACES; i++) {
+        struct tri_point q = tri_place_beside(*p, step, i);
+        tri_triangle_id t = locate(l->mesh, l->corner[near], q);
+        tri_sub_id s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
+        if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {
+            *p = q;
+            return t;
+        }
+    }
+    return TRI_NONE;
+}
+
+/* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). On the hull the edge
+ * stays, with nothing along it. */
+static bool take_apart(struct layer *l, tri_sub_id s)
+{
+    const struct tri_subsegment old = l->mesh->sub[s];
+    struct tri_course course = l->course[s];
+    l->course[s] = NOBODY;
+    return (tri_is_boundary(&old) || take_up(l, s)) && push_piece(l, old.v[0], old.v[1], course);
+}
+
+/* Cuts the pieces from number `first` on, the last of the stack, at vertex v: the first two of them, which cross there,
+ * in any case, the others where it lies between their ends. */
+static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
+{
+    assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
+    for (int32_t i = l->n_pieces - 1; i >= first; i--) {
+        struct tri_piece whole = l->piece[i];
+        if (whole.from == v || whole.to == v || (i > first + 1 && !lies_between(l, l->mesh->xy[v], &whole)))
+            continue;
+        l->piece[i].from = v;
+        if (!push_piece(l, whole.from, v, whole.course))
+            return false;
+    }
+    return true;
+}
+
+/* A vertex that pieces may share instead of a crossing of their own. */
+struct choice {
+    tri_vertex_id vertex; /* TRI_NONE: none yet */
+    int astray;           /* of the two pieces that cross, how many have it not between their ends */
+    double distance;      /* squared, from the crossing */
+};
+
+/* Of the pieces from number `first` on the first two are those that cross. */
+static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
+                       struct choice *best)
+{
+    struct choice now = {v, 0, tri_distance2(l->mesh->xy[v], p)};
+    if (now.distance > within * within)
+        return;
+    for (int32_t i = first; i < first + 2; i++)
+        now.astray += l->piece[i].from != v && l->piece[i].to != v && !lies_between(l, l->mesh->xy[v], &l->piece[i]);
+    if (best->vertex == TRI_NONE || now.astray < best->astray ||
+        (now.astray == best->astray && now.distance < best->distance))
+        *best = now;
+}
+
+/* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
+ * cavity of p, as far as they are within a distance of it: the one that leads fewest of the two astray, then the
+ * nearest. */
+static struct choice choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
+                                   double within)
+{
+    struct choice best = {TRI_NONE, 0, 0};
+    assert(first + 2 <= l->n_pieces && within >= 0);
+    for (int32_t i = first; i < l->n_pieces; i++) {
+        try_vertex(l, first, l->piece[i].from, p, within, &best);
+        try_vertex(l, first, l->piece[i].to, p, within, &best);
+    }
+    for (int k = 0; t != TRI_NONE && k < 3; k++)
+        try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
+    for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_edges; i++)
+        try_vertex(l, first, l->cavity.edge[i].a, p, within, &best);
+    return best;
+}
+
+/* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
+static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along,
+                                    tri_vertex_id *vertex)
+{
+    struct tri_mesh *mesh = l->mesh;
+    enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
+    status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
+    if (status)
+        return status;
+    tri_vertex_id v = *vertex = mesh->n_vertices++;
+    struct tri_point from = mesh->xy[along->from], to = mesh->xy[along->to];
+    double x = to.x - from.x, y = to.y - from.y;
+    mesh->xy[v] = p;
+    mesh->on[v] = TRI_VERTEX_INPUT;
+    mesh->vertex_markers[v] = marker_of(l, along->course);
+    tri_interpolate_edge(mesh, along->from, along->to,
+                         ((p.x - from.x) * x + (p.y - from.y) * y) / (x * x + y * y), v);
+    tri_cavity_fill(&l->cavity, mesh, v);
+    l->report->crossings++;
+    return keep_corners(l, v) ? TRI_OK : no_memory(l);
+}
+
+/* Where the pieces cross: at the crossing of their input segments, unless bends have moved it away from there. */
+static struct tri_point crossing_of(const struct layer *l, const struct tri_piece *a, const struct tri_piece *b)
+{
+    const struct tri_point *xy = l->mesh->xy;
+    struct tri_point here = xy[a->from], there;
+    int32_t s = a->course.first, t = b->course.first;
+    bool crosses = tri_crossing(xy[a->from], xy[a->to], xy[b->from], xy[b->to], &here);
+    assert(crosses);
+    (void)crosses;
+    if (s == t || s == TRI_NONE || t == TRI_NONE ||
+        !tri_crossing(end_of(l, s, 0), end_of(l, s, 1), end_of(l, t, 0), end_of(l, t, 1), &there))
+        return here;
+    double reach = BESIDE * tri_resolution(here);
+    return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
+}
+
+/* So near to a segment that v keeps to whatever shares a piece with it, too: that lies within BESIDE of it. */
+static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
+{
+    return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ULPS - BESIDE);
+}
+
+/* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
+ * near its segment and, as what else runs along the piece may have finer coordinates, near the piece where it is. */
+static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
+                    double *least)
+{
+    if (!lies_between(l, l->mesh->xy[end], piece) || !keeps_near(l, piece->course.first, end) ||
+        !keeps_near(l, piece->course.marked, end))
+        return;
+    double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
+    if (distance < *least && distance <= (TRI_SEGMENT_ULPS - BESIDE) * tri_resolution(l->mesh->xy[end]))
+        *nearest = end, *least = distance;
+}
+
+/* The end of what piece number `first` crosses, the pieces behind it on the stack, where that piece can be cut, so that
+ * they stay as they are; else an end of it where they can; TRI_NONE where there is none. */
+static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
+{
+    tri_vertex_id nearest = TRI_NONE;
+    double least = HUGE_VAL;
+    const struct tri_piece *piece = &l->piece[first];
+    for (int32_t i = first + 1; i < l->n_pieces; i++) {
+        try_end(l, piece, l->piece[i].from, &nearest, &least);
+        try_end(l, piece, l->piece[i].to, &nearest, &least);
+    }
+    for (int32_t i = first + 1; nearest == TRI_NONE && i < l->n_pieces; i++) {
+        try_end(l, &l->piece[i], piece->from, &nearest, &least);
+        try_end(l, &l->piece[i], piece->to, &nearest, &least);
+    }
+    return nearest;
+}
+
+/* Rule 3: the piece crosses subsegment s. */
+static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
+{
+    assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
+    if (l->crossings_left-- == 0)
+        return cannot_keep(l, l->segment);
+    const int32_t first = l->n_pieces;
+    const tri_vertex_id near = l->mesh->sub[s].v[0];
+    tri_sub_id on;
+    tri_triangle_id t;
+    if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
+        return no_memory(l);
+    struct tri_point p = crossing_of(l, &l->piece[first], &l->piece[first + 1]);
+    for (;;) {
+        t = find_place(l, near, &p);
+        on = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, p);
+        if (on == TRI_NONE)
+            break;
+        if (!take_apart(l, on))
+            return no_memory(l);
+    }
+    l->cavity.n_edges = 0;
+    enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
+    if (found == TRI_SEARCH_NO_MEMORY)
+        return no_memory(l);
+    bool late = l->crossings_left < l->crossings / 2;
+    bool room = found == TRI_SEARCH_FOUND && lies_between(l, p, &l->piece[first]) &&
+                lies_between(l, p, &l->piece[first + 1]);
+    struct choice shared = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    tri_vertex_id v = late ? nearest_end(l, first) : TRI_NONE;
+    if (v == TRI_NONE && shared.astray == 0)
+        v = shared.vertex;
+    if (v == TRI_NONE && !room) {
+        v = shared.vertex == TRI_NONE && !late ? nearest_end(l, first) : shared.vertex;
+        if (v == TRI_NONE)
+            return cannot_keep(l, l->segment);
+    }
+    if (v != TRI_NONE) {
+        l->report->bent++;
+    } else {
+        bool later = l->piece[first].course.first > l->piece[first + 1].course.first;
+        enum tri_status status = add_crossing(l, p, &l->piece[first + later], &v);
+        if (status)
+            return status;
+    }
+    return finish_parts(l, first, v) ? TRI_OK : no_memory(l);
+}
+
+/* What a piece meets first. */
+struct meeting {
+    tri_vertex_id end; /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
+    tri_sub_id across; /* that subsegment, else TRI_NONE */
+    tri_vertex_id beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
+    double distance;
+};
+
+/* Rule 2. */
+static void consider(const struct layer *l, const struct tri_piece *piece, tri_vertex_id v, double det,
+                     struct meeting *met)
+{
+    const struct tri_point *xy = l->mesh->xy;
+    struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
+    double x = b.x - a.x, y = b.y - a.y, length2 = x * x + y * y, at = x * (q.x - a.x) + y * (q.y - a.y);
+    double far = fmax(tri_resolution(q), fmax(tri_resolution(a), tri_resolution(b)));
+    if (v == piece->from || v == piece->to || !(at > 0 && at < length2) ||
+        fabs(det) > 8 * far * (fabs(x) + fabs(y)))
+        return;
+    double distance = tri_line_distance(a, b, q), near = NEAR * tri_resolution(q);
+    if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
+        !keeps_to(l, piece->course.first, v, BESIDE) || !comes_between(l, q, piece) ||
+        (met->beside != TRI_NONE && met->distance <= distance))
+        return;
+    met->beside = v;
+    met->distance = distance;
+}
+
+/* t: the triangle through which the piece leaves its start. */
+static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, tri_triangle_id t)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
+    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
+    if (t == TRI_NONE)
+        return met;
+    int e = corner_of(&mesh->tri[t], piece->from);
+    tri_vertex_id right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
+    double at_right = tri_orient2d(pa, pb, mesh->xy[right]), at_left = tri_orient2d(pa, pb, mesh->xy[left]);
+    if (at_right == 0 || at_left == 0) {
+        met.end = at_right == 0 ? right : left;
+        return met;
+    }
+    consider(l, piece, right, at_right, &met);
+    consider(l, piece, left, at_left, &met);
+    for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
+        l->report->looked_at++;
+        tri_link link = mesh->tri[t].n[e];
+        if (link < 0) {
+            met.across = ~link;
+            return met;
+        }
+        t = tri_of(link);
+        e = tri_edge(link);
+        tri_vertex_id o = mesh->tri[t].v[e];
+        double side = o == piece->to ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
+        if (side == 0) {
+            met.end = o;
+            return met;
+        }
+        consider(l, piece, o, side, &met);
+        if (met.beside != TRI_NONE && end == INT64_MAX)
+            end = 2 * step + WINDOW;
+        e = side > 0 ? tri_next[e] : tri_prev[e];
+    }
+    return met;
+}
+
+/* The piece ends at vertex v for now; the rest waits below it on the stack. */
+static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, tri_vertex_id v)
+{
+    assert(comes_between(l, l->mesh->xy[v], piece));
+    bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
+    return room ? TRI_OK : no_memory(l);
+}
+
+/* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
+static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
+{
+    tri_triangle_id t = find_exit(l, &piece.from, &piece.to);
+    struct meeting met = look_ahead(l, &piece, t);
+    assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
+    l->runs_along |= met.beside != TRI_NONE || (met.end != TRI_NONE && met.end != piece.to);
+    if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece.to)) {
+        l->report->bent++;
+        return stop_at(l, &piece, met.beside);
+    }
+    if (met.beside != TRI_NONE)
+        return stop_at(l, &piece, met.end);
+    if (met.across != TRI_NONE)
+        return cross(l, &piece, met.across);
+    assert(met.end != TRI_NONE); /* the hull is convex */
+    assert(met.end == piece.to || comes_between(l, l->mesh->xy[met.end], &piece));
+    enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
+    if (status)
+        return status;
+    return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
+}
+
+/* Rule 3 may be applied so often from now on. */
+static void allow_crossings(struct layer *l)
+{
+    /* One for each subsegment crossed is usual. */
+    l->crossings = l->crossings_left = 200 + 10 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
+}
+
+/* Lays what is on the stack. */
+static enum tri_status lay_pieces(struct layer *l)
+{
+    while (l->n_pieces > 0) {
+        if (tri_stop_is_due(l->mesh->stop, &l->step))
+            return tri_fail_stopped(l->error);
+        enum tri_status status = lay_piece(l, l->piece[--l->n_pieces]);
+        if (status)
+            return status;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
+{
+    l->n_pieces = 0;
+    l->segment = segment->course.first;
+    allow_crossings(l);
+    return push_piece(l, segment->from, segment->to, segment->course) ? lay_pieces(l) : no_memory(l);
+}
+
+/* Rule 4: the nearer apex beside subsegment s; TRI_NONE if there is none. */
+static tri_vertex_id find_beside(const struct layer *l, tri_sub_id s)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
+    struct tri_piece piece = {sub->v[0], sub->v[1], l->course[s]};
+    for (int side = 0; side < 2 && piece.course.first != TRI_NONE; side++) {
+        if (sub->side[side] == TRI_NONE)
+            continue;
+        tri_vertex_id v = tri_apex(mesh, sub->side[side]);
+        struct tri_relative a = tri_relative(&mesh->xy[piece.from], mesh->xy[v]);
+        struct tri_relative b = tri_relative(&mesh->xy[piece.to], mesh->xy[v]);
+        consider(l, &piece, v, tri_cross(a, b), &met);
+    }
+    return met.beside;
+}
+
+static enum tri_status lead_through(struct layer *l, tri_sub_id s, tri_vertex_id v)
+{
+    l->n_pieces = 0;
+    l->segment = l->course[s].first;
+    l->report->bent++;
+    return take_apart(l, s) && finish_parts(l, 0, v) ? lay_pieces(l) : no_memory(l);
+}
+
+static enum tri_status close_slits(struct layer *l)
+{
+    allow_crossings(l);
+    for (bool again = true; again;) {
+        again = false;
+        for (tri_sub_id s = 0; s < l->mesh->n_subs;) {
+            tri_vertex_id v = find_beside(l, s);
+            enum tri_status status = v == TRI_NONE ? TRI_OK : lead_through(l, s, v);
+            if (status)
+                return status;
+            again = again || v != TRI_NONE;
+            s += v == TRI_NONE;
+        }
+    }
+    return TRI_OK;
+}
+
+/* The segments that have a meaning, as pieces. */
+static int32_t list_segments(struct layer *l, struct tri_piece *piece)
+{
+    const struct tri_pslg *pslg = l->pslg;
+    const int32_t *twin = l->mesh->twin, *markers = pslg->segment_markers;
+    int32_t n = 0;
+    for (int32_t k = 0; k < pslg->n_segments; k++) {
+        tri_vertex_id a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
+        bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
+        if (valid && twin) {
+            a = twin[a];
+            b = twin[b];
+        }
+        if (!valid || a == b)
+            l->report->skipped++;
+        else if (l->corner[a] != TRI_NONE && l->corner[b] != TRI_NONE) /* else all points are on one line */
+            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE, true}};
+    }
+    return n;
+}
+
+static tri_triangle_id exit_of(void *context, tri_vertex_id *from, tri_vertex_id *to)
+{
+    return find_exit(context, from, to);
+}
+
+/* A round has about as many pieces as all before it. */
+static int round_of(const struct tri_piece *piece)
+{
+    int round = ROUNDS - 1;
+    for (uint32_t draw = tri_scatter((uint32_t)piece->course.first); round > 0 && draw % 2 == 0; draw /= 2)
+        round--;
+    return round;
+}
+
+static bool put_in_rounds(struct tri_piece **piece, int32_t n)
+{
+    int32_t at[ROUNDS + 1] = {0};
+    struct tri_piece *sorted = malloc(((size_t)n + 1) * sizeof *sorted);
+    if (!sorted)
+        return false;
+    for (int32_t i = 0; i < n; i++)
+        at[round_of(&(*piece)[i]) + 1]++;
+    for (int r = 0; r < ROUNDS; r++)
+        at[r + 1] += at[r];
+    for (int32_t i = 0; i < n; i++)
+        sorted[at[round_of(&(*piece)[i])]++] = (*piece)[i];
+    free(*piece);
+    *piece = sorted;
+    return true;
+}
+
+/* Once a piece runs along vertices, others may do so, too: those that are left are shared. */
+static enum tri_status lay_from(struct layer *l, struct tri_piece **piece, int32_t *n)
+{
+    int32_t k = 0;
+    enum tri_status status = TRI_OK;
+    for (; !status && k < *n && !l->runs_along; k++)
+        status = lay_segment(l, &(*piece)[k]);
+    *n -= k;
+    memmove(*piece, *piece + k, (size_t)*n * sizeof **piece);
+    if (!status && !tri_share_bundles(l->mesh, l->pslg->n_points, piece, n, exit_of, l, &l->report->looked_at))
+        status = no_memory(l);
+    for (k = 0; !status && k < *n; k++)
+        status = lay_segment(l, &(*piece)[k]);
+    return status;
+}
+
+static enum tri_status lay_all(struct layer *l)
+{
+    struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
+    int32_t n = piece ? list_segments(l, piece) : 0;
+    enum tri_status status = piece && put_in_rounds(&piece, n) ? TRI_OK : no_memory(l);
+    status = status ? status : lay_from(l, &piece, &n);
+    free(piece);
+    return status ? status : close_slits(l);
+}
+
+static enum tri_status find_corners(struct layer *l)
+{
+    struct tri_mesh *mesh = l->mesh;
+    l->corner_capacity = mesh->n_vertices + 64;
+    l->corner = l->flips.corner = malloc((size_t)l->corner_capacity * sizeof *l->corner);
+    if (!l->corner)
+        return no_memory(l);
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
+        l->corner[v] = TRI_NONE;
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            l->corner[mesh->tri[t].v[k]] = t;
+    return TRI_OK;
+}
+
+static void free_layer(struct layer *l)
+{
+    tri_cavity_free(&l->cavity);
+    tri_recovery_free(&l->recovery);
+    free(l->corner);
+    free(l->course);
+    free(l->piece);
+    tri_flips_free(&l->flips);
+}
+
+/* Hull edges, along which nothing has been laid yet. */
+static enum tri_status list_courses(struct layer *l)
+{
+    for (tri_sub_id s = 0; s < l->mesh->n_subs; s++)
+        if (!set_course(l, s, NOBODY))
+            return no_memory(l);
+    return TRI_OK;
+}
+
+/* Gives each subsegment its marker, and a parent of its own: as many as there are, since each came with one, or fewer,
+ * since some were taken up. */
+static void settle(struct layer *l)
+{
+    struct tri_mesh *mesh = l->mesh;
+    assert(mesh->n_subs <= mesh->n_parents && mesh->n_subs <= l->course_capacity);
+    mesh->n_parents = 0;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        struct tri_subsegment *sub = &mesh->sub[s];
+        sub->marker = marker_of(l, l->course[s]);
+        sub->parent = mesh->n_parents++;
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
+                                                         {NAN, NAN}};
+    }
+}
+
+enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
+                              struct tri_error *error)
+{
+    struct layer l = {.mesh = mesh, .flips.mesh = mesh, .pslg = pslg, .report = report, .error = error};
+    *report = (struct tri_constrain_report){0};
+    enum tri_status status = find_corners(&l);
+    status = status ? status : list_courses(&l);
+    status = status ? status : lay_all(&l);
+    if (!status)
+        settle(&l);
+    free_layer(&l);
+    return status;
+}

@@ -1,0 +1,171 @@
+/* Lawson's flips (1977): where the vertex beyond an edge lies in the circle of the triangle before it, the edge gives
+ * way to the other diagonal of its quadrilateral, if that is convex. Each flip lowers the surface that the
+ * triangulation spans when its vertices are lifted to the paraboloid, so there is an end: the constrained Delaunay
+ * triangulation (Lee & Lin 1986). */
+#include "triangle/cdt/flip.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/cdt/flip_history.h"
+#include "triangle/base/grow.h"
+#include "triangle/geometry/predicates.h"
+
+void tri_flips_free(struct tri_flips *f) { free(f->touched); }
+
+static bool make_room(struct tri_flips *f)
+{
+    return tri_grow(&f->touched, &f->capacity, f->n_touched + 3, sizeof *f->touched);
+}
+
+bool tri_flip_touch(struct tri_flips *f, tri_triangle_id t)
+{
+    assert(t >= 0 && t < f->mesh->n_triangles && tri_is_live(&f->mesh->tri[t]));
+    if (!make_room(f))
+        return false;
+    for (int e = 0; e < 3; e++)
+        f->touched[f->n_touched++] = tri_code(t, e);
+    return true;
+}
+
+/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
+ * o), the neighbour (n, o, s). Returns the neighbour. */
+static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
+{
+    struct tri_mesh *mesh = f->mesh;
+    struct tri_triangle *near = &mesh->tri[t];
+    tri_triangle_id u = tri_of(near->n[e]);
+    int g = tri_edge(near->n[e]);
+    struct tri_triangle *far = &mesh->tri[u];
+    assert(near->n[e] >= 0 && far->n[g] == tri_code(t, e));
+    tri_vertex_id n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[g];
+    tri_link nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]];
+    tri_link ro = far->n[tri_next[g]], os = far->n[tri_prev[g]];
+    assert(far->v[tri_next[g]] == s && far->v[tri_prev[g]] == r && n != o);
+    near->v[0] = n, near->v[1] = r, near->v[2] = o;
+    near->n[0] = ro, near->n[1] = tri_code(u, 2), near->n[2] = nr;
+    far->v[0] = n, far->v[1] = o, far->v[2] = s;
+    far->n[0] = os, far->n[1] = sn, far->n[2] = tri_code(t, 1);
+    tri_relink(mesh, ro, r, tri_code(t, 0));
+    tri_relink(mesh, nr, n, tri_code(t, 2));
+    tri_relink(mesh, os, o, tri_code(u, 0));
+    tri_relink(mesh, sn, s, tri_code(u, 1));
+    if (f->corner) {
+        f->corner[n] = f->corner[r] = f->corner[o] = t;
+        f->corner[s] = u;
+    }
+    return u;
+}
+
+static bool is_convex(const struct tri_mesh *mesh, tri_triangle_id t, int e)
+{
+    assert(mesh->tri[t].n[e] >= 0);
+    const struct tri_triangle *near = &mesh->tri[t];
+    struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
+    struct tri_point o = mesh->xy[tri_apex(mesh, near->n[e])];
+    return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
+}
+
+/* Does the apex beyond edge e of t lie inside the circle of t? */
+static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    const tri_vertex_id *v = mesh->tri[t].v;
+    tri_link link = mesh->tri[t].n[e];
+    assert(link >= 0 && tri_is_live(&mesh->tri[tri_of(link)]));
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    struct tri_point apex = mesh->xy[tri_apex(mesh, link)];
+    return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
+}
+
+bool tri_flip_legalise(struct tri_flips *f)
+{
+    struct tri_mesh *mesh = f->mesh;
+    while (f->n_touched > 0) {
+        tri_halfedge code = f->touched[--f->n_touched];
+        tri_triangle_id t = tri_of(code);
+        int e = tri_edge(code);
+        if (mesh->tri[t].n[e] < 0 || !is_illegal(f, t, e) || !is_convex(mesh, t, e))
+            continue;
+        if (f->history && !tri_flip_history_add(f->history, mesh, t, e))
+            return false;
+        tri_triangle_id u = flip(f, t, e);
+        if (!tri_flip_touch(f, t) || !tri_flip_touch(f, u))
+            return false;
+    }
+    return true;
+}
+
+/* --- flips of a whole mesh */
+
+/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
+ * triangles which has the lower number. */
+struct suspicion {
+    struct tri_flips *flips;
+    tri_triangle_id *suspect; /* [n_triangles] each share's behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+};
+
+static void suspect_share(void *context, size_t share)
+{
+    struct suspicion *s = context;
+    const struct tri_mesh *mesh = s->flips->mesh;
+    struct tri_range range = tri_share(share, mesh->n_triangles);
+    uint32_t step = 0;
+    for (tri_triangle_id t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->flips, t, e)) {
+                s->suspect[range.first + s->n[share]++] = t;
+                break;
+            }
+    assert(s->n[share] <= range.last - range.first);
+}
+
+/* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
+static bool touch_upwards(struct tri_flips *f, tri_triangle_id t)
+{
+    if (!make_room(f))
+        return false;
+    for (int e = 0; e < 3; e++)
+        if (f->mesh->tri[t].n[e] > tri_code(t, e))
+            f->touched[f->n_touched++] = tri_code(t, e);
+    return true;
+}
+
+/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
+static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error *error)
+{
+    struct tri_flips *f = s->flips;
+    enum tri_status status = tri_stop_is_asked(f->mesh->stop) ? tri_fail_stopped(error) : TRI_OK;
+    uint32_t step = 0;
+    for (size_t share = 0; share < tri_shares(f->mesh->n_triangles); share++) {
+        const tri_triangle_id *suspect = s->suspect + tri_share(share, f->mesh->n_triangles).first;
+        for (int32_t i = 0; !status && i < s->n[share]; i++)
+            if (tri_stop_is_due(f->mesh->stop, &step))
+                status = tri_fail_stopped(error);
+            else if (!touch_upwards(f, suspect[i]) || !tri_flip_legalise(f))
+                status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    }
+    return status;
+}
+
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error)
+{
+    struct tri_flip_history history = {0};
+    struct tri_flips f = {.mesh = mesh, .ties_stay = true, .history = mesh->n_regions > 1 ? &history : NULL};
+    struct suspicion s = {&f, malloc(((size_t)mesh->n_triangles + 1) * sizeof *s.suspect), {0}};
+    enum tri_status status = TRI_OK;
+    if (!s.suspect || (f.history && !tri_flip_history_begin(f.history, mesh)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    if (!status) {
+        tri_execute(executor, tri_shares(mesh->n_triangles), suspect_share, &s);
+        status = flip_suspects(&s, error);
+    }
+    if (!status && f.history)
+        tri_flip_history_settle(f.history, mesh);
+    tri_flip_history_free(&history);
+    tri_flips_free(&f);
+    free(s.suspect);
+    return status;
+}

@@ -1,0 +1,44 @@
+/* Edge flips: from any triangulation to the constrained Delaunay triangulation. */
+#ifndef TRIANGLE_CDT_FLIP_H
+#define TRIANGLE_CDT_FLIP_H
+
+#include "triangle/mesh/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
+ * stays as it is. Regions stay on their ground: a triangle that was flipped has the one in which its centroid lay in
+ * the mesh as it was; ground too narrow for any centroid gives its region up. O(triangles) where little is to do, and
+ * near that in practice; flips may be quadratic (a fan of n triangles over a thin ellipse), and their history is
+ * then taken in parts. On TRI_NO_MEMORY the mesh is valid, but for its regions. */
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error);
+
+struct tri_flip_history; /* triangle/cdt/flip_history.h */
+
+/* The same at one place: whoever changes triangles touches them, then makes them legal. Without a history a triangle
+ * keeps the region of its number. */
+struct tri_flips {
+    struct tri_mesh *mesh;
+    struct tri_flip_history *history; /* NULL, or hears of each flip before it is made; not owned */
+    tri_triangle_id *corner; /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
+    bool ties_stay;          /* of four points on one circle nothing is flipped; else coordinates break the tie */
+    tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */
+    int32_t n_touched, capacity;
+};
+
+void tri_flips_free(struct tri_flips *flips);
+
+/* The three edges of triangle t are to be tested. False: out of memory. */
+bool tri_flip_touch(struct tri_flips *flips, tri_triangle_id t);
+
+/* Lawson: flips what is not Delaunay until everything touched is. False: out of memory; the mesh is valid then. */
+bool tri_flip_legalise(struct tri_flips *flips);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,28 @@
+/* Recovery of an edge: the triangles that the edge crosses make way for it. */
+#ifndef TRIANGLE_CDT_RECOVER_H
+#define TRIANGLE_CDT_RECOVER_H
+
+#include "triangle/mesh/mesh.h"
+
+/* Work space, kept from call to call; all zero to begin with. */
+struct tri_recovery {
+    int32_t n_crossed, n_left; /* what the last call has replaced: so many triangles; vertices left of the edge */
+    tri_halfedge *crossed;     /* [n_crossed] codes of their edges; the new triangles get the numbers of these */
+    tri_triangle_id *pool;     /* [n_crossed] free ones among these triangles */
+    int32_t n_free, crossed_capacity, room;
+    struct tri_recovery_place *at;
+    struct tri_recovery_node *gap[2];
+};
+
+void tri_recovery_free(struct tri_recovery *r);
+
+/* Makes ab an edge of a mesh that is constrained Delaunay, ties broken as by tri_in_circle, and keeps it so: of the
+ * union of the m triangles that the open segment ab crosses, the polygon left of ab and that on the right each get
+ * their constrained Delaunay triangulation. t is the triangle at a through whose interior ab leaves. Neither a vertex
+ * nor a subsegment lies on, or crosses, the open segment. *code receives the edge as the triangle left of a -> b sees
+ * it; ab is no subsegment yet. Triangles keep their regions. O(m log m) time, O(m) memory; TRI_NO_MEMORY comes before
+ * anything is changed. */
+enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, tri_triangle_id t,
+                                 tri_vertex_id a, tri_vertex_id b, tri_halfedge *code, struct tri_error *error);
+
+#endif

@@ -1,0 +1,19 @@
+/* In which face of the segments does a point lie? */
+#ifndef TRIANGLE_MESH_LOCATE_H
+#define TRIANGLE_MESH_LOCATE_H
+
+#include "triangle/mesh/mesh.h"
+
+/* One step of a visibility walk to q: the triangle across an edge of t that q lies behind, TRI_NONE where that is the
+ * boundary, t itself where it holds q. In a constrained triangulation such a walk may go in circles: so the edge that
+ * is tried first turns with the number of the step. */
+tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q);
+
+/* For each of n points, in the mesh's coordinates and anywhere in the plane, a triangle of the face that holds it: one
+ * that is reached from it without crossing a subsegment; TRI_NONE outside. Of a point on a subsegment any face at it
+ * may be told. The mesh fills its convex hull. O((triangles + n) log(triangles + n)) at worst, whatever the shapes;
+ * near O(n log n) in a good triangulation. */
+enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
+                                 tri_triangle_id *faces, struct tri_error *error);
+
+#endif

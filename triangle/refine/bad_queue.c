@@ -1,0 +1,193 @@
+/* Buckets of linked blocks over one pool; a ring with a stack behind it. */
+#include "triangle/refine/bad_queue.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/base/grow.h"
+
+enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1, MOST_BLOCKS = INT32_MAX / TRI_BLOCK };
+
+bool tri_bad_queue_init(struct tri_bad_queue *queue)
+{
+    *queue = (struct tri_bad_queue){.free_block = NIL};
+    for (int b = 0; b < TRI_BUCKETS; b++)
+        queue->bucket[b] = (struct tri_bucket){.first = NIL, .last = NIL};
+    queue->window = malloc(TRI_WINDOW * sizeof *queue->window);
+    return queue->window;
+}
+
+void tri_bad_queue_free(struct tri_bad_queue *queue)
+{
+    free(queue->block);
+    free(queue->window);
+    free(queue->cold);
+    *queue = (struct tri_bad_queue){0};
+}
+
+static int32_t take_block(struct tri_bad_queue *queue)
+{
+    int32_t block = queue->free_block;
+    if (block != NIL)
+        queue->free_block = queue->block[block].next;
+    else if (queue->n_blocks < MOST_BLOCKS &&
+             tri_grow(&queue->block, &queue->block_capacity, queue->n_blocks + 1, sizeof *queue->block))
+        block = queue->n_blocks++;
+    if (block != NIL)
+        queue->block[block] = (struct tri_block){.next = NIL}; /* all its bytes: a pause shows them */
+    return block;
+}
+
+/* Gives the bucket another block behind its last. */
+static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
+{
+    int32_t block = take_block(queue);
+    if (block == NIL)
+        return false;
+    if (bucket->first == NIL)
+        bucket->first = block;
+    else
+        queue->block[bucket->last].next = block;
+    bucket->last = block;
+    bucket->end = 0;
+    return true;
+}
+
+bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int b)
+{
+    assert(b >= 0 && b < TRI_BUCKETS);
+    struct tri_bucket *bucket = &queue->bucket[b];
+    if ((bucket->first == NIL || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
+        return false;
+    queue->block[bucket->last].entry[bucket->end++] = entry;
+    bucket->count++;
+    queue->filled[b / 64] |= UINT64_C(1) << b % 64;
+    return true;
+}
+
+bool tri_bad_queue_spill(struct tri_bad_queue *queue)
+{
+    if (!tri_grow_far(&queue->cold, &queue->cold_capacity, queue->n_cold + HALF, sizeof *queue->cold))
+        return false;
+    for (int i = 0; i < HALF; i++)
+        queue->cold[queue->n_cold++] = queue->window[queue->head++ & MASK];
+    return true;
+}
+
+static void refill(struct tri_bad_queue *queue)
+{
+    int64_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
+    assert(queue->head == queue->tail);
+    queue->n_cold -= n;
+    for (int64_t i = 0; i < n; i++)
+        queue->window[queue->tail++ & MASK] = queue->cold[queue->n_cold + i];
+}
+
+static int lowest_bit(uint64_t word)
+{
+    int bit = 0;
+    for (int half = 32; half > 0; half /= 2)
+        if (!(word & ((UINT64_C(1) << half) - 1))) {
+            word >>= half;
+            bit += half;
+        }
+    return bit;
+}
+
+/* The entries behind one that is taken lie scattered, being in order of their edges: what the point of the next will
+ * look at is fetched while that of this one is worked on, and the triangle of the one after it. */
+static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_bucket *bucket, const struct tri_mesh *mesh)
+{
+    const struct tri_entry *soon = &queue->block[bucket->first].entry[bucket->begin];
+    if (bucket->count > 1 && bucket->begin + 1 < TRI_BLOCK)
+        __builtin_prefetch(&mesh->tri[soon[1].t]);
+    const struct tri_triangle *t = &mesh->tri[soon->t];
+    if (t->life != soon->life || !tri_is_live(t))
+        return;
+    for (int k = 0; k < 3; k++) {
+        __builtin_prefetch(&mesh->xy[t->v[k]]);
+        __builtin_prefetch(&mesh->feature[t->v[k]]);
+        if (t->n[k] >= 0)
+            __builtin_prefetch(&mesh->tri[tri_of(t->n[k])]);
+    }
+}
+
+/* Lets go of the bucket's first block, all of whose entries have been served. */
+static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
+{
+    int32_t block = bucket->first;
+    bucket->first = queue->block[block].next;
+    bucket->begin = 0;
+    queue->block[block].next = queue->free_block;
+    queue->free_block = block;
+}
+
+static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *entry)
+{
+    struct tri_bucket *bucket = &queue->bucket[b];
+    assert(bucket->first != NIL && bucket->count > 0);
+    *entry = queue->block[bucket->first].entry[bucket->begin++];
+    bucket->count--;
+    if (bucket->count == 0 || bucket->begin == TRI_BLOCK)
+        shorten(queue, bucket);
+    if (bucket->count == 0)
+        queue->filled[b / 64] &= ~(UINT64_C(1) << b % 64);
+}
+
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struct tri_mesh *mesh,
+                             struct tri_entry *entry)
+{
+    for (int word = 0; 64 * word < limit; word++) {
+        if (!queue->filled[word])
+            continue;
+        int b = 64 * word + lowest_bit(queue->filled[word]);
+        if (b >= limit)
+            return false;
+        take_first(queue, b, entry);
+        if (queue->bucket[b].count > 0)
+            fetch_ahead(queue, &queue->bucket[b], mesh);
+        return true;
+    }
+    return false;
+}
+
+/* Of the next entries in the window, those that are up to date. */
+static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *tri)
+{
+    uint32_t waiting = queue->tail - queue->head, n = waiting < TRI_BATCH ? waiting : TRI_BATCH;
+    int32_t kept = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        struct tri_entry entry = queue->window[queue->head++ & MASK];
+        queue->batch[kept] = entry;
+        kept += tri[entry.t].life == entry.life;
+    }
+    queue->next = 0;
+    queue->n_batch = kept;
+}
+
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh, struct tri_entry *entry)
+{
+    if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, mesh, entry))
+        return true;
+    while (queue->next == queue->n_batch) {
+        if (queue->head == queue->tail && queue->n_cold > 0)
+            refill(queue);
+        if (queue->head == queue->tail)
+            return false;
+        take_batch(queue, mesh->tri);
+    }
+    *entry = queue->batch[queue->next++];
+    return true;
+}
+
+int tri_bad_queue_median(const struct tri_bad_queue *queue)
+{
+    int64_t all = 0, below = 0;
+    int bucket = TRI_URGENT_BUCKET + 1; /* ends at the latest with the last entry */
+    for (int b = bucket; b < TRI_BUCKETS; b++)
+        all += queue->bucket[b].count;
+    while (all > 0 && 2 * (below += queue->bucket[bucket].count) < all)
+        bucket++;
+    return bucket;
+}

@@ -1,0 +1,368 @@
+/* Search and fill of cavities; see the header for the theorems. */
+#include "triangle/refine/cavity.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/geometry/predicates.h"
+
+/* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
+ * sum of l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2;
+ * the factor is rounded up to pay for the rounding of that sum. Nothing underflows in the range of predicates.h. */
+static const double DOUBT = 1.2e-15;
+
+void tri_cavity_free(struct tri_cavity *cavity)
+{
+    free(cavity->tri);
+    free(cavity->edge);
+    free(cavity->wall);
+    free(cavity->pending);
+    *cavity = (struct tri_cavity){0};
+}
+
+/* Edges, those that wait among them, beyond the triangles: two, and one that says where the last one ends. */
+enum { MORE_EDGES = 3 };
+
+static bool grow(struct tri_cavity *c)
+{
+    const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->edge, sizeof *c->edge},
+                                         {&c->wall, sizeof *c->wall}, {&c->pending, sizeof *c->pending}};
+    return tri_grow_together(arrays, 4, &c->capacity, c->capacity + 1, MORE_EDGES);
+}
+
+static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    for (int k = 0; c->fence && k < 3; k++) {
+        if (!tri_fence_holds(c->fence, mesh->xy[mesh->tri[t].v[k]]))
+            return false;
+    }
+    return true;
+}
+
+/* Is p in the circumdisk of a, b, c? The determinant has been worked out; where the filter leaves that open, which is
+ * rare, it is decided exactly. The sum of products of the l is written so that what is known first is added first. */
+static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const tri_vertex_id v[3], double la,
+                             double lb, double lc, double det)
+{
+    if (fabs(det) > DOUBT * (la * lb + (la + lb) * lc))
+        return det > 0;
+    return tri_in_circle_near(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], p);
+}
+
+static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex_id b)
+{
+    c->beyond[0] = a;
+    c->beyond[1] = b;
+    return TRI_SEARCH_BEYOND;
+}
+
+/* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
+ * where the last edge before it has ended; the first at a. Each comes with the cross product of its ends; so of the
+ * three products that a test needs one is known, and the other two are those of the edges behind. */
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, tri_vertex_id a,
+                               struct tri_relative ra)
+{
+    const struct tri_triangle *tri = mesh->tri;
+    const struct tri_point *xy = mesh->xy, p = c->p;
+    int32_t n_tri = c->n_tri, n_edges = c->n_edges;
+    while (n_pending > 0) {
+        struct tri_pending edge = c->pending[--n_pending];
+        while (edge.link >= 0) {
+            const struct tri_triangle *t = &tri[edge.link >> 2];
+            int e = edge.link & 3;
+            tri_vertex_id apex = t->v[e], corners[3] = {a, apex, edge.end};
+            struct tri_relative rapex = tri_relative(&xy[apex], p);
+            double left = tri_cross(ra, rapex), right = tri_cross(rapex, edge.rend);
+            double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
+            if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
+                break;
+            if (c->fence && !tri_fence_holds(c->fence, xy[apex])) {
+                c->n_tri = n_tri;
+                return TRI_SEARCH_FENCED;
+            }
+            if (n_tri == c->capacity && !grow(c))
+                return TRI_SEARCH_NO_MEMORY;
+            assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);
+            c->tri[n_tri++] = edge.link >> 2;
+            c->mixed |= (uint32_t)(t->region ^ c->region);
+            c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], edge.end, t->region, edge.rend, right};
+            edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
+        }
+        assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1 && c->n_wall <= n_edges && a != edge.end);
+        if (edge.link < 0) {
+            if (edge.link == TRI_BEYOND)
+                return stop_at(c, a, edge.end);
+            c->wall[c->n_wall++] = n_edges;
+        }
+        c->edge[n_edges++] = (struct tri_cavity_edge){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
+        a = edge.end;
+        ra = edge.rend;
+    }
+    /* So that whoever goes along the edges need not ask which is the last. The chain on the left of a split ends where
+     * that on the right begins. */
+    c->edge[n_edges] = (struct tri_cavity_edge){TRI_NONE, a, TRI_NONE, TRI_NONE, ra, 0};
+    c->n_tri = n_tri;
+    c->n_edges = n_edges;
+    return TRI_SEARCH_FOUND;
+}
+
+static bool begin(struct tri_cavity *c, struct tri_point p)
+{
+    c->p = p;
+    c->n_tri = c->n_edges = c->n_wall = 0;
+    c->mixed = 0;
+    return c->capacity > 0 || grow(c);
+}
+
+static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    assert(t >= 0 && tri_is_live(&mesh->tri[t]) && c->n_tri <= c->capacity);
+    if (c->n_tri == c->capacity && !grow(c))
+        return false;
+    c->region = mesh->tri[t].region;
+    c->tri[c->n_tri++] = t;
+    return true;
+}
+
+/* Explores what lies in triangle t and behind n of its edges, in turn from the first on. Where p is not in the disk of
+ * t, by rounding or since t is flatter than that, the fan would not be Delaunay. */
+static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t, int first,
+                                    int n)
+{
+    assert(first >= 0 && first < 3 && (n == 2 || n == 3));
+    if (!add_start(c, mesh, t))
+        return TRI_SEARCH_NO_MEMORY;
+    if (!owns(c, mesh, t))
+        return TRI_SEARCH_FENCED;
+    const struct tri_triangle *start = &mesh->tri[t];
+    struct tri_relative r[3];
+    for (int k = 0; k < 3; k++)
+        r[k] = tri_relative(&mesh->xy[start->v[k]], c->p);
+    double area2[3] = {tri_cross(r[1], r[2]), tri_cross(r[2], r[0]), tri_cross(r[0], r[1])};
+    double det = r[0].l * area2[0] + r[1].l * area2[1] + r[2].l * area2[2];
+    bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
+    if (!distinct || !in_circle(mesh, c->p, start->v, r[0].l, r[1].l, r[2].l, det))
+        return TRI_SEARCH_OUTSIDE;
+    int e = first;
+    for (int32_t k = n - 1; k >= 0; k--, e = tri_next[e]) {
+        int end = tri_prev[e];
+        c->pending[k] = (struct tri_pending){start->n[e], start->v[end], start->region, r[end], area2[e]};
+    }
+    return explore(c, mesh, n, start->v[tri_next[first]], r[tri_next[first]]);
+}
+
+enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
+                                  tri_triangle_id t)
+{
+    assert(tri_is_live(&mesh->tri[t]));
+    if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
+        return TRI_SEARCH_OUTSIDE;
+    if (!begin(c, p))
+        return TRI_SEARCH_NO_MEMORY;
+    return explore_from(c, mesh, t, 0, 3);
+}
+
+/* Rounding may place a split point off its subsegment: every edge must still be seen counter-clockwise. */
+static bool sees_edges(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
+{
+    assert(0 <= first && first <= end && end <= c->n_edges);
+    for (const struct tri_cavity_edge *edge = &c->edge[first]; edge < &c->edge[end]; edge++)
+        if (edge->ra.l == 0 || tri_orient2d(c->p, mesh->xy[edge[0].a], mesh->xy[edge[1].a]) <= 0)
+            return false;
+    return true;
+}
+
+static int compare_links(const void *a, const void *b)
+{
+    const struct tri_pending *p = a, *q = b;
+    return (p->link > q->link) - (p->link < q->link);
+}
+
+/* Is a triangle of the cavity there twice, or beyond its boundary? By sorting; no search is pending any more. */
+static bool repeats_itself(const struct tri_cavity *c)
+{
+    size_t n = (size_t)c->n_tri;
+    for (int32_t i = 0; i < c->n_tri; i++)
+        c->pending[i].link = c->tri[i];
+    qsort(c->pending, n, sizeof *c->pending, compare_links);
+    for (int32_t i = 1; i < c->n_tri; i++)
+        if (c->pending[i].link == c->pending[i - 1].link)
+            return true;
+    for (int32_t k = 0; k < c->n_edges; k++) {
+        if (c->edge[k].outer < 0)
+            continue;
+        struct tri_pending beyond = {.link = tri_of(c->edge[k].outer)};
+        if (bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
+            return true;
+    }
+    return false;
+}
+
+/* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
+static bool overlaps_itself(const struct tri_cavity *c, tri_sub_id s)
+{
+    enum { FEW = 64 };
+    for (int32_t i = 0; i < c->n_wall; i++)
+        if (c->edge[c->wall[i]].outer == ~s)
+            return true;
+    if (c->n_tri > FEW)
+        return repeats_itself(c);
+    for (int32_t i = 0; i < c->n_tri; i++) {
+        for (int32_t k = 0; k < i; k++)
+            if (c->tri[i] == c->tri[k])
+                return true;
+        for (int32_t k = 0; k < c->n_edges; k++)
+            if (c->edge[k].outer >= 0 && c->edge[k].outer >> 2 == c->tri[i])
+                return true;
+    }
+    return false;
+}
+
+enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
+                                        tri_sub_id s, int32_t *n_left)
+{
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
+    *n_left = c->n_left_tri = 0;
+    if (!begin(c, p))
+        return TRI_SEARCH_NO_MEMORY;
+    for (int side = 0; side < 2; side++) {
+        int32_t first = c->n_edges;
+        if (sub->side[side] == TRI_NONE)
+            continue;
+        if (sub->side[side] == TRI_BEYOND)
+            return stop_at(c, sub->v[0], sub->v[1]);
+        tri_halfedge code = sub->side[side];
+        assert(*tri_link_at(mesh, code) == ~s);
+        enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);
+        if (found != TRI_SEARCH_FOUND)
+            return found;
+        if (!sees_edges(c, mesh, first, c->n_edges))
+            return TRI_SEARCH_OUTSIDE;
+        if (side == 0) {
+            *n_left = c->n_edges;
+            c->n_left_tri = c->n_tri;
+        }
+    }
+    return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
+}
+
+/* Numbers for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
+ * cavity (Euler), so no number is ever left over. The first comes again behind the last, as its neighbour. */
+static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
+{
+    assert(c->n_tri <= c->n_edges);
+    for (int32_t i = c->n_tri; i < c->n_edges; i++) {
+        assert(mesh->n_triangles < mesh->triangle_capacity);
+        mesh->tri[mesh->n_triangles].life = 0;
+        c->tri[i] = mesh->n_triangles++;
+    }
+    c->tri[c->n_edges] = c->tri[0];
+}
+
+#ifndef NDEBUG
+/* Every triangle of the cavity belongs to whoever changes it now, and to nobody else. */
+static bool claim(const struct tri_cavity *c)
+{
+    for (int32_t i = 0; i < c->n_tri; i++)
+        if (!tri_owners_claim(c->owners, c->tri[i]))
+            return false;
+    return true;
+}
+#endif
+
+static bool is_inside(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    struct tri_relative a = tri_relative(&mesh->xy[v[0]], q), b = tri_relative(&mesh->xy[v[1]], q);
+    struct tri_relative c = tri_relative(&mesh->xy[v[2]], q);
+    return tri_cross(a, b) >= 0 && tri_cross(b, c) >= 0 && tri_cross(c, a) >= 0;
+}
+
+/* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
+ * regions stay where they are. Where rounding hides that, to the one behind its edge. Looks among the cavity's
+ * triangles first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
+static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
+                          int32_t first_tri, int32_t end_tri)
+{
+    assert(0 <= first && first <= end && end <= c->n_edges && 0 <= first_tri && end_tri <= c->n_tri);
+    for (int32_t i = first; i < end; i++) {
+        struct tri_point a = mesh->xy[c->edge[i].a], b = mesh->xy[c->edge[i + 1].a];
+        struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
+        for (int32_t k = first_tri; k < end_tri; k++)
+            if (is_inside(mesh, c->tri[k], centroid)) {
+                c->edge[i].region = mesh->tri[c->tri[k]].region;
+                break;
+            }
+    }
+}
+
+/* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
+ * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
+{
+    tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
+    assert(0 <= first && first < end && end <= c->n_edges);
+    for (int32_t i = first; i < end; i++) {
+        struct tri_cavity_edge *edge = &c->edge[i];
+        tri_triangle_id triangle = c->tri[i];
+        struct tri_triangle *t = &mesh->tri[triangle];
+        assert(edge[0].a != edge[1].a && edge[0].a != v && edge[1].a != v);
+        edge->triangle = triangle;
+        t->v[0] = v;
+        t->v[1] = edge[0].a;
+        t->v[2] = edge[1].a;
+        t->n[0] = edge->outer;
+        t->n[1] = tri_code(c->tri[i + 1], 2);
+        t->n[2] = tri_code(before, 1);
+        t->region = edge->region;
+        t->life++;
+        tri_relink(mesh, edge->outer, edge->a, tri_code(triangle, 0));
+        before = triangle;
+    }
+}
+
+void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
+{
+    assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2); /* Euler: a disk without a vertex inside */
+    assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
+    assert(claim(c));
+    if (c->mixed)
+        place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
+    take_numbers(c, mesh);
+    fill_chain(c, mesh, v, 0, c->n_edges);
+}
+
+tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, tri_sub_id s,
+                                 int32_t n_left)
+{
+    const struct tri_subsegment old = mesh->sub[s];
+    tri_sub_id second = mesh->n_subs++;
+    const int32_t ends[2] = {0, n_left};
+    assert(mesh->n_subs <= mesh->sub_capacity && s >= 0 && s != second);
+    assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
+    assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
+    assert(v >= 0 && v < mesh->n_vertices && v != old.v[0] && v != old.v[1]);
+    assert(claim(c));
+    if (c->mixed) {
+        place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
+        place_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);
+    }
+    take_numbers(c, mesh);
+    mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
+    mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
+    for (int side = 0; side < 2; side++) {
+        int32_t first = ends[side], end = side == 0 ? n_left : c->n_edges;
+        if (first == end)
+            continue;
+        fill_chain(c, mesh, v, first, end);
+        /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
+        tri_sub_id at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
+        mesh->tri[c->edge[first].triangle].n[2] = ~at_start;
+        mesh->sub[at_start].side[side] = tri_code(c->edge[first].triangle, 2);
+        mesh->tri[c->edge[end - 1].triangle].n[1] = ~at_end;
+        mesh->sub[at_end].side[side] = tri_code(c->edge[end - 1].triangle, 1);
+    }
+    return second;
+}

@@ -1,0 +1,107 @@
+/* Cavity insertion: what a new point would replace, found completely before anything is changed.
+ *
+ * The cavity of a point p is the set of triangles whose circumdisk holds p, connected without crossing a subsegment.
+ * Its boundary, seen from p, is a closed chain of edges in counter-clockwise order.
+ *
+ * THEOREM (star shape; docs/theory.md, cavities). The search begins at a triangle with p in its circumdisk, and needs
+ * no point location. It sees every edge counter-clockwise from p, but for subsegments of the first triangle that have p
+ * beyond them: the caller tests the side of these walls.
+ *
+ * THEOREM (encroachment is local). Let no vertex of the mesh encroach subsegment e, and let p encroach e and see it.
+ * Then e is a wall of p's own cavity.
+ *
+ * The search carries coordinates relative to p, so each step loads one triangle and one vertex. The filter for incircle
+ * is the bound (10 + 96 u) u of Shewchuk (1997), with the permanent overestimated by Cauchy-Schwarz; doubtful cases are
+ * decided exactly. */
+#ifndef TRIANGLE_REFINE_CAVITY_H
+#define TRIANGLE_REFINE_CAVITY_H
+
+#include "triangle/refine/fence.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/mesh/owners.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_relative {
+    double x, y, l; /* from the new point; squared distance to it */
+};
+
+struct tri_cavity_edge {
+    tri_link outer;       /* across the edge */
+    tri_vertex_id a;      /* the edge starts at this vertex and ends where the next edge starts */
+    tri_region_id region; /* of the cavity triangle inside */
+    tri_triangle_id triangle; /* the new one on this edge, once filled */
+    struct tri_relative ra;
+    double area2; /* twice the area of the triangle on this edge: the cross product of its ends */
+};
+
+struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last edge ended */
+    tri_link link;
+    tri_vertex_id end;
+    tri_region_id region;
+    struct tri_relative rend;
+    double area2;
+};
+
+struct tri_cavity {
+    struct tri_point p;
+    const struct tri_fence *fence; /* NULL: everything is owned */
+    const struct tri_owners *owners; /* for asserts in debug builds; NULL: none */
+    tri_vertex_id beyond[2];       /* after TRI_SEARCH_BEYOND: the ends of the edge behind which it lies */
+    int32_t n_tri, n_edges, n_wall, capacity;
+    int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
+    tri_region_id region; /* of the triangle at which the search began */
+    uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
+    tri_triangle_id *tri; /* the cavity's triangles; once filled, those of the fan */
+    struct tri_cavity_edge *edge;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
+    int32_t *wall;        /* indices of the edges whose outer link is a subsegment */
+    struct tri_pending *pending;
+};
+
+enum tri_search {
+    TRI_SEARCH_FOUND,
+    TRI_SEARCH_FENCED,   /* a triangle of the cavity is not owned */
+    TRI_SEARCH_BEYOND,   /* a triangle that may be one of the cavity is not here (TRI_BEYOND) */
+    TRI_SEARCH_OUTSIDE,  /* the point is not in the circumdisk of the start triangle, or coincides with a vertex */
+    TRI_SEARCH_NO_MEMORY
+};
+
+void tri_cavity_free(struct tri_cavity *cavity);
+
+/* Finds the cavity of p from triangle t. Reads the mesh only. Expected O(1) in a good mesh; O(cavity) always. */
+enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
+                                  tri_triangle_id t);
+
+/* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the edges left of
+ * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
+ * *n_left receives the number of edges on the left. TRI_SEARCH_OUTSIDE also where p does not see every edge,
+ * or where it is not in the disk of a triangle beside s (flatter than rounding). */
+enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
+                                        tri_sub_id s, int32_t *n_left);
+
+/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Edges learn the new triangles; corner 0 of
+ * each new triangle is v, corner 1 the start of its edge. Room for two more triangles must exist. */
+void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v);
+
+/* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one
+ * more subsegment must exist. Returns the new subsegment. */
+tri_sub_id tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v, tri_sub_id s,
+                                 int32_t n_left);
+
+static inline struct tri_relative tri_relative(const struct tri_point *q, struct tri_point p)
+{
+    double x = q->x - p.x, y = q->y - p.y;
+    struct tri_relative relative = {x, y, x * x + y * y};
+    return relative;
+}
+
+/* Twice the area of the triangle p, a, b. */
+static inline double tri_cross(struct tri_relative a, struct tri_relative b) { return a.x * b.y - a.y * b.x; }
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

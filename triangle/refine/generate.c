@@ -1,0 +1,136 @@
+/* The stages in their order. */
+#include "triangle/refine/generate.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/cdt/delaunay.h"
+
+struct tri_options tri_defaults(void) { return (struct tri_options){.quality = tri_refine_defaults()}; }
+
+static void announce(const struct tri_options *options, enum tri_stage stage)
+{
+    if (options->stage)
+        options->stage(options->stage_user, stage);
+}
+
+/* The segments of a PSLG by the numbers that its points have in the mesh. What names no point goes on naming none. */
+static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tri_pslg *pslg, const int32_t *place,
+                                       struct tri_error *error)
+{
+    size_t n = 2 * (size_t)pslg->n_segments;
+    *renamed = *pslg;
+    renamed->segments = malloc((n + 1) * sizeof *renamed->segments);
+    if (!renamed->segments)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)pslg->n_segments);
+    for (size_t i = 0; i < n; i++) {
+        tri_vertex_id v = pslg->segments[i];
+        renamed->segments[i] = v >= 0 && v < pslg->n_points ? place[v] : TRI_NONE;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                           const struct tri_options *options, struct tri_report *report,
+                                           struct tri_error *error)
+{
+    announce(options, TRI_STAGE_SEGMENTS);
+    enum tri_status status = TRI_OK;
+    if (options->use_segments)
+        status = tri_constrain(mesh, pslg, &report->constrain, error);
+    assert(status || tri_mesh_is_sound(mesh));
+    if (status)
+        return status; /* this stage's, not the next one's */
+    announce(options, TRI_STAGE_HOLES);
+    if (options->use_segments) {
+        struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
+                                          options->even_odd, &report->carve};
+        status = tri_carve(mesh, pslg, &carve, error);
+        assert(status || tri_mesh_is_sound(mesh));
+    }
+    return status;
+}
+
+static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                   const struct tri_options *options, struct tri_report *report,
+                                   struct tri_error *error)
+{
+    int32_t *place = NULL;
+    struct tri_pslg renamed = {0};
+    enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
+    announce(options, TRI_STAGE_DELAUNAY);
+    status = status ? status : tri_sort_points(mesh, &place, options->executor, error);
+    status = status ? status : tri_delaunay(mesh, options->executor, error);
+    assert(status || tri_mesh_is_sound(mesh));
+    for (tri_vertex_id v = 0; !status && mesh->twin && v < mesh->n_input; v++)
+        report->duplicates += mesh->twin[v] != v;
+    status = status ? status : rename_segments(&renamed, pslg, place, error);
+    free(place);
+    status = status ? status : constrain_and_carve(mesh, &renamed, options, report, error);
+    free(renamed.segments);
+    if (!status && mesh->n_triangles == 0 && report->carve.why.reason == TRI_EMPTY_NOT)
+        report->carve.why.reason = TRI_EMPTY_LINE;
+    if (!status)
+        tri_notes_make(&report->notes, &report->carve.why, pslg, report->constrain.skipped, options->base);
+    return status;
+}
+
+static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                            struct tri_report *report, struct tri_error *error)
+{
+    enum tri_status status = tri_pslg_check(pslg, error);
+    status = status ? status : tri_mesh_init(mesh, error);
+    mesh->stop = options->stop;
+    status = status ? status : triangulate(mesh, pslg, options, report, error);
+    if (!status)
+        tri_mark_boundary(mesh);
+    if (!status && options->refine)
+        status = tri_refine_prepare(mesh, options->executor, error);
+    if (status)
+        tri_mesh_free(mesh);
+    return status;
+}
+
+static enum tri_status rebuild(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                               struct tri_report *report, struct tri_error *error)
+{
+    const struct tri_reconstruct_options how = {.use_segments = options->use_segments, .refine = options->refine,
+                                                .stop = options->stop, .executor = options->executor,
+                                                .base = options->base, .is_edge = options->is_edge,
+                                                .loose = &report->loose};
+    announce(options, TRI_STAGE_REBUILD);
+    return tri_reconstruct(mesh, pslg, options->elements, &how, error);
+}
+
+static enum tri_status refine(struct tri_mesh *mesh, const struct tri_options *options, struct tri_report *report,
+                              struct tri_error *error)
+{
+    announce(options, TRI_STAGE_QUALITY);
+    if (!options->refine)
+        return TRI_OK;
+    return options->refine_call
+               ? options->refine_call(options->refine_user, mesh, &options->quality, &report->quality, error)
+               : tri_refine(mesh, &options->quality, &report->quality, error);
+}
+
+enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                             struct tri_report *report, struct tri_error *error)
+{
+    *mesh = (struct tri_mesh){0};
+    *report = (struct tri_report){0};
+    enum tri_status status = options->elements ? rebuild(mesh, pslg, options, report, error)
+                                               : make(mesh, pslg, options, report, error);
+    if (status)
+        return status;
+    assert(tri_mesh_is_sound(mesh));
+    status = refine(mesh, options, report, error);
+    assert(tri_mesh_is_sound(mesh)); /* refinement that failed, too, leaves a mesh that is valid */
+    enum tri_status restored = tri_restore_points(mesh, options->executor, error);
+    if (restored) {
+        tri_mesh_free(mesh);
+        return restored;
+    }
+    assert(!mesh->origin && tri_mesh_is_sound(mesh));
+    announce(options, TRI_STAGE_DONE);
+    return status;
+}

@@ -1,0 +1,166 @@
+/* Walks through the part of the Voronoi diagram that lies in the petal and hangs together with the triangle's own
+ * circumcentre. That is a tree: a cycle would go around a vertex in the petal, and there is none. */
+#include "triangle/refine/petal.h"
+
+#include <assert.h>
+
+/* The most edges of the diagram that wait, and triangles that are walked through. Larger trees are left unsearched
+ * behind these; a hundred triangles were never seen. Rounding can make a ring of circumcentres around a corner where
+ * vertices lie a few units in the last place apart, so only the second ends the walk for sure. */
+enum { MOST_PENDING = 64, MOST_WALKED = 1024 };
+
+/* Flatter triangles have no circumcentre to rely on: twice the area over the longest squared edge. */
+static const double FLAT = 1e-12;
+
+/* By so much of its squared distance must a point be better to be worth another search. */
+static const double GAIN = 1 + 1e-6;
+
+struct petal {
+    const struct tri_mesh *mesh;
+    struct tri_point a;     /* coordinates below are relative to this end of the edge */
+    struct tri_point b;     /* the other end */
+    struct tri_point o;     /* centre of the disk, */
+    double r2;              /* and its squared radius */
+    struct tri_point best;
+    double best2;           /* squared distance of the best point from the vertices nearest to it */
+};
+
+/* An edge of the diagram: from the circumcentre c of a triangle, across an edge of that triangle. */
+struct pending {
+    tri_halfedge code;
+    struct tri_point c;
+};
+
+static struct tri_point relative(const struct petal *petal, tri_vertex_id v)
+{
+    struct tri_point q = petal->mesh->xy[v];
+    return (struct tri_point){q.x - petal->a.x, q.y - petal->a.y};
+}
+
+static bool circumcentre(const struct petal *petal, tri_triangle_id t, struct tri_point *c)
+{
+    const tri_vertex_id *v = petal->mesh->tri[t].v;
+    struct tri_point q = relative(petal, v[0]), r = relative(petal, v[1]), s = relative(petal, v[2]);
+    double rx = r.x - q.x, ry = r.y - q.y, sx = s.x - q.x, sy = s.y - q.y;
+    double area2 = rx * sy - ry * sx, lr = rx * rx + ry * ry, ls = sx * sx + sy * sy;
+    if (!(area2 > FLAT * tri_larger(lr, ls)))
+        return false;
+    c->x = q.x + (sy * lr - ry * ls) * (0.5 / area2);
+    c->y = q.y + (rx * ls - sx * lr) * (0.5 / area2);
+    return true;
+}
+
+/* On the triangle's side of the edge? */
+static bool is_above(const struct petal *petal, struct tri_point q)
+{
+    return petal->b.x * q.y - petal->b.y * q.x > 0;
+}
+
+static bool is_in_disk(const struct petal *petal, struct tri_point q) { return tri_distance2(petal->o, q) < petal->r2; }
+
+/* A point of the diagram, on the edge or corner that belongs to vertex v among others. */
+static void consider(struct petal *petal, struct tri_point q, tri_vertex_id v)
+{
+    double distance2 = tri_distance2(q, relative(petal, v));
+    if (!is_above(petal, q) || !(distance2 > petal->best2))
+        return;
+    petal->best2 = distance2;
+    petal->best = q;
+}
+
+/* Where the way from c, in the disk, to d leaves it. */
+static bool leave(const struct petal *petal, struct tri_point c, struct tri_point d, struct tri_point *at)
+{
+    double x = d.x - c.x, y = d.y - c.y, cx = c.x - petal->o.x, cy = c.y - petal->o.y;
+    double l = x * x + y * y, half = cx * x + cy * y, inside = cx * cx + cy * cy - petal->r2;
+    double root = half * half - l * inside;
+    if (!(l > 0 && root >= 0))
+        return false;
+    double share = (sqrt(root) - half) / l;
+    *at = (struct tri_point){c.x + share * x, c.y + share * y};
+    return share >= 0 && share <= 1;
+}
+
+/* The disk through a and b whose top lies at this height over them, in units of their distance. */
+static void set_disk(struct petal *petal, double height)
+{
+    double centre = 0.5 * (height - 0.25 / height);
+    petal->o.x = 0.5 * petal->b.x - centre * petal->b.y;
+    petal->o.y = 0.5 * petal->b.y + centre * petal->b.x;
+    petal->r2 = petal->o.x * petal->o.x + petal->o.y * petal->o.y;
+}
+
+/* Follows an edge of the diagram. Returns the triangle at its end, if that has its circumcentre, *d, in the petal and
+ * is the caller's to read on from; else TRI_NONE. */
+static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence, const struct pending *edge,
+                              struct tri_point *d)
+{
+    const struct tri_mesh *mesh = petal->mesh;
+    tri_halfedge across = *tri_link_at(mesh, edge->code);
+    tri_vertex_id apex = tri_apex(mesh, across), beside = mesh->tri[tri_of(across)].v[tri_next[tri_edge(across)]];
+    if ((fence && !tri_fence_holds(fence, mesh->xy[apex])) || !circumcentre(petal, tri_of(across), d))
+        return TRI_NONE;
+    struct tri_point at = *d;
+    bool inside = is_in_disk(petal, *d);
+    if (inside || leave(petal, edge->c, *d, &at))
+        consider(petal, at, beside);
+    return inside && is_above(petal, *d) ? tri_of(across) : TRI_NONE;
+}
+
+/* Walks on from triangle t with circumcentre c, in the petal, which is not left by edge `from`. */
+static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangle_id t, int from, struct tri_point c,
+                 tri_vertex_id beyond[2])
+{
+    struct pending pending[MOST_PENDING];
+    int n = 0;
+    for (int walked = 0; t != TRI_NONE && walked < MOST_WALKED; walked++) {
+        for (int e = 0; e < 3; e++)
+            if (e != from && n < MOST_PENDING)
+                pending[n++] = (struct pending){tri_code(t, e), c};
+        for (t = TRI_NONE; t == TRI_NONE && n > 0;) {
+            const struct pending edge = pending[--n]; /* cppcheck-suppress uninitvar ; n entries are */
+            const struct tri_triangle *near = &petal->mesh->tri[tri_of(edge.code)];
+            const int e = tri_edge(edge.code);
+            if (near->n[e] == TRI_BEYOND) {
+                beyond[0] = near->v[tri_next[e]];
+                beyond[1] = near->v[tri_prev[e]];
+                return false;
+            }
+            t = near->n[e] >= 0 ? follow(petal, fence, &edge, &c) : TRI_NONE;
+            from = t == TRI_NONE ? from : tri_edge(near->n[e]);
+        }
+    }
+    return true;
+}
+
+static bool owns(const struct tri_mesh *mesh, const struct tri_fence *fence, const struct tri_triangle *t)
+{
+    for (int k = 0; fence && k < 3; k++)
+        if (!tri_fence_holds(fence, mesh->xy[t->v[k]]))
+            return false;
+    return true;
+}
+
+enum tri_petal tri_petal_point(const struct tri_mesh *mesh, const struct tri_fence *fence, tri_triangle_id triangle,
+                               const struct tri_shape *shape, double height, struct tri_point *p,
+                               tri_vertex_id beyond[2])
+{
+    const struct tri_triangle *t = &mesh->tri[triangle];
+    const int s = shape->shortest;
+    struct petal petal = {.mesh = mesh, .a = mesh->xy[t->v[tri_next[s]]]};
+    struct tri_point c;
+    assert(triangle >= 0 && tri_is_live(t) && height > 0.5);
+    petal.b = relative(&petal, t->v[tri_prev[s]]);
+    set_disk(&petal, height);
+    if (!owns(mesh, fence, t) || !circumcentre(&petal, triangle, &c) || !is_in_disk(&petal, c))
+        return TRI_PETAL_USUAL;
+    const double usual2 = c.x * c.x + c.y * c.y;
+    petal.best2 = usual2 * GAIN;
+    if (!walk(&petal, fence, triangle, s, c, beyond))
+        return TRI_PETAL_BEYOND;
+    if (!(petal.best2 > usual2 * GAIN))
+        return TRI_PETAL_USUAL;
+    *p = (struct tri_point){tri_round_coordinate(petal.a.x + petal.best.x),
+                            tri_round_coordinate(petal.a.y + petal.best.y)};
+    return TRI_PETAL_BETTER;
+}

@@ -1,0 +1,257 @@
+/* The refinement loop: takes the worst bad triangle, treats it (treat.c), queues the new bad triangles (feed.c).
+ *
+ * ORDER. Under -D, subsegments whose diametral circle is not empty are split before anything else (disk.c). Then come
+ * triangles with a corner that encroaches the opposite subsegment: while it is encroached, the corner may hide it from
+ * the cavity of another point (cavity.h), which would come to lie anywhere near it. Then come the triangles with the
+ * shortest edges (bad_queue.h), and at last those that are only too large.
+ *
+ * COST. A triangle costs what its cavity has: O(1) on average, but up to n beside n points at a wall that must not be
+ * split (-Y).
+ *
+ * THEOREM (end). Points for angles are finitely many by small_angle.c and feature_size.c; those for sizes and circles,
+ * whatever the others do, by inside.c and disk.c. */
+#include "triangle/refine/refiner.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/refine/census.h"
+#include "triangle/size/estimate.h"
+#include "triangle/refine/pause.h"
+
+_Static_assert((int)LAST_STAGE == (int)TRI_PAUSE_LAST_STAGE && (int)SECOND_PASS == (int)TRI_PAUSE_LAST_STEP,
+               "pause.c compares with them");
+
+enum { WORKLIST_CHUNK = 1 << 16 };
+
+struct tri_refine_options tri_refine_defaults(void)
+{
+    return (struct tri_refine_options){.max_steiner = -1};
+}
+
+/* In the first pass only triangles with short edges are taken, see refine_worklist. */
+static bool next_entry(struct tri_refiner *r)
+{
+    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
+                                 : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
+}
+
+static bool work_off(struct tri_refiner *r)
+{
+    assert(r->step != NOT_BEGUN);
+    for (;;) {
+        if (tri_refiner_must_stop(r))
+            return false;
+        if (!r->in_hand && !tri_split_encroached(r)) /* after a pause the triangle in hand goes on first */
+            return false;
+        if (!r->in_hand && !next_entry(r))
+            return true;
+        r->in_hand = true;
+        if (tri_treat(r, r->hand) == FAILED)
+            return false;
+        r->in_hand = false;
+    }
+}
+
+static tri_triangle_id listed(const struct tri_refiner *r, int32_t i)
+{
+    return r->options->worklist ? r->options->worklist[i] : i;
+}
+
+static int32_t listed_count(const struct tri_refiner *r)
+{
+    return r->options->worklist ? r->options->n_worklist : r->mesh->n_triangles;
+}
+
+/* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
+static bool queue_chunk(struct tri_refiner *r)
+{
+    for (int32_t i = 0; i < WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
+        tri_triangle_id triangle = listed(r, r->next_listed);
+        if ((r->options->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
+            return false;
+    }
+    assert(r->next_listed <= r->n_worklist);
+    r->limit = tri_bad_queue_median(&r->queue);
+    return true;
+}
+
+/* Passes over the worklist twice. The first pass takes, chunk by chunk, the bad angles beside the shorter half of the
+ * edges: the order by shortest edge (bad_queue.h) then nearly holds for the whole mesh, and the work stays in the
+ * cache, if neighbours in the list are neighbours in the plane. The second pass takes the other bad angles, in the same
+ * order, and then, place by place, triangles that are only too large. Resumable: false means that something failed, or
+ * that there was no room. */
+static bool refine_worklist(struct tri_refiner *r)
+{
+    if (r->step == NOT_BEGUN) {
+        assert(!r->in_hand && r->n_encroached == 0);
+        r->n_worklist = listed_count(r);
+        r->next_listed = 0;
+        r->step = FIRST_PASS;
+    }
+    while (r->step == FIRST_PASS) {
+        if (!work_off(r))
+            return false;
+        if (r->next_listed == r->n_worklist) {
+            r->step = SECOND_PASS;
+            r->next_listed = 0;
+        } else if (!queue_chunk(r)) {
+            return false;
+        }
+    }
+    if (!work_off(r))
+        return false;
+    while (tri_has_sizes(r->options) && r->next_listed < r->n_worklist)
+        if (!tri_feed_triangle(r, listed(r, r->next_listed++), true) || !work_off(r))
+            return false;
+    return true;
+}
+
+/* A bound above TRI_USUAL_ANGLE is worked for as that one. */
+static double worked_angle(const struct tri_refine_options *options)
+{
+    return fmin(options->min_angle, TRI_USUAL_ANGLE);
+}
+
+/* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
+ * (tri_sizes_come_first). A call with a fence or a worklist has one stage: triangles that the first stage makes bad for
+ * the second would not be in its list. */
+static void begin_stages(struct tri_refiner *r)
+{
+    bool easy = !r->options->fence && !r->options->worklist && tri_sizes_come_first(r->mesh, r->options, NULL);
+    r->stage = easy ? EASY_STAGE : USUAL_STAGE;
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : worked_angle(r->options), r->options->conforming);
+}
+
+static void next_stage(struct tri_refiner *r)
+{
+    r->step = NOT_BEGUN;
+    r->stage++;
+    r->criterion.bounds = tri_bounds_for(worked_angle(r->options), r->options->conforming);
+}
+
+/* Resumable, as refine_worklist. */
+static bool refine_in_stages(struct tri_refiner *r)
+{
+    while (r->stage != LAST_STAGE) {
+        if (!refine_worklist(r))
+            return false;
+        next_stage(r);
+    }
+    return true;
+}
+
+enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
+                                const struct tri_refine_options *options, struct tri_refine_report *report,
+                                struct tri_error *error)
+{
+    struct tri_refiner *r = NULL;
+    *refiner = NULL;
+    memset(report, 0, sizeof *report); /* all its bytes: a pause shows them */
+    enum tri_status status = options->fence || options->part ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
+    if (status)
+        return status;
+    r = calloc(1, sizeof *r);
+    if (!r || !tri_bad_queue_init(&r->queue)) {
+        free(r);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
+    }
+    *refiner = r;
+    assert(mesh->n_triangles == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
+    r->mesh = mesh;
+    r->options = options;
+    r->criterion = tri_criterion_for(mesh, options);
+    r->report = report;
+    begin_stages(r);
+    frexp(mesh->limits.shortest2, &r->least_exponent);
+    r->cavity.fence = options->fence;
+    r->cavity.owners = options->owners;
+    return TRI_OK;
+}
+
+enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
+{
+    r->error = (struct tri_error){.status = TRI_OK}; /* the caller's stays as it is where nothing fails */
+    if (refine_in_stages(r)) {
+        assert(!r->in_hand && r->n_encroached == 0);
+        return TRI_OK;
+    }
+    if (r->error.status == TRI_OK)
+        tri_fail(&r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
+    if (error)
+        *error = r->error;
+    return r->error.status;
+}
+
+void tri_refiner_free(struct tri_refiner *r)
+{
+    if (!r)
+        return;
+    tri_cavity_free(&r->cavity);
+    tri_bad_queue_free(&r->queue);
+    free(r->encroached);
+    free(r);
+}
+
+void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
+{
+    assert(!r->options->urgent);
+    memset(pause, 0, sizeof *pause);
+    memcpy(&pause->report, r->report, sizeof pause->report);
+    pause->bounds = r->criterion.bounds;
+    pause->stage = (int32_t)r->stage;
+    pause->step = (int32_t)r->step;
+    pause->limit = r->limit;
+    pause->next_listed = r->next_listed;
+    pause->n_worklist = r->n_worklist;
+    pause->in_hand = r->in_hand;
+    pause->hand = r->hand;
+    memcpy(&pause->queue, &r->queue, sizeof r->queue);
+    pause->encroached = r->encroached;
+    pause->n_encroached = r->n_encroached;
+    pause->encroached_capacity = r->encroached_capacity;
+}
+
+void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
+{
+    tri_refiner_show(r, pause);
+    r->queue = (struct tri_bad_queue){0};
+    r->encroached = NULL;
+    r->n_encroached = r->encroached_capacity = 0;
+}
+
+void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
+{
+    assert(r->step == NOT_BEGUN && r->n_encroached == 0 && !r->encroached);
+    *r->report = pause->report;
+    r->criterion.bounds = pause->bounds;
+    r->stage = (enum tri_stage)pause->stage;
+    r->step = (enum tri_step)pause->step;
+    r->limit = pause->limit;
+    r->next_listed = pause->next_listed;
+    r->n_worklist = pause->n_worklist;
+    r->in_hand = pause->in_hand != 0;
+    r->hand = pause->hand;
+    tri_bad_queue_free(&r->queue);
+    r->queue = pause->queue;
+    r->encroached = pause->encroached;
+    r->n_encroached = pause->n_encroached;
+    r->encroached_capacity = pause->encroached_capacity;
+    pause->queue = (struct tri_bad_queue){0};
+    pause->encroached = NULL;
+    pause->n_encroached = pause->encroached_capacity = 0;
+}
+
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
+                           struct tri_refine_report *report, struct tri_error *error)
+{
+    struct tri_refiner *refiner = NULL;
+    enum tri_status status = tri_refine_prepare(mesh, NULL, error);
+    status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
+    status = status ? status : tri_refiner_run(refiner, error);
+    tri_refiner_free(refiner);
+    assert(options->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
+    return status;
+}
+

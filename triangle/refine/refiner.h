@@ -1,0 +1,72 @@
+/* The state of a refiner, private to its three files: refine.c is the loop, feed.c fills its queue, treat.c treats one
+ * bad triangle. pause.h keeps the state in files. */
+#ifndef TRIANGLE_REFINE_REFINER_H
+#define TRIANGLE_REFINE_REFINER_H
+
+#include "triangle/refine/bad_queue.h"
+#include "triangle/refine/cavity.h"
+#include "triangle/refine/criterion.h"
+#include "triangle/refine/refine.h"
+
+enum tri_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
+
+enum tri_step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
+
+struct tri_refiner {
+    struct tri_mesh *mesh;
+    const struct tri_refine_options *options;
+    struct tri_refine_report *report;
+    struct tri_error error; /* of the run that is on */
+    struct tri_criterion criterion;
+    int least_exponent; /* of mesh->limits.shortest2 */
+    struct tri_cavity cavity;
+    struct tri_bad_queue queue;
+    bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
+    enum tri_step step;
+    int limit;        /* buckets from here on wait for the second pass */
+    int32_t next_listed, n_worklist;
+    enum tri_stage stage;
+    enum tri_excuse excuse; /* of the last refusal */
+    bool in_hand;     /* `hand` was being treated when there was no room */
+    struct tri_entry hand;
+    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
+    int32_t n_encroached, encroached_capacity;
+    uint32_t step_of_stop; /* see tri_stop_is_due */
+};
+
+/* How the treatment of a bad triangle ended. */
+enum tri_outcome {
+    DONE,     /* a point was inserted, or the triangle is gone */
+    AGAIN,    /* a subsegment was split instead, and the triangle may still stand */
+    REFUSED,  /* this point cannot be had, for the reason in `excuse`; perhaps another one can */
+    GIVEN_UP, /* it stays, and has been counted */
+    DEFERRED, /* the gate or the fence stands before it: somebody else's */
+    FAILED    /* no memory, no room, or somebody asks for the end */
+};
+
+/* --- feed.c. False: no memory. */
+
+/* Queues the triangle if it is bad, by its size or by its angle. */
+bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes);
+
+/* Queues what is bad among the new triangles, once a cavity has been filled. */
+bool tri_feed_fan(struct tri_refiner *r);
+
+/* For -D: to be tested for encroachment. A subsegment; those beside a triangle; the walls of the cavity. */
+bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
+bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
+bool tri_feed_walls(struct tri_refiner *r);
+
+/* --- treat.c */
+
+/* Treats one bad triangle until it is gone, given up or deferred. FAILED: it is as it was. */
+enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry);
+
+/* Splits subsegments until no vertex lies in the circle of one that waits. False: r->error says why not, or no
+ * memory. */
+bool tri_split_encroached(struct tri_refiner *r);
+
+/* Somebody asks for the end, or how far the work is: between two points the mesh is in order. */
+bool tri_refiner_must_stop(struct tri_refiner *r);
+
+#endif

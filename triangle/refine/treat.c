@@ -1,0 +1,428 @@
+/* What is done about one bad triangle.
+ *
+ * The triangle proposes a point (petal.h, quality.h). The point's cavity is searched completely. Every subsegment that
+ * the point encroaches is a wall of the cavity (cavity.h): if there is one, it is split instead, and the triangle, if
+ * it still stands, proposes again. Else the point is inserted. Nothing is changed before everything is known, so
+ * nothing is undone.
+ *
+ * INVARIANT. A triangle is refined for its angle unless its shortest edge is shorter than s(v) / 6 (feature_size.c),
+ * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can
+ * afford (small_angle.c). Sizes are never given up: see inside.c.
+ *
+ * A subsegment that must not be split (-Y) tolerates points in its lens that are CLEARANCE times the shortest edge
+ * away: docs/theory.md, protected walls. */
+#include "triangle/refine/refiner.h"
+
+#include <assert.h>
+
+#include "triangle/refine/disk.h"
+#include "triangle/size/feature_size.h"
+#include "triangle/refine/inside.h"
+#include "triangle/mesh/interpolate.h"
+#include "triangle/refine/petal.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/refine/quality.h"
+#include "triangle/refine/small_angle.h"
+#include "triangle/refine/split.h"
+
+/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
+ * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
+ * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
+static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
+
+static const double CLEARANCE = 2;
+
+/* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
+static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
+
+static enum tri_status make_room(struct tri_refiner *r)
+{
+    struct tri_mesh *m = r->mesh;
+    int32_t vertices = m->vertex_capacity - m->n_vertices, triangles = m->triangle_capacity - m->n_triangles;
+    if (vertices >= 1 && triangles >= 2 && m->sub_capacity > m->n_subs)
+        return TRI_OK;
+    if (r->options->more_room)
+        return r->error.status = r->options->more_room(r->options->more_room_user, m, &r->error);
+    enum tri_status status = tri_mesh_reserve_vertices(m, 1, &r->error);
+    status = status ? status : tri_mesh_reserve_triangles(m, 2, &r->error);
+    return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
+}
+
+static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
+{
+    struct tri_mesh *m = r->mesh;
+    assert(m->n_vertices < m->vertex_capacity && tri_is_in_range(p));
+    assert(on == TRI_VERTEX_FREE || (on >= 0 && on < m->n_parents));
+    tri_vertex_id v = m->n_vertices++;
+    m->xy[v] = p;
+    m->on[v] = on;
+    m->vertex_markers[v] = marker;
+    return v;
+}
+
+/* The corners of the cavity's triangle that holds the new point, for interpolation. */
+static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct tri_point p)
+{
+    for (int32_t i = 0; i < r->cavity.n_tri; i++) {
+        const tri_vertex_id *v = r->mesh->tri[r->cavity.tri[i]].v;
+        struct tri_point a = r->mesh->xy[v[0]], b = r->mesh->xy[v[1]], c = r->mesh->xy[v[2]];
+        if (tri_orient2d(a, b, p) >= 0 && tri_orient2d(b, c, p) >= 0 && tri_orient2d(c, a, p) >= 0)
+            return v;
+    }
+    return r->mesh->tri[r->cavity.tri[0]].v;
+}
+
+static void tell_changes(const struct tri_refiner *r)
+{
+    if (r->options->part)
+        r->options->part->changed(r->options->part->user, r->cavity.tri, r->cavity.n_edges);
+}
+
+/* Inserts p, whose cavity has been found, for the sake of a triangle. */
+static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
+                                const struct tri_shape *shape)
+{
+    assert(p.x == r->cavity.p.x && p.y == r->cavity.p.y && r->cavity.n_edges == r->cavity.n_tri + 2);
+    if (make_room(r))
+        return FAILED;
+    tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
+    const tri_vertex_id *corner = r->mesh->tri[triangle].v;
+    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                             corner[tri_prev[shape->shortest]], p, r->sized);
+    if (r->mesh->n_attributes)
+        tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
+    tri_cavity_fill(&r->cavity, r->mesh, v);
+    tell_changes(r);
+    r->report->inserted_free++;
+    return tri_feed_fan(r) && tri_feed_walls(r) ? DONE : FAILED;
+}
+
+static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
+{
+    ++*counter;
+    if (r->options->deferred)
+        r->options->deferred(r->options->deferred_user, triangle);
+    return DEFERRED;
+}
+
+/* Nothing has been changed; the same is tried again when there is more of the mesh. */
+static enum tri_outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edge[2])
+{
+    assert(r->options->part);
+    r->options->part->beyond(r->options->part->user, edge);
+    r->error.status = TRI_NO_ROOM;
+    return FAILED;
+}
+
+static enum tri_outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
+{
+    assert(excuse < TRI_EXCUSES);
+    r->excuse = excuse;
+    return REFUSED;
+}
+
+/* A triangle, or, where it is TRI_NONE, a subsegment. */
+static enum tri_outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enum tri_excuse excuse)
+{
+    r->report->given_up[excuse]++;
+    if (r->options->given_up && triangle != TRI_NONE)
+        r->options->given_up(r->options->given_up_user, triangle);
+    return GIVEN_UP;
+}
+
+/* Are vertex `level` and the point whose cavity has been found out of the circles of each other's subsegments? */
+static bool is_level(const struct tri_refiner *r, tri_sub_id s, tri_vertex_id level)
+{
+    const struct tri_mesh *m = r->mesh;
+    if (!tri_leaves_disks_empty(m, &m->sub[s], r->cavity.p, m->xy[level]))
+        return false;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        const tri_vertex_id *end = m->sub[~r->cavity.edge[r->cavity.wall[i]].outer].v;
+        if ((end[0] == level || end[1] == level) && tri_dot(m->xy[end[0]], m->xy[end[1]], r->cavity.p) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* The cavity of one of the places for a split; TRI_SEARCH_OUTSIDE: it has none. */
+static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split, int choice,
+                                    int32_t *n_left)
+{
+    struct tri_point p;
+    return tri_place_disk_split(r->mesh, &r->mesh->sub[s], split, choice, &p)
+               ? tri_cavity_search_split(&r->cavity, r->mesh, p, s, n_left)
+               : TRI_SEARCH_OUTSIDE;
+}
+
+/* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
+ * outside the disk of a triangle beside s, or behind one of its edges. Beside a vertex that it shall be level with the
+ * first that is so in spite of rounding, if any is. */
+static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
+                                  int32_t *n_left)
+{
+    const struct tri_mesh *m = r->mesh;
+    int first = -1;
+    if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
+        return TRI_SEARCH_OUTSIDE;
+    for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
+        enum tri_search found = search_place(r, s, split, choice, n_left);
+        if (found == TRI_SEARCH_OUTSIDE)
+            continue;
+        if (found != TRI_SEARCH_FOUND || split->level == TRI_NONE || is_level(r, s, split->level))
+            return found;
+        first = first < 0 ? choice : first;
+    }
+    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split, first, n_left);
+}
+
+/* Splits subsegment s for the sake of a triangle. */
+static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split split,
+                                 tri_triangle_id triangle)
+{
+    struct tri_mesh *m = r->mesh;
+    const struct tri_subsegment old = m->sub[s];
+    int32_t n_left;
+    assert(s >= 0 && split.fraction > 0 && split.fraction < 1);
+    if (tri_is_protected(r->options, &old))
+        return refuse(r, TRI_EXCUSE_PROTECTED);
+    enum tri_search found = find_split(r, s, &split, &n_left);
+    if (found == TRI_SEARCH_FENCED)
+        return defer(r, triangle, &r->report->fenced);
+    if (found == TRI_SEARCH_BEYOND)
+        return wait_for_more(r, r->cavity.beyond);
+    if (found == TRI_SEARCH_OUTSIDE)
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
+        return FAILED;
+    bool boundary = tri_is_boundary(&old);
+    assert(r->cavity.n_edges > n_left || boundary);
+    tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
+    m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
+    tri_interpolate_edge(m, old.v[0], old.v[1], split.fraction, v);
+    tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
+    tell_changes(r);
+    r->report->inserted_on_segments++;
+    bool room = tri_feed_fan(r) && tri_feed_walls(r);
+    if (room && r->options->conforming)
+        room = tri_feed_subsegment(r, s) && tri_feed_subsegment(r, second);
+    return room ? DONE : FAILED;
+}
+
+static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
+{
+    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE};
+    return split_at(r, s, usual, triangle);
+}
+
+/* May the new point see this wall under any angle? */
+static bool tolerates(const struct tri_refiner *r, const struct tri_cavity_edge *edge, double shortest)
+{
+    if (!tri_is_protected(r->options, &r->mesh->sub[~edge->outer]))
+        return false;
+    double x = edge[1].ra.x - edge[0].ra.x, y = edge[1].ra.y - edge[0].ra.y, area2 = edge->area2;
+    return area2 * area2 > CLEARANCE * CLEARANCE * shortest * (x * x + y * y);
+}
+
+/* Does the new point, for a triangle with this shortest edge, squared, lie on the wrong side of a wall, or see it under
+ * too wide an angle? Sets *behind. */
+static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, bool *behind)
+{
+    const struct tri_cavity *c = &r->cavity;
+    const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
+    assert(i >= 0 && i < c->n_edges && edge->outer < 0); /* a wall */
+    double cross = edge->area2, dot = edge->ra.x * next->ra.x + edge->ra.y * next->ra.y;
+    *behind = false;
+    if (dot >= 0 && cross > 0)
+        return false;
+    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * edge->ra.l * next->ra.l;
+    if (in_lens && !tolerates(r, edge, shortest))
+        return true;
+    *behind = tri_orient2d(c->p, r->mesh->xy[edge->a], r->mesh->xy[next->a]) <= 0;
+    return *behind;
+}
+
+/* The subsegment to split instead of inserting the new point for a triangle with this shortest edge, squared: one that
+ * hides it, else the first that it encroaches. */
+static tri_sub_id find_encroached(const struct tri_refiner *r, double shortest)
+{
+    tri_sub_id found = TRI_NONE;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        bool behind;
+        if (!encroaches(r, r->cavity.wall[i], shortest, &behind))
+            continue;
+        if (behind)
+            return ~r->cavity.edge[r->cavity.wall[i]].outer;
+        if (found == TRI_NONE)
+            found = ~r->cavity.edge[r->cavity.wall[i]].outer;
+    }
+    return found;
+}
+
+/* How far from its shortest edge may the new point of this triangle lie? */
+static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
+                       enum tri_badness badness)
+{
+    double l = shape->l[shape->shortest];
+    if (r->options->urgent)
+        return HUGE_VAL;
+    assert(l > 0 && badness != TRI_GOOD);
+    double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
+    double area2_bound = tri_area2_bound(&r->criterion, t->region);
+    if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
+        double ideal2 = IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
+        double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
+        reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
+    }
+    return reach;
+}
+
+/* The cavity of a new point for a triangle: DONE where it is found and is ours. */
+static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
+{
+    if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    if (r->options->gate) {
+        double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
+        if (!r->options->gate(r->options->gate_user, at))
+            return defer(r, triangle, &r->report->gated);
+    }
+    if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
+        return defer(r, triangle, &r->report->fenced);
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
+    case TRI_SEARCH_FOUND: return DONE;
+    case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
+    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
+    case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
+    default: return FAILED;
+    }
+}
+
+/* The cavity of the best point for a bad angle, *p; REFUSED: the usual one is to be had. */
+static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
+                                  struct tri_point *p)
+{
+    tri_vertex_id beyond[2];
+    switch (tri_petal_point(r->mesh, r->options->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
+    case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
+    case TRI_PETAL_BEYOND: return wait_for_more(r, beyond);
+    default: return REFUSED;
+    }
+}
+
+/* The best or the usual point, or the split of a subsegment that it encroaches. */
+static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
+                                enum tri_badness badness)
+{
+    const struct tri_triangle t = r->mesh->tri[triangle];
+    struct tri_point p;
+    enum tri_outcome outcome = REFUSED;
+    if (badness == TRI_BAD_ANGLE && !r->sized && !r->options->urgent)
+        outcome = find_best(r, triangle, shape, &p);
+    if (outcome == REFUSED) {
+        p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+        outcome = find_cavity(r, triangle, p);
+    }
+    if (outcome != DONE)
+        return outcome;
+    assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
+    tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
+    if (s == TRI_NONE)
+        return insert_free(r, p, triangle, shape);
+    if (tri_is_flat(r->mesh, shape))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = split(r, s, triangle);
+    return outcome == DONE ? AGAIN : outcome;
+}
+
+/* For sizes, where the usual point is refused: see inside.c. */
+static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    tri_sub_id s = tri_long_wall(r->mesh, r->options, triangle, shape);
+    enum tri_outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, triangle);
+    if (outcome != REFUSED)
+        return outcome == DONE ? AGAIN : outcome;
+    struct tri_point p;
+    if (!tri_centroid(r->mesh, triangle, shape, &p))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    if (tri_is_walled_in(&r->criterion, triangle, shape))
+        return refuse(r, TRI_EXCUSE_PROTECTED);
+    outcome = find_cavity(r, triangle, p);
+    return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
+}
+
+static bool at_limit(struct tri_refiner *r)
+{
+    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
+    assert(r->options->max_steiner < 0 || inserted <= r->options->max_steiner);
+    if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
+        return false;
+    return r->report->hit_limit = true;
+}
+
+/* Somebody asks for the end: between two points the mesh is in order. */
+bool tri_refiner_must_stop(struct tri_refiner *r)
+{
+    if (r->options->told && r->step_of_stop % TRI_STOP_STEPS == 0)
+        r->options->told(r->options->told_user, r->mesh->n_triangles);
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
+}
+
+/* Treats one bad triangle until it is gone, given up or deferred. */
+enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
+{
+    for (;;) {
+        const struct tri_triangle *t = &r->mesh->tri[entry.t];
+        assert(entry.t >= 0 && entry.life <= t->life);
+        if (t->life != entry.life || !tri_is_live(t))
+            return DONE;
+        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        if (badness == TRI_GOOD)
+            return DONE;
+        r->sized = badness == TRI_BAD_SIZE;
+        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, entry.t, &shape)) {
+            if (!tri_is_too_large(&r->criterion, t, &shape))
+                return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
+            r->sized = true;
+        }
+        if (at_limit(r))
+            return give_up(r, entry.t, TRI_EXCUSE_LIMIT);
+        bool resolved = shape.l[shape.shortest] >= r->mesh->limits.shortest2;
+        enum tri_outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
+        if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
+            r->sized = true;
+            outcome = propose_inside(r, entry.t, &shape);
+        }
+        if (outcome != AGAIN)
+            return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
+        if (tri_refiner_must_stop(r))
+            return FAILED;
+    }
+}
+
+/* Splits subsegments until no vertex lies in the circle of one that waits. */
+bool tri_split_encroached(struct tri_refiner *r)
+{
+    while (r->n_encroached > 0) {
+        if (tri_refiner_must_stop(r))
+            return false;
+        tri_sub_id s = r->encroached[r->n_encroached - 1];
+        const struct tri_subsegment *sub = &r->mesh->sub[s];
+        if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
+            return wait_for_more(r, sub->v) != FAILED;
+        r->n_encroached--;
+        struct tri_disk_split where;
+        if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
+            continue;
+        r->sized = false;
+        const tri_triangle_id beside = tri_of(sub->side[0] == TRI_NONE ? sub->side[1] : sub->side[0]);
+        enum tri_outcome outcome = split_at(r, s, where, beside);
+        if (outcome == FAILED) {
+            r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
+            return false;
+        }
+        if (outcome == REFUSED)
+            give_up(r, TRI_NONE, r->excuse);
+    }
+    return true;
+}

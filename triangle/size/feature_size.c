@@ -1,0 +1,202 @@
+/* The size of features, and why points for angles cannot run away.
+ *
+ * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995):
+ *   - a vertex of the input: its distance from the vertices and segments that its triangles reach;
+ *   - a point p for a triangle with shortest edge ab: the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|,
+ *     inherited as insertion radii are (Shewchuk 2002);
+ *   - a split point: the same from all vertices around it, but no more than its distance from other features;
+ *   - a point inserted because of sizes: no more than its distance from its neighbours.
+ * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches).
+ *
+ * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
+ *
+ * THEOREM (docs/theory.md, sizes). Points for angles are no more than C * integral of dx / s(x)^2, C independent of the
+ * bound and of the order of insertion: to a constant as many as Ruppert's algorithm inserts. */
+#include "triangle/size/feature_size.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/refine/quality.h"
+#include "triangle/refine/small_angle.h"
+
+static const double SLOPE = 0.5;
+
+/* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
+static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
+
+/* Estimates in shares of the triangles. Each share owns a range of vertices: triangles are sorted along a curve by
+ * their vertices, so each share begins with a higher vertex than the last one. Corners that another share owns are
+ * looked at afterwards; the least of all estimates is the same in any order. */
+struct estimate {
+    struct tri_mesh *mesh;
+    tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
+    struct crossing {
+        tri_triangle_id *item; /* [n] triangles of the share that have a vertex of another one */
+        int32_t n, capacity;
+        bool lost;             /* no memory to tell, or too many */
+    } crossing[TRI_MOST_SHARES];
+};
+
+static void divide_vertices(struct estimate *e)
+{
+    size_t shares = tri_shares(e->mesh->n_triangles);
+    e->own[0] = 0;
+    for (size_t i = 1; i < shares; i++) {
+        tri_vertex_id v = e->mesh->tri[tri_share(i, e->mesh->n_triangles).first].v[0];
+        e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
+        assert(e->own[i] >= e->own[i - 1] && e->own[i] < e->mesh->n_vertices);
+    }
+    e->own[shares] = e->mesh->n_vertices;
+}
+
+/* The least of its distances from the other corners, and from the wall opposite to it, that coordinates resolve. */
+static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
+{
+    double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
+    bool wall = t->n[k] < 0 && is_beside(edge, left, right);
+    double distance2[3] = {left, right, wall ? shape->area2 * shape->area2 / edge : HUGE_VAL}, size2 = HUGE_VAL;
+    for (int i = 0; i < 3; i++)
+        if (distance2[i] >= mesh->limits.shortest2)
+            size2 = tri_lesser(size2, distance2[i]);
+    mesh->feature[t->v[k]] = tri_lesser(mesh->feature[t->v[k]], sqrt(size2));
+}
+
+static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
+{
+    return v >= e->own[share] && v < e->own[share + 1];
+}
+
+/* At most so many: in a mesh that is in no order they are nearly all, and not worth the memory. */
+static void note_crossing(struct crossing *crossing, int32_t most, tri_triangle_id t)
+{
+    crossing->lost |= crossing->n >= most;
+    if (!crossing->lost && tri_grow(&crossing->item, &crossing->capacity, crossing->n + 1, sizeof *crossing->item))
+        crossing->item[crossing->n++] = t;
+    else
+        crossing->lost = true;
+}
+
+/* The share's triangles at its own vertices. */
+static void estimate_own(void *context, size_t share)
+{
+    struct estimate *e = context;
+    struct tri_mesh *mesh = e->mesh;
+    struct tri_range range = tri_share(share, mesh->n_triangles);
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
+        mesh->feature[v] = HUGE_VAL;
+    for (tri_triangle_id i = range.first; i < range.last; i++) {
+        const struct tri_triangle *t = &mesh->tri[i];
+        if (!tri_is_live(t))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        int own = 0;
+        for (int k = 0; k < 3; k++)
+            if (owns(e, share, t->v[k])) {
+                estimate_corner(mesh, t, &shape, k);
+                own++;
+            }
+        if (own < 3)
+            note_crossing(&e->crossing[share], (range.last - range.first) / 8, i);
+    }
+}
+
+/* The share's triangles at vertices of other shares. Where they have not been noted, all triangles are looked at. */
+static void estimate_others(const struct estimate *e, size_t share)
+{
+    struct tri_mesh *mesh = e->mesh;
+    const struct crossing *crossing = &e->crossing[share];
+    struct tri_range range = tri_share(share, mesh->n_triangles);
+    int32_t n = crossing->lost ? range.last - range.first : crossing->n;
+    for (int32_t i = 0; i < n; i++) {
+        const struct tri_triangle *t = &mesh->tri[crossing->lost ? range.first + i : crossing->item[i]];
+        if (!tri_is_live(t))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        for (int k = 0; k < 3; k++)
+            if (!owns(e, share, t->v[k]))
+                estimate_corner(mesh, t, &shape, k);
+    }
+}
+
+/* Vertices of which no distance can be resolved. */
+static void settle_own(void *context, size_t share)
+{
+    const struct estimate *e = context;
+    double *feature = e->mesh->feature;
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
+        feature[v] = feature[v] < HUGE_VAL ? feature[v] : sqrt(e->mesh->limits.shortest2);
+}
+
+void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct estimate e = {.mesh = mesh};
+    divide_vertices(&e);
+    tri_execute(executor, tri_shares(mesh->n_triangles), estimate_own, &e);
+    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++) {
+        estimate_others(&e, share);
+        free(e.crossing[share].item);
+    }
+    tri_execute(executor, tri_shares(mesh->n_triangles), settle_own, &e);
+}
+
+double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
+{
+    assert(a != b);
+    double from_a = sqrt(tri_relative(&mesh->xy[a], p).l), from_b = sqrt(tri_relative(&mesh->xy[b], p).l);
+    double near = from_a < from_b ? from_a : from_b;
+    double inherited = fmin(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
+    return sized && near < inherited ? near : inherited;
+}
+
+/* What vertex v, at `distance` from a point on parent p, says about the size there. */
+static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, tri_vertex_id v,
+                        double distance)
+{
+    int32_t on = mesh->on[v];
+    double inherited = mesh->feature[v] + SLOPE * distance;
+    bool is_feature = on >= 0 ? tri_is_filled(mesh, p, on, at, mesh->xy[v])
+                              : on != TRI_VERTEX_FREE && !tri_touches(mesh, p, v);
+    return is_feature && distance < inherited ? distance : inherited;
+}
+
+/* The distance of the new point from a subsegment on its cavity's boundary; infinity where the point does not lie
+ * beside the subsegment, or the space between is not filled. */
+static double size_from_wall(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, int32_t wall)
+{
+    const struct tri_subsegment *sub = &mesh->sub[wall];
+    struct tri_relative a = tri_relative(&mesh->xy[sub->v[0]], at), b = tri_relative(&mesh->xy[sub->v[1]], at);
+    double x = b.x - a.x, y = b.y - a.y, edge = x * x + y * y;
+    if (!is_beside(edge, a.l, b.l) || !tri_is_filled(mesh, p, sub->parent, at, mesh->xy[sub->v[0]]))
+        return HUGE_VAL;
+    return fabs(tri_cross(a, b)) / sqrt(edge);
+}
+
+double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, tri_sub_id s, bool sized)
+{
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    double size = HUGE_VAL, half = HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+        double distance = sqrt(tri_relative(&mesh->xy[sub->v[k]], cavity->p).l);
+        half = fmin(half, distance);
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, sub->v[k], distance));
+    }
+    for (int32_t i = 0; i < cavity->n_edges; i++) {
+        const struct tri_cavity_edge *edge = &cavity->edge[i];
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, edge->a, sqrt(edge->ra.l)));
+        if (edge->outer < 0)
+            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~edge->outer));
+    }
+    assert(half > 0 && half < HUGE_VAL && size < HUGE_VAL);
+    return sized && half < size ? half : size;
+}
+
+/* How many times shorter than the features around them edges may become for the sake of angles. */
+static const double SHRINK = 6;
+
+bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
+{
+    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
+    return size * size > SHRINK * SHRINK * l2;
+}

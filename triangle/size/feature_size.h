@@ -1,0 +1,22 @@
+/* How small edges may become for the sake of angles: the size of the features around each vertex. */
+#ifndef TRIANGLE_SIZE_FEATURE_SIZE_H
+#define TRIANGLE_SIZE_FEATURE_SIZE_H
+
+#include "triangle/refine/cavity.h"
+
+/* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
+void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor);
+
+/* The feature size at a point p that is inserted for a triangle with shortest edge ab; sized: because it is too large,
+ * not because of its angles. */
+double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p,
+                          bool sized);
+
+/* The same for a point on subsegment s whose cavity has been found by tri_cavity_search_split. */
+double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, tri_sub_id s, bool sized);
+
+/* Is the edge between vertices a and b, of squared length l2, too short for what is around it, whatever that does for
+ * angles? */
+bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2);
+
+#endif
