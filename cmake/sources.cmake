@@ -168,6 +168,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/worklist.c
     sched/schedule/halt.c
     sched/schedule/phase.c
+    sched/schedule/collect.c
+    sched/schedule/report.c
     sched/ranks/carrier.c
     sched/ranks/borrow.c
     sched/ranks/hand_out.c
@@ -179,7 +181,9 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/relay.c
     sched/ranks/rank_stream.c
     sched/ranks/talk.c
+    sched/ranks/wire.c
     sched/ranks/territory.c
+    sched/schedule/prerefine.c
     sched/schedule/schedule.c
     sched/schedule/triangulate.c
     sched/schedule/library.c)

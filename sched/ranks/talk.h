@@ -84,6 +84,13 @@ struct par_message {
     int32_t vertex_capacity, attribute_capacity, triangle_capacity, side_capacity, entry_capacity;
 };
 
+/* The attributes of so many vertices: how many values; -1: more than are counted here. */
+static inline int32_t par_values_of(int64_t n_vertices, int32_t n_attributes)
+{
+    int64_t n = n_vertices * n_attributes;
+    return n <= INT32_MAX ? (int32_t)n : -1;
+}
+
 void par_message_free(struct par_message *message);
 
 /* Tells of the talk's triangles from number `first` on, which have just been added, and numbers them anew: most lie

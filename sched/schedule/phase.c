@@ -3,81 +3,33 @@
 
 #include <assert.h>
 #include <float.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/schedule/phase_tasks.h"
 #include "sched/schedule/theory.h"
 #include "triangle/base/clock.h"
 #include "triangle/size/estimate.h"
 #include "triangle/base/grow.h"
 
-enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
-
-/* A block at work. Every field is its own while the phase runs; others read it before and after. */
-struct task {
-    int32_t block;
-    tri_triangle_id *worklist; /* part of the phase's list */
-    int32_t n_worklist;
-    int32_t expected;       /* triangles, to the order */
-    struct tri_fence fence, active; /* the second in the caller's coordinates */
-    bool has_margin;
-    struct par_view view;
-    struct tri_owners owners;
-    struct tri_refine_options options;
-    struct tri_refine_report report;
-    int64_t made_before;     /* of it, in a phase that goes on */
-    struct tri_refiner *refiner;
-    struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
-    struct par_ids left;  /* what gate and fence left */
-    struct par_ids given_up;
-    struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
-    bool lost;              /* no memory for one of these lists */
-    struct tri_part part;
-    enum par_progress progress;
-    int32_t pauses;         /* so far, for triangles */
-    enum tri_status status;
-    struct tri_error error;
-    double seconds;
-};
-
-struct phase {
-    struct par_state *state;
-    const struct par_partition *partition;
-    int phase;
-    int32_t only;       /* column, or TRI_NONE */
-    int32_t *block_of;  /* [worklist.n] */
-    double *work;       /* [worklist.n] triangles that each will become, to the order */
-    tri_triangle_id *worklist; /* [worklist.n] by block */
-    struct task *tasks;
-    int32_t n_tasks;
-    int32_t *order;     /* [n_tasks] in which tasks are started */
-    int64_t expected;   /* triangles of all tasks, to the order */
-    _Atomic(int64_t) done; /* of these, in tasks that have ended */
-    int64_t before;     /* triangles there were, */
-    _Atomic(int64_t) made; /* and those that such tasks have made */
-    const void *caller; /* address of the own one's `here` */
-    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/owners.h */
-    size_t n_marks;
-};
-
+enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
-    struct task *task = user;
+    struct par_task *task = user;
     if (!par_ids_add(&task->left, triangle))
         task->lost = true;
 }
 
 static void note_given_up(void *user, tri_triangle_id triangle)
 {
-    struct task *task = user;
+    struct par_task *task = user;
     if (!par_ids_add(&task->given_up, triangle))
         task->lost = true;
 }
 
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
-    struct task *task = user;
+    struct par_task *task = user;
     for (int32_t i = 0; i < n; i++)
         if (!par_ids_add(&task->changed, triangle[i]))
             task->lost = true;
@@ -85,7 +37,7 @@ static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
-    struct task *task = user;
+    struct par_task *task = user;
     if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
         task->lost = true;
 }
@@ -97,7 +49,7 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, struct par_locator *locator, tri_triangle_id t)
+static int32_t owner_now(const struct par_phase_run *p, struct par_locator *locator, tri_triangle_id t)
 {
     int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
@@ -108,7 +60,7 @@ static int32_t owner_now(const struct phase *p, struct par_locator *locator, tri
 
 static void assign_share(void *context, size_t share)
 {
-    const struct phase *p = context;
+    const struct par_phase_run *p = context;
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
     struct par_locator locator = PAR_LOST;
@@ -120,7 +72,10 @@ static void assign_share(void *context, size_t share)
 }
 
 /* In as many shares as there can be: each entry takes a while. */
-static void assign_blocks(struct phase *p) { tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); }
+static void assign_blocks(struct par_phase_run *p)
+{
+    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p);
+}
 
 /* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
  * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
@@ -134,7 +89,7 @@ static int32_t expect(int phase, double work)
 /* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes
  * comes before all of them, and stays in the worklist; what has gone is dropped. */
 struct dealing {
-    struct phase *p;
+    struct par_phase_run *p;
     size_t shares, bins;
     int32_t *at;   /* [shares][bins] how many; then where the next one goes */
     double *work;  /* [shares][bins] */
@@ -151,7 +106,7 @@ static struct tri_range dealt_share(const struct dealing *d, size_t share)
 static void count_share(void *context, size_t share)
 {
     const struct dealing *d = context;
-    const struct phase *p = d->p;
+    const struct par_phase_run *p = d->p;
     int32_t *count = d->at + share * d->bins;
     double *work = d->work + share * d->bins;
     const struct tri_range range = dealt_share(d, share);
@@ -165,7 +120,7 @@ static void count_share(void *context, size_t share)
 static void deal_share(void *context, size_t share)
 {
     const struct dealing *d = context;
-    const struct phase *p = d->p;
+    const struct par_phase_run *p = d->p;
     const struct par_keys *key = &p->state->key;
     int32_t *at = d->at + share * d->bins;
     const struct tri_range range = dealt_share(d, share);
@@ -203,12 +158,12 @@ static int32_t add_up_shares(struct dealing *d)
 
 static bool make_tasks(const struct dealing *d, int32_t used)
 {
-    struct phase *p = d->p;
+    struct par_phase_run *p = d->p;
     p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
     for (size_t bin = 1; p->tasks && bin < d->bins; bin++) {
         int32_t end = d->at[(d->shares - 1) * d->bins + bin], begin = d->at[(d->shares - 1) * d->bins + bin - 1];
         if (end > begin)
-            p->tasks[p->n_tasks++] = (struct task){
+            p->tasks[p->n_tasks++] = (struct par_task){
                 .block = (int32_t)bin - 1, .worklist = p->worklist + begin - d->n_kept, .n_worklist = end - begin,
                 .expected = expect(p->phase, d->work[bin])};
     }
@@ -238,7 +193,7 @@ static bool deal_all(struct dealing *d)
 }
 
 /* Few enough shares for counts not to outgrow what is counted. */
-static bool deal_worklists(struct phase *p)
+static bool deal_worklists(struct par_phase_run *p)
 {
     size_t n = (size_t)p->state->worklist.n, bins = (size_t)par_blocks(p->partition) + 1, most = n / bins + 1;
     struct dealing d = {.p = p, .bins = bins, .shares = most < TRI_MOST_SHARES ? most : TRI_MOST_SHARES};
@@ -278,7 +233,7 @@ static double gap(double low_a, double high_a, double low_b, double high_b)
 
 /* Lemma 2, at run time: any two points that different blocks may insert at once are independent, where both blocks are
  * large enough for a margin. */
-static bool blocks_are_independent(const struct phase *p)
+static bool blocks_are_independent(const struct par_phase_run *p)
 {
     const struct tri_point origin = {0, 0};
     double unit = p->state->mesh->unit;
@@ -295,7 +250,7 @@ static bool blocks_are_independent(const struct phase *p)
 }
 #endif
 
-static void set_up(struct phase *p, struct task *task)
+static void set_up(struct par_phase_run *p, struct par_task *task)
 {
     const struct par_state *state = p->state;
     double unit = state->mesh->unit;
@@ -324,7 +279,7 @@ static void set_up(struct phase *p, struct task *task)
 /* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
  * the slowest: a little more room where areas made the expectation about right, a good deal more where it was a
  * guess, and twice that each time. What is too much serves the phases that follow. */
-static int32_t more_for(const struct task *task)
+static int32_t more_for(const struct par_task *task)
 {
     double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
     bool areas = task->options.max_area > 0 || task->options.region_areas;
@@ -332,7 +287,7 @@ static int32_t more_for(const struct task *task)
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
-static enum tri_status reserve_room(struct phase *p, struct tri_error *error)
+static enum tri_status reserve_room(struct par_phase_run *p, struct tri_error *error)
 {
     int64_t to_come = 0; /* who goes on has room */
     p->expected = 0;
@@ -345,7 +300,7 @@ static enum tri_status reserve_room(struct phase *p, struct tri_error *error)
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
  * follow for the triangles that are left: more triangles each time would stay empty. */
-static int32_t refill(struct task *task)
+static int32_t refill(struct par_task *task)
 {
     const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
     const int32_t more = more_for(task), left = par_room_left(&task->view.room, PAR_TRIANGLES);
@@ -356,7 +311,7 @@ static int32_t refill(struct task *task)
     return more;
 }
 
-static enum tri_status extend_room(struct phase *p, struct task *task, struct tri_error *error)
+static enum tri_status extend_room(struct par_phase_run *p, struct par_task *task, struct tri_error *error)
 {
     int32_t more = task->progress == PAR_NEW ? task->expected : refill(task);
     if (p->state->options->tight_room > 0)
@@ -366,11 +321,11 @@ static enum tri_status extend_room(struct phase *p, struct task *task, struct tr
 }
 
 /* Room for the tasks that wait for it, in canonical order. */
-static enum tri_status deal_room(struct phase *p, struct tri_error *error)
+static enum tri_status deal_room(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
-        struct task *task = &p->tasks[i];
+        struct par_task *task = &p->tasks[i];
         if (task->progress == PAR_ENDED)
             continue;
         if (task->asked.n == 0)
@@ -381,12 +336,12 @@ static enum tri_status deal_room(struct phase *p, struct tri_error *error)
 }
 
 /* Brings, all at once, the triangles for which tasks wait; tasks that wait for room are left alone. */
-static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
+static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *error)
 {
     struct par_ids asked = {0};
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++) {
-        struct task *task = &p->tasks[i];
+        struct par_task *task = &p->tasks[i];
         memory = memory && !task->lost;
         for (int32_t k = 0; memory && k < task->asked.n; k++)
             memory = par_ids_add(&asked, task->asked.item[k]);
@@ -400,7 +355,7 @@ static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
 
 /* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert
  * (cavity.c). */
-static bool watch_owners(struct phase *p)
+static bool watch_owners(struct par_phase_run *p)
 {
 #ifdef NDEBUG
     (void)p;
@@ -415,7 +370,7 @@ static bool watch_owners(struct phase *p)
     return true;
 }
 
-static enum tri_status new_refiner(struct task *task)
+static enum tri_status new_refiner(struct par_task *task)
 {
     enum tri_status status =
         tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
@@ -426,7 +381,7 @@ static enum tri_status new_refiner(struct task *task)
     return status;
 }
 
-static void run_task(struct phase *p, struct task *task)
+static void run_task(struct par_phase_run *p, struct par_task *task)
 {
     double began = tri_seconds();
     assert(task->progress == PAR_READY);
@@ -471,16 +426,11 @@ static void tell(const struct par_state *state, int phase, double done, int64_t 
 
 void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
 
-static int64_t inserted_by(const struct task *task)
-{
-    return task->report.inserted_free + task->report.inserted_on_segments;
-}
-
-static int64_t least_made_by(const struct task *task) { return inserted_by(task) + task->report.inserted_free; }
+static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
 /* The calling thread tells of what all have done, as often as it has ended a task itself. A point makes two triangles,
  * or, on the boundary, one: that is not less than what has been told before. */
-static void note_end(struct phase *p, const struct task *task)
+static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task) - task->made_before;
     const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
@@ -491,8 +441,8 @@ static void note_end(struct phase *p, const struct task *task)
 
 static void run_next(void *context, size_t index)
 {
-    struct phase *p = context;
-    struct task *task = &p->tasks[p->order[index]];
+    struct par_phase_run *p = context;
+    struct par_task *task = &p->tasks[p->order[index]];
     if (task->progress != PAR_READY || tri_stop_is_asked(p->state->mesh->stop))
         return;
     run_task(p, task);
@@ -501,7 +451,7 @@ static void run_next(void *context, size_t index)
 }
 
 /* Runs every task that is ready, until it has ended, is full, or somebody asks for the end. */
-static void run_tasks(struct phase *p)
+static void run_tasks(struct par_phase_run *p)
 {
     double began = tri_seconds();
     struct par_report *report = p->state->report;
@@ -515,7 +465,7 @@ static void run_tasks(struct phase *p)
     report->phase_seconds[p->phase] += seconds;
 }
 
-static bool is_any(const struct phase *p, enum par_progress progress)
+static bool is_any(const struct par_phase_run *p, enum par_progress progress)
 {
     for (int32_t i = 0; i < p->n_tasks; i++)
         if (p->tasks[i].progress == progress)
@@ -536,7 +486,7 @@ static int by_expected(const void *left, const void *right)
 }
 
 /* The largest first, so that the last to end are small; or, for tests, at random. */
-static bool order_tasks(struct phase *p)
+static bool order_tasks(struct par_phase_run *p)
 {
     unsigned draw = p->state->options->shuffle;
     struct queued *queue = malloc(((size_t)p->n_tasks + 1) * sizeof *queue);
@@ -555,196 +505,8 @@ static bool order_tasks(struct phase *p)
     return done;
 }
 
-static bool report_block(const struct phase *p, const struct task *task)
-{
-    struct par_report *report = p->state->report;
-    if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
-        return false;
-    report->blocks[report->n_blocks++] = (struct par_block_report){
-        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist, inserted_by(task),
-        task->report.fenced, task->seconds};
-    return true;
-}
-
-void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
-{
-    sum->inserted_free += add->inserted_free;
-    sum->inserted_on_segments += add->inserted_on_segments;
-    sum->gated += add->gated;
-    sum->fenced += add->fenced;
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        sum->given_up[k] += add->given_up[k];
-    sum->hit_limit |= add->hit_limit;
-}
-
-void par_forget_deferred(struct par_report *report) { report->total.gated = report->total.fenced = 0; }
-
-uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
-{
-    int32_t column = block / partition->n_rows, row = block % partition->n_rows;
-    int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
-    return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
-}
-
-/* What a phase has left. */
-struct leftovers {
-    const struct phase *p;
-    _Atomic(uint64_t) *seen; /* bits of triangles */
-    int32_t *before;         /* [n_tasks + 1] left by the tasks before each */
-    int32_t *item;           /* [before[n_tasks]] */
-    uint64_t *key;           /* [before[n_tasks]] */
-};
-
-static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
-{
-    const uint64_t bit = (uint64_t)1 << triangle % 64;
-    return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
-}
-
-/* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
- * ninefold after the next phase. Two blocks do not leave the same one: each looks at what has two corners in its box,
- * and boxes of one phase are disjoint. So who comes first does not matter. */
-static void drop_repeated(void *context, size_t index)
-{
-    const struct leftovers *left = context;
-    struct par_ids *own = &left->p->tasks[index].left;
-    int32_t n = 0;
-    for (int32_t k = 0; k < own->n; k++)
-        if (is_new(left, own->item[k]))
-            own->item[n++] = own->item[k];
-    own->n = n;
-}
-
-static void gather_own(void *context, size_t index)
-{
-    const struct leftovers *left = context;
-    const struct phase *p = left->p;
-    const struct par_ids *own = &p->tasks[index].left;
-    const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
-    for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
-        left->item[at] = own->item[k];
-        left->key[at] = key | (uint32_t)k;
-    }
-}
-
-static bool gather_left(struct leftovers *left)
-{
-    const struct phase *p = left->p;
-    const size_t n = (size_t)p->n_tasks;
-    bool memory = true;
-    left->seen = calloc((size_t)p->state->mesh->n_triangles / 64 + 1, sizeof *left->seen);
-    left->before = malloc((n + 1) * sizeof *left->before);
-    if (!left->seen || !left->before)
-        return false;
-    tri_execute(&p->state->executor, n, drop_repeated, left);
-    left->before[0] = 0;
-    for (size_t i = 0; i < n; i++) {
-        memory = memory && !p->tasks[i].lost;
-        left->before[i + 1] = left->before[i] + p->tasks[i].left.n;
-    }
-    left->item = malloc(((size_t)left->before[n] + 1) * sizeof *left->item);
-    left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
-    memory = memory && left->item && left->key;
-    if (memory)
-        tri_execute(&p->state->executor, n, gather_own, left);
-    return memory;
-}
-
-static uint64_t key_of(const struct par_state *state, int32_t i)
-{
-    return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
-}
-
-bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
-{
-    struct par_ids *list = &state->worklist;
-    int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
-    uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
-    if (!items || !keys) {
-        free(items);
-        free(keys);
-        return false;
-    }
-    assert(state->key.n == 0 || state->key.n == list->n);
-    for (int32_t i = 0, at = 0; at < sum; at++) {
-        bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
-        items[at] = old ? list->item[i] : item[k];
-        keys[at] = old ? key_of(state, i) : key[k];
-        assert(at == 0 || keys[at - 1] < keys[at]);
-        i += old;
-        k += !old;
-    }
-    free(state->worklist.item);
-    free(state->key.item);
-    state->worklist = (struct par_ids){items, sum, sum};
-    state->key = (struct par_keys){keys, sum, sum};
-    return true;
-}
-
-static bool gather_changes(const struct phase *p)
-{
-    bool memory = true;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
-            memory = par_ids_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
-    return memory;
-}
-
-static bool gather_given_up(const struct phase *p)
-{
-    bool memory = true;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
-            memory = par_ids_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
-    return memory;
-}
-
-static bool take_back(struct phase *p)
-{
-    struct leftovers left = {.p = p};
-    bool memory = gather_left(&left) &&
-                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
-                  gather_given_up(p);
-    free(left.seen);
-    free(left.before);
-    free(left.item);
-    free(left.key);
-    return memory;
-}
-
-/* Otherwise than for room, or since somebody asks for the end? */
-static bool has_failed(const struct task *task)
-{
-    return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
-}
-
-/* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
- * one that has failed says. */
-static enum tri_status collect(struct phase *p, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    bool memory = take_back(p);
-    for (int32_t i = 0; i < p->n_tasks; i++) {
-        struct task *task = &p->tasks[i];
-        if (!status && has_failed(task)) {
-            status = task->status;
-            tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
-        }
-        par_add_up(&p->state->report->total, &task->report);
-        memory = memory && report_block(p, task);
-        par_room_return(&task->view.room, &p->state->spare);
-        free(task->left.item);
-        free(task->given_up.item);
-        free(task->changed.item);
-        free(task->asked.item);
-        tri_pause_drop(&task->pause);
-        tri_refiner_free(task->refiner);
-    }
-    return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
-}
-
 /* The worklist, dealt to tasks that can begin. */
-static enum tri_status begin_tasks(struct phase *p, struct tri_error *error)
+static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *error)
 {
     struct par_report *report = p->state->report;
     double began = tri_seconds();
@@ -762,7 +524,7 @@ static enum tri_status begin_tasks(struct phase *p, struct tri_error *error)
 }
 
 /* Room for those that wait, once all others have ended: so what each gets does not depend on when others stopped. */
-static enum tri_status give_room(struct phase *p, struct tri_error *error)
+static enum tri_status give_room(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     double dealing = tri_seconds();
@@ -775,7 +537,7 @@ static enum tri_status give_room(struct phase *p, struct tri_error *error)
 }
 
 /* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some are ready to go on. */
-static enum tri_status run_to_end(struct phase *p, struct tri_error *error)
+static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *error)
 {
     double reserving = tri_seconds();
     enum tri_status status = reserve_room(p, error);
@@ -795,7 +557,7 @@ static enum tri_status run_to_end(struct phase *p, struct tri_error *error)
 /* --- a phase that is halted, and goes on */
 
 /* The tasks of a phase that has been halted. */
-static enum tri_status take_up(struct phase *p, struct tri_error *error)
+static enum tri_status take_up(struct par_phase_run *p, struct tri_error *error)
 {
     struct par_halt *halt = &p->state->halt;
     p->tasks = calloc((size_t)halt->n_blocks, sizeof *p->tasks);
@@ -805,7 +567,7 @@ static enum tri_status take_up(struct phase *p, struct tri_error *error)
     p->worklist = halt->worklist;
     for (int32_t i = 0, at = 0; i < halt->n_blocks; at += halt->block[i++].n_worklist) {
         const struct par_halted *h = &halt->block[i];
-        p->tasks[p->n_tasks++] = (struct task){.block = h->block, .worklist = p->worklist + at,
+        p->tasks[p->n_tasks++] = (struct par_task){.block = h->block, .worklist = p->worklist + at,
                                                .n_worklist = h->n_worklist, .expected = h->expected,
                                                .pauses = h->pauses, .progress = h->progress, .seconds = h->seconds,
                                                .report = h->report, .view.room = h->room, .left = h->left,
@@ -820,7 +582,7 @@ static enum tri_status take_up(struct phase *p, struct tri_error *error)
 }
 
 /* A refiner is taken apart: its task may go on in another process. */
-static bool leave_refiner(struct task *task)
+static bool leave_refiner(struct par_task *task)
 {
     if (!task->refiner)
         return true;
@@ -836,20 +598,20 @@ static bool leave_refiner(struct task *task)
 
 /* Where all tasks are, for who goes on; nothing is left here. False: one has failed, or there is no memory, and it is
  * not halted. */
-static bool halt_tasks(struct phase *p)
+static bool halt_tasks(struct par_phase_run *p)
 {
     struct par_halt *halt = &p->state->halt;
     struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
-    bool memory = block && gather_given_up(p);
+    bool memory = block && par_gather_given_up(p);
     for (int32_t i = 0; i < p->n_tasks; i++)
-        memory = memory && !p->tasks[i].lost && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
+        memory = memory && !p->tasks[i].lost && !par_has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
     if (!memory) {
         free(block);
         return false;
     }
     *halt = (struct par_halt){.block = block, .worklist = p->worklist};
     for (int32_t i = 0; i < p->n_tasks; i++) {
-        const struct task *task = &p->tasks[i];
+        const struct par_task *task = &p->tasks[i];
         block[halt->n_blocks++] = (struct par_halted){task->block, task->n_worklist, task->expected, task->pauses,
                                                       task->progress, task->seconds, task->report, task->view.room,
                                                       task->left, task->pause};
@@ -863,7 +625,7 @@ static bool halt_tasks(struct phase *p)
 
 /* Begins the phase, or goes on with it; then halts it, where it is stopped and may be kept, or collects what its tasks
  * have done. */
-static enum tri_status run_phase(struct phase *p, struct tri_error *error)
+static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = p->state->halt.n_blocks > 0 ? take_up(p, error) : begin_tasks(p, error);
     if (status)
@@ -877,7 +639,7 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for blocks that are to go on later");
     }
     double merging = tri_seconds();
-    enum tri_status collected = collect(p, error);
+    enum tri_status collected = par_collect(p, error);
     p->state->report->seconds_merge += tri_seconds() - merging;
     return collected ? collected : status; /* a failure is told before a stop */
 }
@@ -886,7 +648,7 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
                           struct tri_error *error)
 {
     size_t n = (size_t)state->worklist.n + 1;
-    struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only,
+    struct par_phase_run p = {.state = state, .partition = partition, .phase = phase, .only = only,
                       .before = par_triangles(state)};
     assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);

@@ -10,6 +10,7 @@
 #include "sched/schedule/by_tile.h"
 #include "sched/schedule/cells.h"
 #include "sched/schedule/phase.h"
+#include "sched/schedule/prerefine.h"
 #include "sched/ranks/ranks.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
@@ -24,10 +25,6 @@
 #include "triangle/refine/pause.h"
 #include "triangle/base/size_text.h"
 
-/* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
- * to take a few thousandths of the time. (docs/performance.md) */
-static const double COARSE_PER_CELL = 64;
-
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;
 
@@ -35,94 +32,13 @@ enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
-void par_report_free(struct par_report *report)
-{
-    par_partition_free(&report->partition);
-    free(report->blocks);
-    report->blocks = NULL;
-    report->n_blocks = report->block_capacity = 0;
-}
-
-int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
-{
-    for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
-        int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
-        if (block != TRI_NONE)
-            return block;
-    }
-    *phase = -1;
-    return TRI_NONE;
-}
-
-/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
- * the mesh's units, where squares neither overflow nor underflow. */
-struct coarse_test {
-    const struct par_partition *partition;
-    double share2; /* square of it */
-    double least2; /* no edge shorter than the root of this is too long in any cell */
-    double unit;
-};
-
-static double squared_edge(const double a[2], const double b[2], double unit)
-{
-    double x = b[0] / unit - a[0] / unit, y = b[1] / unit - a[1] / unit;
-    return x * x + y * y;
-}
-
-static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
-{
-    const struct coarse_test *test = user;
-    double unit = test->unit;
-    double longest = fmax(squared_edge(a, b, unit), fmax(squared_edge(b, c, unit), squared_edge(c, a, unit)));
-    (void)area;
-    if (longest <= test->least2)
-        return 0;
-    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3,
-                               (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
-    double size = par_cell_size(test->partition, centre);
-    return longest > test->share2 * size * size;
-}
-
-static double smallest_cell(const struct par_partition *p)
-{
-    double least = HUGE_VAL;
-    for (int32_t c = 0; c + 1 < p->n_columns; c++)
-        least = p->x[c + 1] - p->x[c] < least ? p->x[c + 1] - p->x[c] : least;
-    for (int32_t c = 0; c < p->n_columns; c++) {
-        const double *y = p->y + (size_t)c * (size_t)p->n_rows;
-        for (int32_t r = 0; r + 1 < p->n_rows; r++)
-            least = y[r + 1] - y[r] < least ? y[r + 1] - y[r] : least;
-    }
-    return least > 0 ? least : 0;
-}
-
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error);
-
-/* The bounds of a uniform pre-refinement: the same with areas scaled up, as the paper has it, for the area that makes
- * COARSE_PER_CELL triangles in a cell. */
-static struct tri_refine_options coarse_bounds(const struct tri_refine_options *quality, double cell)
-{
-    struct tri_refine_options coarse = *quality;
-    coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
-    coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
-    return coarse;
-}
-
-/* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
- * level has at most a quarter of the triangles of the one above. */
-static bool areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
-                         double cell)
-{
-    struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
-    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
-}
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
                                          double cell, int level, struct tri_error *error)
 {
-    struct tri_refine_options coarse = coarse_bounds(quality, cell);
+    struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
     bool is_told = level == 0 && !state->report->partition.x; /* of the first schedule, see report_schedule */
     if (is_told && coarse.min_angle > 0 && quality->max_area > 0) {
         double area = quality->max_area * coarse.area_scale;
@@ -130,50 +46,6 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
         state->report->radius_theory = par_radius_tight(area, coarse.min_angle);
     }
     return refine_level(state, &coarse, level + 1, error);
-}
-
-static enum tri_status fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
-                                 struct tri_error *error)
-{
-    state->key.n = 0;
-    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
-}
-
-/* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
- * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
- * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
-static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
-                                        const struct par_partition *partition, struct tri_error *error)
-{
-    struct tri_refine_options coarse = *quality;
-    struct tri_refine_report report;
-    double least = smallest_cell(partition);
-    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.urgent = is_too_long;
-    coarse.urgent_user = &test;
-    coarse.max_steiner = (int64_t)(partition->estimate / 400);
-    struct par_ids long_ones;
-    double began = tri_seconds();
-    enum tri_status status = fill_worklist(state, quality, false, error);
-    if (status)
-        return status;
-    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &state->executor, &long_ones))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
-    assert(long_ones.n <= state->worklist.n);
-    coarse.worklist = long_ones.item;
-    coarse.n_worklist = long_ones.n;
-    double found = tri_seconds(), refined = found;
-    if (long_ones.n > 0) {
-        status = tri_refine(state->mesh, &coarse, &report, error);
-        state->report->total.inserted_free += report.inserted_free;
-        state->report->total.inserted_on_segments += report.inserted_on_segments;
-        refined = tri_seconds();
-        status = status ? status : fill_worklist(state, quality, true, error);
-    }
-    free(long_ones.item);
-    state->report->seconds_prerefine += refined - found;
-    state->report->seconds_find += tri_seconds() - refined + found - began;
-    return status;
 }
 
 /* Ranks keep states of their own. */
@@ -547,13 +419,13 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
     state->level = level;
     par_tell(state, 0);
-    if (areas_decide(state, quality, estimate, cell)) {
+    if (par_areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
         began = tri_seconds();
-        status = status ? status : fill_worklist(state, quality, false, error);
+        status = status ? status : par_fill_worklist(state, quality, false, error);
         state->report->seconds_find += tri_seconds() - began;
     } else {
-        status = prerefine_graded(state, quality, &partition, error);
+        status = par_prerefine_graded(state, quality, &partition, error);
     }
     state->level = level; /* again */
     if (!status)
@@ -625,7 +497,7 @@ static enum tri_status refine_again(struct par_state *state, const struct tri_re
     enum tri_status status = par_partition_copy(&partition, &state->cells, error);
     if (status)
         return status;
-    status = fill_worklist(state, quality, false, error);
+    status = par_fill_worklist(state, quality, false, error);
     if (!status)
         status = par_park_expect(state->park, state->mesh, par_order_bytes(&state->worklist), error);
     if (!status && !par_order_by_tile(state, &partition, 0, par_blocks(&partition)))

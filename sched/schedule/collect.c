@@ -1,0 +1,178 @@
+/* What the blocks of a phase leave: triangles for the next one, in canonical order, what they changed and gave up. */
+#include <assert.h>
+#include <stdlib.h>
+
+#include "sched/schedule/phase_tasks.h"
+#include "triangle/base/grow.h"
+
+uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
+{
+    int32_t column = block / partition->n_rows, row = block % partition->n_rows;
+    int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
+    return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
+}
+
+/* What a phase has left. */
+struct leftovers {
+    const struct par_phase_run *p;
+    _Atomic(uint64_t) *seen; /* bits of triangles */
+    int32_t *before;         /* [n_tasks + 1] left by the tasks before each */
+    int32_t *item;           /* [before[n_tasks]] */
+    uint64_t *key;           /* [before[n_tasks]] */
+};
+
+static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
+{
+    const uint64_t bit = (uint64_t)1 << triangle % 64;
+    return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
+}
+
+/* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
+ * ninefold after the next phase. Two blocks do not leave the same one: each looks at what has two corners in its box,
+ * and boxes of one phase are disjoint. So who comes first does not matter. */
+static void drop_repeated(void *context, size_t index)
+{
+    const struct leftovers *left = context;
+    struct par_ids *own = &left->p->tasks[index].left;
+    int32_t n = 0;
+    for (int32_t k = 0; k < own->n; k++)
+        if (is_new(left, own->item[k]))
+            own->item[n++] = own->item[k];
+    own->n = n;
+}
+
+static void gather_own(void *context, size_t index)
+{
+    const struct leftovers *left = context;
+    const struct par_phase_run *p = left->p;
+    const struct par_ids *own = &p->tasks[index].left;
+    const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
+    for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
+        left->item[at] = own->item[k];
+        left->key[at] = key | (uint32_t)k;
+    }
+}
+
+static bool gather_left(struct leftovers *left)
+{
+    const struct par_phase_run *p = left->p;
+    const size_t n = (size_t)p->n_tasks;
+    bool memory = true;
+    left->seen = calloc((size_t)p->state->mesh->n_triangles / 64 + 1, sizeof *left->seen);
+    left->before = malloc((n + 1) * sizeof *left->before);
+    if (!left->seen || !left->before)
+        return false;
+    tri_execute(&p->state->executor, n, drop_repeated, left);
+    left->before[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+        memory = memory && !p->tasks[i].lost;
+        left->before[i + 1] = left->before[i] + p->tasks[i].left.n;
+    }
+    left->item = malloc(((size_t)left->before[n] + 1) * sizeof *left->item);
+    left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
+    memory = memory && left->item && left->key;
+    if (memory)
+        tri_execute(&p->state->executor, n, gather_own, left);
+    return memory;
+}
+
+static uint64_t key_of(const struct par_state *state, int32_t i)
+{
+    return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
+}
+
+bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
+{
+    struct par_ids *list = &state->worklist;
+    int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
+    uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
+    if (!items || !keys) {
+        free(items);
+        free(keys);
+        return false;
+    }
+    assert(state->key.n == 0 || state->key.n == list->n);
+    for (int32_t i = 0, at = 0; at < sum; at++) {
+        bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
+        items[at] = old ? list->item[i] : item[k];
+        keys[at] = old ? key_of(state, i) : key[k];
+        assert(at == 0 || keys[at - 1] < keys[at]);
+        i += old;
+        k += !old;
+    }
+    free(state->worklist.item);
+    free(state->key.item);
+    state->worklist = (struct par_ids){items, sum, sum};
+    state->key = (struct par_keys){keys, sum, sum};
+    return true;
+}
+
+static bool gather_changes(const struct par_phase_run *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
+            memory = par_ids_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
+    return memory;
+}
+
+bool par_gather_given_up(const struct par_phase_run *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
+            memory = par_ids_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
+    return memory;
+}
+
+static bool take_back(struct par_phase_run *p)
+{
+    struct leftovers left = {.p = p};
+    bool memory = gather_left(&left) &&
+                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
+                  par_gather_given_up(p);
+    free(left.seen);
+    free(left.before);
+    free(left.item);
+    free(left.key);
+    return memory;
+}
+
+bool par_has_failed(const struct par_task *task)
+{
+    return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
+}
+
+static bool report_block(const struct par_phase_run *p, const struct par_task *task)
+{
+    struct par_report *report = p->state->report;
+    if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
+        return false;
+    report->blocks[report->n_blocks++] = (struct par_block_report){
+        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist, par_inserted_by(task),
+        task->report.fenced, task->seconds};
+    return true;
+}
+
+enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool memory = take_back(p);
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct par_task *task = &p->tasks[i];
+        if (!status && par_has_failed(task)) {
+            status = task->status;
+            tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
+        }
+        par_add_up(&p->state->report->total, &task->report);
+        memory = memory && report_block(p, task);
+        par_room_return(&task->view.room, &p->state->spare);
+        free(task->left.item);
+        free(task->given_up.item);
+        free(task->changed.item);
+        free(task->asked.item);
+        tri_pause_drop(&task->pause);
+        tri_refiner_free(task->refiner);
+    }
+    return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
+}

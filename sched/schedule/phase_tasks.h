@@ -1,0 +1,73 @@
+/* What the files of a phase share: phase.c (dealing and running its blocks), collect.c (what they leave). */
+#ifndef SCHED_SCHEDULE_PHASE_TASKS_H
+#define SCHED_SCHEDULE_PHASE_TASKS_H
+
+#include <stdatomic.h>
+
+#include "sched/schedule/phase.h"
+#include "triangle/mesh/owners.h"
+#include "triangle/refine/pause.h"
+
+/* A block at work. Every field is its own while the phase runs; others read it before and after. */
+struct par_task {
+    int32_t block;
+    tri_triangle_id *worklist; /* part of the phase's list */
+    int32_t n_worklist;
+    int32_t expected;       /* triangles, to the order */
+    struct tri_fence fence, active; /* the second in the caller's coordinates */
+    bool has_margin;
+    struct par_view view;
+    struct tri_owners owners;
+    struct tri_refine_options options;
+    struct tri_refine_report report;
+    int64_t made_before;     /* of it, in a phase that goes on */
+    struct tri_refiner *refiner;
+    struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
+    struct par_ids left;  /* what gate and fence left */
+    struct par_ids given_up;
+    struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
+    bool lost;              /* no memory for one of these lists */
+    struct tri_part part;
+    enum par_progress progress;
+    int32_t pauses;         /* so far, for triangles */
+    enum tri_status status;
+    struct tri_error error;
+    double seconds;
+};
+
+struct par_phase_run {
+    struct par_state *state;
+    const struct par_partition *partition;
+    int phase;
+    int32_t only;       /* column, or TRI_NONE */
+    int32_t *block_of;  /* [worklist.n] */
+    double *work;       /* [worklist.n] triangles that each will become, to the order */
+    tri_triangle_id *worklist; /* [worklist.n] by block */
+    struct par_task *tasks;
+    int32_t n_tasks;
+    int32_t *order;     /* [n_tasks] in which tasks are started */
+    int64_t expected;   /* triangles of all tasks, to the order */
+    _Atomic(int64_t) done; /* of these, in tasks that have ended */
+    int64_t before;     /* triangles there were, */
+    _Atomic(int64_t) made; /* and those that such tasks have made */
+    const void *caller; /* address of the own one's `here` */
+    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/owners.h */
+    size_t n_marks;
+};
+
+static inline int64_t par_inserted_by(const struct par_task *task)
+{
+    return task->report.inserted_free + task->report.inserted_on_segments;
+}
+
+/* Otherwise than for room, or since somebody asks for the end? */
+bool par_has_failed(const struct par_task *task);
+
+/* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
+ * one that has failed says. */
+enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error);
+
+/* The triangles that tasks have given up, in their order. False: no memory. */
+bool par_gather_given_up(const struct par_phase_run *p);
+
+#endif

@@ -1,0 +1,112 @@
+/* Where areas decide, the bounds with areas scaled up; else bad triangles that are long against their cell. */
+#include "sched/schedule/prerefine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "triangle/base/clock.h"
+#include "triangle/size/estimate.h"
+
+/* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
+ * to take a few thousandths of the time. (docs/performance.md) */
+static const double COARSE_PER_CELL = 64;
+
+/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
+ * the mesh's units, where squares neither overflow nor underflow. */
+struct coarse_test {
+    const struct par_partition *partition;
+    double share2; /* square of it */
+    double least2; /* no edge shorter than the root of this is too long in any cell */
+    double unit;
+};
+
+static double squared_edge(const double a[2], const double b[2], double unit)
+{
+    double x = b[0] / unit - a[0] / unit, y = b[1] / unit - a[1] / unit;
+    return x * x + y * y;
+}
+
+static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const struct coarse_test *test = user;
+    double unit = test->unit;
+    double longest = fmax(squared_edge(a, b, unit), fmax(squared_edge(b, c, unit), squared_edge(c, a, unit)));
+    (void)area;
+    if (longest <= test->least2)
+        return 0;
+    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3,
+                               (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
+    double size = par_cell_size(test->partition, centre);
+    return longest > test->share2 * size * size;
+}
+
+static double smallest_cell(const struct par_partition *p)
+{
+    double least = HUGE_VAL;
+    for (int32_t c = 0; c + 1 < p->n_columns; c++)
+        least = p->x[c + 1] - p->x[c] < least ? p->x[c + 1] - p->x[c] : least;
+    for (int32_t c = 0; c < p->n_columns; c++) {
+        const double *y = p->y + (size_t)c * (size_t)p->n_rows;
+        for (int32_t r = 0; r + 1 < p->n_rows; r++)
+            least = y[r + 1] - y[r] < least ? y[r + 1] - y[r] : least;
+    }
+    return least > 0 ? least : 0;
+}
+
+struct tri_refine_options par_coarse_bounds(const struct tri_refine_options *quality, double cell)
+{
+    struct tri_refine_options coarse = *quality;
+    coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
+    coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
+    return coarse;
+}
+
+bool par_areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
+                      double cell)
+{
+    struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
+    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
+}
+
+enum tri_status par_fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
+                                  struct tri_error *error)
+{
+    state->key.n = 0;
+    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
+}
+
+enum tri_status par_prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
+                                     const struct par_partition *partition, struct tri_error *error)
+{
+    struct tri_refine_options coarse = *quality;
+    struct tri_refine_report report;
+    double least = smallest_cell(partition);
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
+    coarse.urgent = is_too_long;
+    coarse.urgent_user = &test;
+    coarse.max_steiner = (int64_t)(partition->estimate / 400);
+    struct par_ids long_ones;
+    double began = tri_seconds();
+    enum tri_status status = par_fill_worklist(state, quality, false, error);
+    if (status)
+        return status;
+    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &state->executor, &long_ones))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
+    assert(long_ones.n <= state->worklist.n);
+    coarse.worklist = long_ones.item;
+    coarse.n_worklist = long_ones.n;
+    double found = tri_seconds(), refined = found;
+    if (long_ones.n > 0) {
+        status = tri_refine(state->mesh, &coarse, &report, error);
+        state->report->total.inserted_free += report.inserted_free;
+        state->report->total.inserted_on_segments += report.inserted_on_segments;
+        refined = tri_seconds();
+        status = status ? status : par_fill_worklist(state, quality, true, error);
+    }
+    free(long_ones.item);
+    state->report->seconds_prerefine += refined - found;
+    state->report->seconds_find += tri_seconds() - refined + found - began;
+    return status;
+}
