@@ -20,6 +20,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/flip.c
     triangle/cdt/overlap.c
     triangle/cdt/bundle.c
+    triangle/cdt/rotation.c
+    triangle/cdt/pieces.c
     triangle/cdt/constrain.c
     triangle/geometry/sweep_line.c
     triangle/mesh/locate.c

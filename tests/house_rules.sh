@@ -71,6 +71,7 @@ tested_by() {
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
+    triangle/cdt/rotation.c | triangle/cdt/pieces.c) echo constrain ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/triangulate.c) echo par_triangulate ;;
     sched/schedule/halt.c | sched/checkpoint/carry_halt.c | sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;

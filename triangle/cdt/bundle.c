@@ -86,22 +86,16 @@ static void try_stop(struct bundles *b, tri_vertex_id v)
     b->stop[b->n_stops++] = v;
 }
 
-static int corner_of(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v)
-{
-    const tri_vertex_id *corner = mesh->tri[t].v;
-    return corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
-}
-
 /* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
 static void walk(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
 {
     const struct tri_mesh *mesh = b->mesh;
     const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
-    int e = corner_of(mesh, t, from);
+    int e = tri_corner_of(&mesh->tri[t], from);
     if (tri_orient2d(p, q, mesh->xy[mesh->tri[t].v[tri_prev[e]]]) <= 0) { /* along its left edge */
         tri_halfedge beyond = tri_across(mesh, tri_code(t, tri_next[e]));
         t = beyond == TRI_NONE ? t : tri_of(beyond);
-        e = corner_of(mesh, t, from);
+        e = tri_corner_of(&mesh->tri[t], from);
     }
     const tri_vertex_id *v = mesh->tri[t].v;
     for (int k = 0; k < 3; k++)

@@ -11,8 +11,7 @@
  * vertex from between the ends of pieces, in the order along the first segment there, and rule 3 is applied a bounded
  * number of times. Debug builds assert each comes_between.
  *
- * Source of the idea: snap rounding (Hobby 1999), here without a grid. Order of the rounds: Amenta, Choi & Rote 2003.
- * */
+ * Source of the idea: snap rounding (Hobby 1999), here without a grid. */
 #include "triangle/cdt/constrain.h"
 
 #include <assert.h>
@@ -23,24 +22,22 @@
 #include "triangle/cdt/bundle.h"
 #include "triangle/refine/cavity.h"
 #include "triangle/cdt/crossing.h"
+#include "triangle/cdt/rotation.h"
 #include "triangle/cdt/flip.h"
 #include "triangle/base/grow.h"
 #include "triangle/mesh/interpolate.h"
 #include "triangle/mesh/locate.h"
 #include "triangle/cdt/overlap.h"
+#include "triangle/cdt/pieces.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/cdt/recover.h"
-#include "triangle/base/scatter.h"
 
 enum { BESIDE = 3 };
 enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
-enum { ROUNDS = 24 }; /* as many as make the first one small in any input */
-enum { HUB = 16 }; /* triangles around a vertex: with more it may be a hub */
 
 /* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
  * others. */
 static const double NEAR = 0.5, APART = 2;
-
 static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
 
 struct layer {
@@ -77,88 +74,6 @@ static bool push_piece(struct layer *l, tri_vertex_id from, tri_vertex_id to, st
     if (room)
         l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
     return room;
-}
-
-static int corner_of(const struct tri_triangle *t, tri_vertex_id v)
-{
-    assert(t->v[0] == v || t->v[1] == v || t->v[2] == v);
-    return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
-}
-
-/* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
-static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
-{
-    int k = corner_of(&mesh->tri[t], v);
-    tri_halfedge code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
-    return code == TRI_NONE ? TRI_NONE : tri_of(code);
-}
-
-/* Does the ray from a (corner k of t) to q leave through t: right edge included, left edge not? */
-static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
-{
-    const struct tri_triangle *at = &mesh->tri[t];
-    struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
-    double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
-    if (r == 0) /* on the line of the right edge: ahead, not behind? */
-        return (right.x - a.x) * (q.x - a.x) + (right.y - a.y) * (q.y - a.y) > 0;
-    return r > 0 && s < 0;
-}
-
-static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
-{
-    const struct tri_triangle *at = &mesh->tri[t];
-    struct tri_point a = mesh->xy[at->v[k]], left = mesh->xy[at->v[tri_prev[k]]];
-    return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
-}
-
-/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
-struct rotation {
-    tri_vertex_id vertex;
-    tri_triangle_id start, t;
-    struct tri_point q;
-    bool clockwise;
-};
-
-static struct rotation rotate_from(const struct layer *l, tri_vertex_id a, struct tri_point q)
-{
-    assert(l->corner[a] != TRI_NONE);
-    return (struct rotation){a, l->corner[a], l->corner[a], q, false};
-}
-
-/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
- * the next one is at hand. After the last one r->t is TRI_NONE. */
-static tri_triangle_id rotate(const struct layer *l, struct rotation *r)
-{
-    tri_triangle_id t = r->t;
-    int k = corner_of(&l->mesh->tri[t], r->vertex);
-    if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
-        return t;
-    r->t = turn(l->mesh, t, r->vertex, !r->clockwise);
-    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
-        r->clockwise = true;
-        r->t = turn(l->mesh, r->start, r->vertex, false);
-    } else if (r->t == r->start) {
-        r->t = TRI_NONE;
-    }
-    return TRI_NONE;
-}
-
-/* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
- * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
- * end with fewer triangles. Remembered as the corner, so that the edges of a fan in order cost O(1) each. */
-static tri_triangle_id find_exit(struct layer *l, tri_vertex_id *a, tri_vertex_id *b)
-{
-    const tri_vertex_id from = *a, to = *b;
-    tri_triangle_id found = TRI_NONE;
-    struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
-    int end = 0;
-    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
-        end = n < HUB ? (n++, 0) : 1 - end;
-    if (found == TRI_NONE)
-        return TRI_NONE;
-    *a = end == 0 ? from : to;
-    *b = end == 0 ? to : from;
-    return l->corner[*a] = found;
 }
 
 static int32_t marker_of(const struct layer *l, struct tri_course course)
@@ -264,7 +179,7 @@ static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_i
     status = status ? status : check_distance(l, course, b);
     if (status)
         return status;
-    int k = corner_of(&mesh->tri[t], a);
+    int k = tri_corner_of(&mesh->tri[t], a);
     bool right = mesh->tri[t].v[tri_next[k]] == b;
     if (right || mesh->tri[t].v[tri_prev[k]] == b)
         return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
@@ -312,28 +227,6 @@ static bool take_up(struct layer *l, tri_sub_id s)
            tri_flip_legalise(&l->flips);
 }
 
-/* The triangle that holds q (TRI_NONE outside the hull, which is convex), by a walk from triangle t. */
-static tri_triangle_id locate(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
-{
-    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
-        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
-        if (next == t || next == TRI_NONE)
-            return next;
-        t = next;
-    }
-    return TRI_NONE;
-}
-
-/* A subsegment that is an edge of triangle t and has q on it; TRI_NONE if there is none. */
-static tri_sub_id sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
-{
-    const struct tri_triangle *at = &mesh->tri[t];
-    for (int e = 0; e < 3; e++)
-        if (at->n[e] < 0 && tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) == 0)
-            return ~at->n[e];
-    return TRI_NONE;
-}
-
 /* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
  * place. TRI_NONE where there is none. */
 static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
@@ -341,8 +234,8 @@ static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, str
     const struct tri_point step = {tri_resolution(*p), tri_resolution(*p)};
     for (int i = 0; i < TRI_PLACES; i++) {
         struct tri_point q = tri_place_beside(*p, step, i);
-        tri_triangle_id t = locate(l->mesh, l->corner[near], q);
-        tri_sub_id s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
+        tri_triangle_id t = tri_walk_to(l->mesh, l->corner[near], q);
+        tri_sub_id s = t == TRI_NONE ? TRI_NONE : tri_sub_under(l->mesh, t, q);
         if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {
             *p = q;
             return t;
@@ -507,7 +400,7 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
     struct tri_point p = crossing_of(l, &l->piece[first], &l->piece[first + 1]);
     for (;;) {
         t = find_place(l, near, &p);
-        on = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, p);
+        on = t == TRI_NONE ? TRI_NONE : tri_sub_under(l->mesh, t, p);
         if (on == TRI_NONE)
             break;
         if (!take_apart(l, on))
@@ -576,7 +469,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
     struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
     if (t == TRI_NONE)
         return met;
-    int e = corner_of(&mesh->tri[t], piece->from);
+    int e = tri_corner_of(&mesh->tri[t], piece->from);
     tri_vertex_id right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
     double at_right = tri_orient2d(pa, pb, mesh->xy[right]), at_left = tri_orient2d(pa, pb, mesh->xy[left]);
     if (at_right == 0 || at_left == 0) {
@@ -619,7 +512,7 @@ static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, t
 /* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
 static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
 {
-    tri_triangle_id t = find_exit(l, &piece.from, &piece.to);
+    tri_triangle_id t = tri_find_exit(l->mesh, l->corner, &piece.from, &piece.to);
     struct meeting met = look_ahead(l, &piece, t);
     assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
     l->runs_along |= met.beside != TRI_NONE || (met.end != TRI_NONE && met.end != piece.to);
@@ -710,56 +603,10 @@ static enum tri_status close_slits(struct layer *l)
     return TRI_OK;
 }
 
-/* The segments that have a meaning, as pieces. */
-static int32_t list_segments(struct layer *l, struct tri_piece *piece)
-{
-    const struct tri_pslg *pslg = l->pslg;
-    const int32_t *twin = l->mesh->twin, *markers = pslg->segment_markers;
-    int32_t n = 0;
-    for (int32_t k = 0; k < pslg->n_segments; k++) {
-        tri_vertex_id a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
-        bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
-        if (valid && twin) {
-            a = twin[a];
-            b = twin[b];
-        }
-        if (!valid || a == b)
-            l->report->skipped++;
-        else if (l->corner[a] != TRI_NONE && l->corner[b] != TRI_NONE) /* else all points are on one line */
-            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE, true}};
-    }
-    return n;
-}
-
 static tri_triangle_id exit_of(void *context, tri_vertex_id *from, tri_vertex_id *to)
 {
-    return find_exit(context, from, to);
-}
-
-/* A round has about as many pieces as all before it. */
-static int round_of(const struct tri_piece *piece)
-{
-    int round = ROUNDS - 1;
-    for (uint32_t draw = tri_scatter((uint32_t)piece->course.first); round > 0 && draw % 2 == 0; draw /= 2)
-        round--;
-    return round;
-}
-
-static bool put_in_rounds(struct tri_piece **piece, int32_t n)
-{
-    int32_t at[ROUNDS + 1] = {0};
-    struct tri_piece *sorted = malloc(((size_t)n + 1) * sizeof *sorted);
-    if (!sorted)
-        return false;
-    for (int32_t i = 0; i < n; i++)
-        at[round_of(&(*piece)[i]) + 1]++;
-    for (int r = 0; r < ROUNDS; r++)
-        at[r + 1] += at[r];
-    for (int32_t i = 0; i < n; i++)
-        sorted[at[round_of(&(*piece)[i])]++] = (*piece)[i];
-    free(*piece);
-    *piece = sorted;
-    return true;
+    const struct layer *l = context;
+    return tri_find_exit(l->mesh, l->corner, from, to);
 }
 
 /* Once a piece runs along vertices, others may do so, too: those that are left are shared. */
@@ -781,8 +628,8 @@ static enum tri_status lay_from(struct layer *l, struct tri_piece **piece, int32
 static enum tri_status lay_all(struct layer *l)
 {
     struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
-    int32_t n = piece ? list_segments(l, piece) : 0;
-    enum tri_status status = piece && put_in_rounds(&piece, n) ? TRI_OK : no_memory(l);
+    int32_t n = piece ? tri_list_pieces(l->mesh, l->pslg, l->corner, piece, &l->report->skipped) : 0;
+    enum tri_status status = piece && tri_put_in_rounds(&piece, n) ? TRI_OK : no_memory(l);
     status = status ? status : lay_from(l, &piece, &n);
     free(piece);
     return status ? status : close_slits(l);

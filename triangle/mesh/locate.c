@@ -228,3 +228,23 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
     return all ? TRI_OK : sweep_for(mesh, points, n, faces, error);
 }
+
+tri_triangle_id tri_walk_to(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
+        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        if (next == t || next == TRI_NONE)
+            return next;
+        t = next;
+    }
+    return TRI_NONE;
+}
+
+tri_sub_id tri_sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0 && tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) == 0)
+            return ~at->n[e];
+    return TRI_NONE;
+}

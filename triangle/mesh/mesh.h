@@ -16,6 +16,7 @@
 #ifndef TRIANGLE_MESH_MESH_H
 #define TRIANGLE_MESH_MESH_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -266,6 +267,13 @@ static inline size_t tri_vertex_size(const struct tri_mesh *mesh)
 {
     size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
     return attributes > sizeof *mesh->xy ? attributes : sizeof *mesh->xy;
+}
+
+/* Which corner of t is v? It is one. */
+static inline int tri_corner_of(const struct tri_triangle *t, tri_vertex_id v)
+{
+    assert(t->v[0] == v || t->v[1] == v || t->v[2] == v);
+    return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
 }
 
 /* Vertex first + i becomes what vertex from[i] was, for all i < n, where from[] names vertices first and above.
