@@ -21,7 +21,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/overlap.c
     triangle/cdt/bundle.c
     triangle/cdt/rotation.c
-    triangle/cdt/pieces.c
+    triangle/cdt/laying_order.c
     triangle/cdt/constrain.c
     triangle/geometry/sweep_line.c
     triangle/mesh/locate.c
@@ -58,9 +58,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/switches.c
     triangle/mesh/topology.c
     triangle/mesh/grid.c
-    triangle/dropin/input.c
-    triangle/dropin/output.c
-    triangle/dropin/run.c
+    triangle/dropin/from_io.c
+    triangle/dropin/to_io.c
+    triangle/dropin/call.c
     triangle/dropin/aloud.c
     triangle/dropin/triangulate.c)
 
@@ -68,27 +68,27 @@ set(PTRIANGLE_MESHER_SOURCES
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/survey.c
-    triangle/check/part.c
+    triangle/check/shares.c
     triangle/check/triangles.c
     triangle/check/edges.c
     triangle/check/pairs.c
     triangle/check/store.c
     triangle/check/match.c
-    triangle/check/segments.c
+    triangle/check/subsegments.c
     triangle/check/stars.c
     triangle/check/order.c
     triangle/check/missing.c
-    triangle/check/overlap.c
+    triangle/check/winding.c
     triangle/check/hull.c
     triangle/check/tube.c
-    triangle/check/chain.c
+    triangle/check/segment_chains.c
     triangle/check/border.c
     triangle/check/vertex_markers.c
-    triangle/check/input.c
+    triangle/check/kept_input.c
     triangle/check/nodes.c
     triangle/check/attributes.c
     triangle/check/apex.c
-    triangle/check/quality.c
+    triangle/check/bounds.c
     triangle/api/judge.c)
 
 # Folder triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
@@ -125,14 +125,14 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/items.c
     triangle/hdf5/rows.c
     triangle/hdf5/array.c
-    triangle/hdf5/segments.c
+    triangle/hdf5/segment_spool.c
     triangle/hdf5/ends.c
     triangle/hdf5/views.c
     triangle/hdf5/xdmf.c
-    triangle/hdf5/write.c
-    triangle/hdf5/part.c
-    triangle/hdf5/read.c)
-set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/part.c)
+    triangle/hdf5/h5_write.c
+    triangle/hdf5/buffer.c
+    triangle/hdf5/h5_read.c)
+set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/buffer.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c)
@@ -187,7 +187,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/territory.c
     sched/schedule/prerefine.c
     sched/schedule/schedule.c
-    sched/schedule/triangulate.c
+    sched/schedule/par_triangulate.c
     sched/schedule/library.c)
 
 # The ranks of an MPI, where there is one: a library of its own.
@@ -245,10 +245,10 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/summary.c
     drivers/mesh/self_check.c
     drivers/resources.c
-    drivers/mesh/estimate.c
+    drivers/mesh/needs.c
     drivers/mesh/disk_needs.c
     drivers/mesh/plan.c
-    drivers/mesh/run.c)
+    drivers/mesh/stages.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.

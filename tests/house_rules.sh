@@ -71,9 +71,9 @@ tested_by() {
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
-    triangle/cdt/rotation.c | triangle/cdt/pieces.c) echo constrain ;;
+    triangle/cdt/rotation.c | triangle/cdt/laying_order.c) echo constrain ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
-    sched/schedule/triangulate.c) echo par_triangulate ;;
+    sched/schedule/par_triangulate.c) echo par_triangulate ;;
     sched/schedule/halt.c | sched/checkpoint/carry_halt.c | sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
     sched/checkpoint/state.c | sched/checkpoint/folder.c) echo checkpoint ;;
     sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
@@ -111,7 +111,8 @@ refuse '#[[:space:]]*include[[:space:]]*"sched/(tiles|checkpoint|ranks)/' 'inclu
 refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/tiles/*.[ch] \
     sched/checkpoint/*.[ch]
 
-# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks (drivers/mesh/run.h).
+# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks
+# (drivers/mesh/stages.h).
 # shellcheck disable=SC2046 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/mesh/triangle.c \
     $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_/]+' | sed 's/$/.c/; p; s/c$/h/')
@@ -141,7 +142,7 @@ done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh/(mesh|owners)|refine/(fence|refine|pause|census|generate)|size/estimate|api/mesh|dropin/(triangle|run)'
+hooks='mesh/(mesh|owners)|refine/(fence|refine|pause|census|generate)|size/estimate|api/opaque_mesh|dropin/(triangle|call)'
 tools='base/[a-z_]+|geometry/(degrees|hilbert|point)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)

@@ -20,8 +20,8 @@
 #include "tests/full.h"
 #include "tests/lattice_tiles.h"
 #include "triangle/hdf5/array.h"
-#include "triangle/hdf5/read.h"
-#include "triangle/hdf5/write.h"
+#include "triangle/hdf5/h5_read.h"
+#include "triangle/hdf5/h5_write.h"
 
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
                             PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "triangle/hdf5/read.h"
+#include "triangle/hdf5/h5_read.h"
 
 struct judged_h5 {
     struct tri_h5 *file;

@@ -6,7 +6,7 @@
 
 struct judged_h5;
 
-/* Errors: as triangle/hdf5/read.h. *h5 is NULL then. */
+/* Errors: as triangle/hdf5/h5_read.h. *h5 is NULL then. */
 enum tri_status judged_h5_open(struct judged_h5 **h5, const char *path, struct tri_error *error);
 void judged_h5_close(struct judged_h5 *h5); /* NULL is fine */
 

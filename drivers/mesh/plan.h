@@ -4,7 +4,7 @@
 #ifndef DRIVERS_MESH_PLAN_H
 #define DRIVERS_MESH_PLAN_H
 
-#include "drivers/mesh/estimate.h"
+#include "drivers/mesh/needs.h"
 
 /* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
  * swept. */

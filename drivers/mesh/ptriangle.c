@@ -7,7 +7,7 @@
 
 #include "drivers/mesh/blocks_file.h"
 #include "drivers/mesh/console.h"
-#include "drivers/mesh/estimate.h"
+#include "drivers/mesh/needs.h"
 #include "drivers/mesh/help.h"
 #include "drivers/interrupt.h"
 #include "drivers/mesh/joint_files.h"
@@ -18,7 +18,7 @@
 #include "drivers/mesh/report_json.h"
 #include "drivers/resources.h"
 #include "drivers/mesh/restart.h"
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 #include "drivers/mesh/shared_input.h"
 #include "drivers/start.h"
 #include "drivers/mesh/streams.h"

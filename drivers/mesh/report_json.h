@@ -3,7 +3,7 @@
 #define DRIVERS_MESH_REPORT_JSON_H
 
 #include "drivers/mesh/rank_report.h"
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 #include "sched/schedule/schedule.h"
 #include "triangle/text/output.h"
 

@@ -2,7 +2,7 @@
 #ifndef DRIVERS_MESH_SHARED_INPUT_H
 #define DRIVERS_MESH_SHARED_INPUT_H
 
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 #include "sched/ranks/carrier.h"
 
 /* Collective: all that is read into *run by rank 0 (figure, triangles, base) comes to all. status: whether it has read

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "drivers/mesh/export.h"
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 #include "ptriangle/tiles.h"
-#include "triangle/hdf5/write.h"
+#include "triangle/hdf5/h5_write.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/stream.h"

@@ -6,7 +6,7 @@
 
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/help.h"
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 

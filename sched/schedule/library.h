@@ -2,7 +2,7 @@
 #ifndef SCHED_SCHEDULE_LIBRARY_H
 #define SCHED_SCHEDULE_LIBRARY_H
 
-#include "triangle/api/mesh.h"
+#include "triangle/api/opaque_mesh.h"
 
 /* A refine of struct tri_api_way: par_refine with the struct par_options that way->user points to, and with threads,
  * size test, figure and column of regions as settings and way say. */

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "triangle/api/figure.h"
-#include "triangle/api/mesh.h"
+#include "triangle/api/opaque_mesh.h"
 #include "triangle/mesh/topology.h"
 
 static const struct tri_api_mesh *api(const struct tri_mesh *mesh) { return (const struct tri_api_mesh *)mesh; }

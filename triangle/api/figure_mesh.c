@@ -2,7 +2,7 @@
  *
  * INVARIANT: between calls a mesh has no free numbers, its points lie in the order of the caller, and the arrays that
  * are made from it speak of what it is now. */
-#include "triangle/api/mesh.h"
+#include "triangle/api/opaque_mesh.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -28,7 +28,7 @@
 #include "triangle/mesh/interpolate.h"
 #include "triangle/mesh/locate.h"
 #include "triangle/cdt/overlap.h"
-#include "triangle/cdt/pieces.h"
+#include "triangle/cdt/laying_order.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/cdt/recover.h"
 

@@ -100,7 +100,7 @@ struct check_part {
     int32_t *turns;       /* [n_points] see stars.c */
     uint8_t *used;        /* [n_points] is it a corner? */
 
-    struct check_room *room; /* part.c */
+    struct check_room *room; /* shares.c */
 };
 
 enum { /* of each vertex of the mesh; the lower four bits count turns */
@@ -139,7 +139,7 @@ struct checker {
     struct check_store *store;
     struct check_boundary boundary; /* what is left at last, by half-edge */
 
-    /* quality.c */
+    /* bounds.c */
     struct check_quality *quality;
 
     /* The frame: vertices */
@@ -159,14 +159,14 @@ struct checker {
     int32_t *fan_first;                 /* [n_frame + 1] into fan */
     int32_t *fan; /* [2 * n_segments] 2 * s + end: subsegments, grouped by vertex, which is their given end */
 
-    /* input.c */
+    /* kept_input.c */
     int64_t *found;  /* [input->n_points] used vertex of the mesh at the place of an input point, -1: none */
     int32_t *twin;   /* [input->n_points] the same in the frame */
     int64_t *unused; /* vertices of the mesh that no triangle uses, where there is no input */
     double *unused_points;
     int32_t n_unused;
 
-    /* chain.c */
+    /* segment_chains.c */
     uint8_t *is_along; /* [n_segments] does the subsegment lie along an input segment? */
     struct check_piece *missing; /* [n_missing] of input segments */
     int32_t n_missing, missing_capacity;

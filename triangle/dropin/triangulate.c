@@ -1,12 +1,12 @@
 /* triangulate() of libtriangle.a: one thread.
  *
- * libptriangle.a has the same functions (sched/schedule/triangulate.c), and a linker that sees it first never comes
+ * libptriangle.a has the same functions (sched/schedule/par_triangulate.c), and a linker that sees it first never comes
  * here: this file defines nothing else. */
 #include "triangle/dropin/triangle.h"
 
 #include <stddef.h>
 
-#include "triangle/dropin/run.h"
+#include "triangle/dropin/call.h"
 
 /* What clients in other languages, and objects compiled against Triangle's own header, rely on. */
 #define AT(field, offset) _Static_assert(offsetof(struct triangulateio, field) == (offset), #field " has moved")

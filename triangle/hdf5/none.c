@@ -2,8 +2,8 @@
 #include <assert.h>
 #include <stddef.h>
 
-#include "triangle/hdf5/read.h"
-#include "triangle/hdf5/write.h"
+#include "triangle/hdf5/h5_read.h"
+#include "triangle/hdf5/h5_write.h"
 
 static const char NONE[] = "this build has no HDF5 (Debian: libhdf5-dev, then build again)";
 

@@ -1,6 +1,6 @@
 /* What lies behind the opaque struct tri_mesh of ptriangle/tri.h, and how a mesh comes to be, whoever refines it. */
-#ifndef TRIANGLE_API_MESH_H
-#define TRIANGLE_API_MESH_H
+#ifndef TRIANGLE_API_OPAQUE_MESH_H
+#define TRIANGLE_API_OPAQUE_MESH_H
 
 #include "ptriangle/tri.h"
 #include "triangle/refine/generate.h"

@@ -1,8 +1,8 @@
 /* What a run will need, before it begins to refine: triangles, memory, disk, time. */
-#ifndef DRIVERS_MESH_ESTIMATE_H
-#define DRIVERS_MESH_ESTIMATE_H
+#ifndef DRIVERS_MESH_NEEDS_H
+#define DRIVERS_MESH_NEEDS_H
 
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 
 /* Bytes of a number of triangles, beyond what is taken now. */
 struct needs {

@@ -1,5 +1,5 @@
 /* The spool holds batches of TRI_H5_KEPT_SEGMENTS: their ends, then their markers, as they lie in memory. */
-#include "triangle/hdf5/segments.h"
+#include "triangle/hdf5/segment_spool.h"
 
 #include <errno.h>
 #include <stdlib.h>

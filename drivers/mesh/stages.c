@@ -1,5 +1,5 @@
 /* The stages in their order, and the lines that are printed between them. */
-#include "drivers/mesh/run.h"
+#include "drivers/mesh/stages.h"
 
 #include <inttypes.h>
 #include <math.h>

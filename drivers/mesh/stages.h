@@ -3,8 +3,8 @@
  *
  * The stages and their order are fixed; how the mesh is refined and who runs independent pieces of work is plugged
  * in. */
-#ifndef DRIVERS_MESH_RUN_H
-#define DRIVERS_MESH_RUN_H
+#ifndef DRIVERS_MESH_STAGES_H
+#define DRIVERS_MESH_STAGES_H
 
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/mesh_files.h"

@@ -8,7 +8,7 @@
  * triangles. A chunk of points has CHUNK_POINTS rows, one of triangles twice as many; chunk k of all these arrays is
  * allocated, array by array, when the first point comes that belongs to it. Then every triangle has a chunk in time.
  * As long as there are no more than CHUNK_POINTS points no array has chunks. Segments are written behind all else. */
-#include "triangle/hdf5/write.h"
+#include "triangle/hdf5/h5_write.h"
 
 #include <assert.h>
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "triangle/base/grow.h"
 #include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
-#include "triangle/hdf5/segments.h"
+#include "triangle/hdf5/segment_spool.h"
 #include "triangle/hdf5/views.h"
 #include "triangle/hdf5/xdmf.h"
 

@@ -1,6 +1,6 @@
 /* Input segments as chains of subsegments. Private to the checker. */
-#ifndef TRIANGLE_CHECK_CHAIN_H
-#define TRIANGLE_CHECK_CHAIN_H
+#ifndef TRIANGLE_CHECK_SEGMENT_CHAINS_H
+#define TRIANGLE_CHECK_SEGMENT_CHAINS_H
 
 #include "triangle/check/internal.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check/chain.h"
+#include "triangle/check/segment_chains.h"
 #include "triangle/check/internal.h"
 
 enum { SLICE = 1 << 14 };

@@ -13,7 +13,7 @@
  *   4. Where input segments overlap so much that this would take too long, what lies along one line is put in order
  *      (tube.h). An input segment that is covered there by a way from end to end may run along all that lies
  *      between its ends within the tolerance, whether a search would have come there or not. */
-#include "triangle/check/chain.h"
+#include "triangle/check/segment_chains.h"
 
 #include <math.h>
 #include <stdlib.h>

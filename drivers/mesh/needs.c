@@ -1,6 +1,6 @@
 /* Rates that have been measured (docs/performance.md), and one that is measured here: how long this machine takes for a
  * triangle. */
-#include "drivers/mesh/estimate.h"
+#include "drivers/mesh/needs.h"
 
 #include <math.h>
 

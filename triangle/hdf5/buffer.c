@@ -1,6 +1,6 @@
 /* INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
  * not been written; all that have come before have been. */
-#include "triangle/hdf5/part.h"
+#include "triangle/hdf5/buffer.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 
 #include "sched/schedule/schedule.h"
 #include "sched/schedule/threads.h"
-#include "triangle/dropin/run.h"
+#include "triangle/dropin/call.h"
 
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)

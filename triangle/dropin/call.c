@@ -1,5 +1,5 @@
 /* The stages behind triangulate(), and what is told about them. */
-#include "triangle/dropin/run.h"
+#include "triangle/dropin/call.h"
 
 #include <stdio.h>
 

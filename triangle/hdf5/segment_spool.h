@@ -1,7 +1,7 @@
 /* Segments on their way to the end of the file: how many there will be is not known before, and they may come sooner or
  * later than points do. Few are kept in memory; more in a file that is needed only later. */
-#ifndef TRIANGLE_HDF5_SEGMENTS_H
-#define TRIANGLE_HDF5_SEGMENTS_H
+#ifndef TRIANGLE_HDF5_SEGMENT_SPOOL_H
+#define TRIANGLE_HDF5_SEGMENT_SPOOL_H
 
 #include "ptriangle/tiles.h"
 #include "triangle/text/output.h"

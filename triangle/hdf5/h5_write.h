@@ -4,11 +4,11 @@
  * The bytes depend on the mesh alone, not on how it was cut into tiles. Numbers of points take 32 bits as long as they
  * fit; only when one does not the array of triangles is rewritten, once: sizes are not known before the end, and half
  * of a file are these numbers. Memory: about 20 MB, whatever the mesh. */
-#ifndef TRIANGLE_HDF5_WRITE_H
-#define TRIANGLE_HDF5_WRITE_H
+#ifndef TRIANGLE_HDF5_H5_WRITE_H
+#define TRIANGLE_HDF5_H5_WRITE_H
 
 #include "ptriangle/tiles.h"
-#include "triangle/hdf5/part.h"
+#include "triangle/hdf5/buffer.h"
 #include "triangle/text/output.h"
 
 #ifdef __cplusplus
@@ -37,7 +37,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
 
 /* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
  * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
- * them there (triangle/hdf5/part.h), until before the end. The places are the writer's. */
+ * them there (triangle/hdf5/buffer.h), until before the end. The places are the writer's. */
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place);
 
 /* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */

@@ -1,5 +1,5 @@
 /* Source of the rounds: Amenta, Choi & Rote 2003. */
-#include "triangle/cdt/pieces.h"
+#include "triangle/cdt/laying_order.h"
 
 #include <stdlib.h>
 

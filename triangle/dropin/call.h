@@ -1,7 +1,7 @@
 /* What lies behind triangulate(), whoever refines: that of libtriangle.a (triangle/dropin/triangulate.c) and that of
- * libptriangle.a (sched/schedule/triangulate.c). */
-#ifndef TRIANGLE_DROPIN_RUN_H
-#define TRIANGLE_DROPIN_RUN_H
+ * libptriangle.a (sched/schedule/par_triangulate.c). */
+#ifndef TRIANGLE_DROPIN_CALL_H
+#define TRIANGLE_DROPIN_CALL_H
 
 #include "triangle/dropin/triangle.h"
 #include "triangle/refine/generate.h"

@@ -4,7 +4,7 @@
  * in them, pipes among these, filters from libraries, and fills what is not there with zeros. So only what the writer
  * makes is opened: arrays that this very file holds, uncompressed and in full. No array is then larger than the
  * file. */
-#include "triangle/hdf5/read.h"
+#include "triangle/hdf5/h5_read.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* A part of the rows of an HDF5 file whose arrays have their places: written there by whoever has them, without HDF5.
  * Parts of one file may be written by several processes at a time. */
-#ifndef TRIANGLE_HDF5_PART_H
-#define TRIANGLE_HDF5_PART_H
+#ifndef TRIANGLE_HDF5_BUFFER_H
+#define TRIANGLE_HDF5_BUFFER_H
 
 #include "triangle/hdf5/rows.h"
 #include "triangle/text/output.h"

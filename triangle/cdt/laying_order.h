@@ -1,6 +1,6 @@
 /* The segments of the input as pieces, in the order in which they are laid. */
-#ifndef TRIANGLE_CDT_PIECES_H
-#define TRIANGLE_CDT_PIECES_H
+#ifndef TRIANGLE_CDT_LAYING_ORDER_H
+#define TRIANGLE_CDT_LAYING_ORDER_H
 
 #include "triangle/cdt/overlap.h"
 #include "triangle/mesh/pslg.h"
