@@ -29,7 +29,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/why_empty.c
     triangle/cdt/chain.c
     triangle/cdt/reconstruct.c
-    triangle/refine/cavity.c
+    triangle/mesh/cavity.c
     triangle/mesh/interpolate.c
     triangle/geometry/degrees.c
     triangle/refine/quality.c
@@ -50,7 +50,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine/census.c
     triangle/size/crowd.c
     triangle/size/estimate.c
-    triangle/mesh/stats.c
+    triangle/refine/stats.c
     triangle/refine/generate.c
     triangle/api/figure.c
     triangle/api/figure_mesh.c

@@ -8,8 +8,8 @@
 
 #include <stdint.h>
 
-#include "triangle/text/output.h"
 #include "triangle/base/stop.h"
+#include "triangle/text/output.h"
 
 enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of timeout(1) */
 

@@ -97,6 +97,14 @@ refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper fo
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|dropin|check)/' 'includes a folder of the mesher' \
     triangle/base/*.[ch] triangle/geometry/*.[ch] triangle/mesh/*.[ch] triangle/cdt/*.[ch] triangle/refine/*.[ch] \
     triangle/size/*.[ch]
+# In the mesher base/ <- geometry/ <- mesh/ <- cdt/ <- refine/ with size/; mesh.h holds what refinement keeps with it.
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(geometry|mesh|cdt|refine|size)/' 'includes an upper folder' \
+    triangle/base/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(mesh|cdt|refine|size)/' 'includes an upper folder' \
+    triangle/geometry/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(cdt|refine|size)/' 'includes an upper folder' \
+    $(ls triangle/mesh/*.[ch] | grep -vx -e triangle/mesh/mesh.h -e triangle/mesh/grid.h | tr '\n' ' ')
+refuse '#[[:space:]]*include[[:space:]]*"triangle/size/' 'includes an upper folder' triangle/cdt/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/hdf5/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|check)/' 'includes another folder' triangle/dropin/*.[ch]
@@ -142,7 +150,7 @@ done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh/(mesh|owners)|refine/(fence|refine|pause|census|generate)|size/estimate|api/opaque_mesh|dropin/(triangle|call)'
+hooks='mesh/(mesh|owners|fence)|refine/(refine|pause|census|generate)|size/estimate|api/opaque_mesh|dropin/(triangle|call)'
 tools='base/[a-z_]+|geometry/(degrees|hilbert|point)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)

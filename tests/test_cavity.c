@@ -1,6 +1,6 @@
 /* Cavities against a brute-force flood, and the two theorems of the header against naive geometry. */
 #include "support.h"
-#include "triangle/refine/cavity.h"
+#include "triangle/mesh/cavity.h"
 
 static struct tri_mesh tangle(uint64_t seed)
 {

@@ -1,7 +1,7 @@
 /* The best point of a petal against the whole Voronoi diagram, and against the edges that it would get. */
 #include "support.h"
 
-#include "triangle/refine/cavity.h"
+#include "triangle/mesh/cavity.h"
 #include "triangle/refine/petal.h"
 
 enum { PETALS = 4000 };

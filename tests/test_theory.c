@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "sched/schedule/theory.h"
-#include "triangle/refine/cavity.h"
+#include "triangle/mesh/cavity.h"
 #include "triangle/refine/quality.h"
 
 static const double RADIAN = 3.14159265358979324 / 180;

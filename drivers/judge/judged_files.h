@@ -10,9 +10,9 @@
 
 #include "drivers/judge/judged_h5.h"
 #include "drivers/judge/judged_text.h"
+#include "triangle/cdt/reconstruct.h"
 #include "triangle/check/check.h"
 #include "triangle/mesh/pslg.h"
-#include "triangle/cdt/reconstruct.h"
 #include "triangle/text/formats.h"
 
 /* Bytes: less is not worth a refusal. */

@@ -9,13 +9,13 @@
 
 #include "drivers/judge/judged_files.h"
 #include "drivers/judge/judged_words.h"
+#include "drivers/judge/verdict.h"
 #include "drivers/one_line.h"
 #include "drivers/resources.h"
 #include "drivers/start.h"
-#include "drivers/judge/verdict.h"
 #include "sched/schedule/threads.h"
-#include "triangle/check/check.h"
 #include "triangle/base/size_text.h"
+#include "triangle/check/check.h"
 
 enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/mesh/export.h"
 #include "drivers/interrupt.h"
+#include "drivers/mesh/export.h"
 #include "triangle/mesh/grid.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"

@@ -5,10 +5,10 @@
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/console.h"
 #include "triangle/base/executor.h"
-#include "triangle/mesh/mesh.h"
-#include "triangle/text/output.h"
-#include "triangle/mesh/pslg.h"
 #include "triangle/cdt/reconstruct.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/text/output.h"
 
 enum { MESH_FILES_MOST_NAMES = 16 };
 

@@ -4,8 +4,8 @@
 
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/long_options.h"
-#include "sched/ranks/carrier.h"
 #include "sched/checkpoint/checkpoint.h"
+#include "sched/ranks/carrier.h"
 
 struct restart {
     bool wanted;

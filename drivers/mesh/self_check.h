@@ -3,8 +3,8 @@
 #define DRIVERS_MESH_SELF_CHECK_H
 
 #include "drivers/mesh/console.h"
-#include "triangle/mesh/mesh.h"
 #include "triangle/dropin/switches.h"
+#include "triangle/mesh/mesh.h"
 
 /* Measured: bytes of memory that it takes at the peak where nobody bounds it, for a triangle and for a subsegment. */
 enum { SELF_CHECK_BYTES = 72, SELF_CHECK_SUB_BYTES = 400 };

@@ -8,16 +8,16 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "drivers/interrupt.h"
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/help.h"
-#include "drivers/interrupt.h"
 #include "drivers/mesh/mesh_files.h"
 #include "drivers/mesh/plan.h"
-#include "drivers/resources.h"
 #include "drivers/mesh/self_check.h"
 #include "drivers/mesh/summary.h"
-#include "triangle/refine/census.h"
+#include "drivers/resources.h"
 #include "triangle/base/clock.h"
+#include "triangle/refine/census.h"
 #include "triangle/text/names.h"
 
 /* A run and its clock. */

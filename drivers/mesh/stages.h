@@ -9,9 +9,9 @@
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/mesh_files.h"
 #include "triangle/base/executor.h"
-#include "triangle/text/read.h"
-#include "triangle/mesh/stats.h"
 #include "triangle/refine/generate.h"
+#include "triangle/refine/stats.h"
+#include "triangle/text/read.h"
 
 enum run_stage {
     RUN_READ,     /* files to PSLG or mesh */

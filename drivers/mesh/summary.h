@@ -3,10 +3,10 @@
 #define DRIVERS_MESH_SUMMARY_H
 
 #include "drivers/mesh/console.h"
-#include "triangle/mesh/pslg.h"
-#include "triangle/mesh/stats.h"
 #include "triangle/dropin/switches.h"
+#include "triangle/mesh/pslg.h"
 #include "triangle/refine/generate.h"
+#include "triangle/refine/stats.h"
 
 /* What went otherwise than the input asks: crossings, segments bent. */
 void summary_segments(const struct console *console, const struct tri_constrain_report *report);

@@ -4,9 +4,9 @@
 #define DRIVERS_PLOT_PLOT_PART_H
 
 #include "drivers/plot/plot.h"
+#include "triangle/cdt/reconstruct.h"
 #include "triangle/check/check.h"
 #include "triangle/mesh/pslg.h"
-#include "triangle/cdt/reconstruct.h"
 
 /* In a picture that shows each: 2^24. In a build with tests PTRIANGLE_TEST_TRIANGLES of the environment. */
 int32_t plot_most_triangles(void);

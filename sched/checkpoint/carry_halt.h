@@ -2,8 +2,8 @@
 #ifndef SCHED_CHECKPOINT_CARRY_HALT_H
 #define SCHED_CHECKPOINT_CARRY_HALT_H
 
-#include "sched/schedule/halt.h"
 #include "sched/checkpoint/checkpoint.h"
+#include "sched/schedule/halt.h"
 
 /* What is carried refers to things below these counts. */
 struct par_carried_counts {

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/schedule/phase.h"
 #include "sched/checkpoint/carry_halt.h"
+#include "sched/schedule/phase.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 #include "triangle/refine/pause.h"

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/checkpoint/checkpoint.h"
 #include "sched/ranks/pieces.h"
 #include "sched/schedule/room.h"
-#include "sched/checkpoint/checkpoint.h"
 #include "triangle/base/clock.h"
 
 static const uint64_t STATE = UINT64_C(0x3274617473746972); /* a version as well */

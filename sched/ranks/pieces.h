@@ -11,8 +11,8 @@
 #ifndef SCHED_RANKS_PIECES_H
 #define SCHED_RANKS_PIECES_H
 
-#include "sched/ranks/ranks.h"
 #include "sched/checkpoint/checkpoint.h"
+#include "sched/ranks/ranks.h"
 
 struct par_piece_file {
     int32_t first, end; /* its tiles: first .. end - 1 */

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/checkpoint/state.h"
 #include "sched/schedule/by_tile.h"
 #include "sched/tiles/park.h"
-#include "sched/checkpoint/state.h"
 #include "triangle/base/grow.h"
 
 /* --- who works where */

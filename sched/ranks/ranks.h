@@ -16,10 +16,10 @@
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 
-#include "sched/schedule/phase.h"
 #include "sched/ranks/carrier.h"
 #include "sched/ranks/talk.h"
 #include "sched/ranks/territory.h"
+#include "sched/schedule/phase.h"
 #include "sched/tiles/tiles.h"
 
 /* Who does the blocks of the phase at hand. */

@@ -7,8 +7,8 @@
 #ifndef SCHED_RANKS_TERRITORY_H
 #define SCHED_RANKS_TERRITORY_H
 
-#include "sched/schedule/partition.h"
 #include "sched/ranks/carrier.h"
+#include "sched/schedule/partition.h"
 
 struct par_territory {
     const struct par_partition *partition; /* of the first round */

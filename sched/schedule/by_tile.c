@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/refine/census.h"
 #include "triangle/geometry/hilbert.h"
+#include "triangle/refine/census.h"
 
 struct ordering {
     const struct tri_mesh *mesh;

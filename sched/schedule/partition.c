@@ -16,9 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/size/estimate.h"
 #include "triangle/base/grow.h"
 #include "triangle/base/radix.h"
+#include "triangle/size/estimate.h"
 
 enum {
     SAMPLES_PER_CELL = 32,

@@ -15,7 +15,7 @@
 #ifndef SCHED_SCHEDULE_PARTITION_H
 #define SCHED_SCHEDULE_PARTITION_H
 
-#include "triangle/refine/fence.h"
+#include "triangle/mesh/fence.h"
 #include "triangle/refine/refine.h"
 
 #ifdef __cplusplus

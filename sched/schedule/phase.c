@@ -9,8 +9,8 @@
 #include "sched/schedule/phase_tasks.h"
 #include "sched/schedule/theory.h"
 #include "triangle/base/clock.h"
-#include "triangle/size/estimate.h"
 #include "triangle/base/grow.h"
+#include "triangle/size/estimate.h"
 
 enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
 static void leave_triangle(void *user, tri_triangle_id triangle)

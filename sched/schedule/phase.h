@@ -12,10 +12,10 @@
 #define SCHED_SCHEDULE_PHASE_H
 
 #include "sched/schedule/halt.h"
-#include "sched/schedule/schedule.h"
 #include "sched/schedule/partition.h"
-#include "sched/schedule/worklist.h"
 #include "sched/schedule/room.h"
+#include "sched/schedule/schedule.h"
+#include "sched/schedule/worklist.h"
 
 struct par_park;
 struct par_state;

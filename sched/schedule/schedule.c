@@ -7,23 +7,23 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "sched/checkpoint/state.h"
+#include "sched/ranks/ranks.h"
 #include "sched/schedule/by_tile.h"
 #include "sched/schedule/cells.h"
 #include "sched/schedule/phase.h"
 #include "sched/schedule/prerefine.h"
-#include "sched/ranks/ranks.h"
+#include "sched/schedule/theory.h"
+#include "sched/schedule/threads.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
 #include "sched/tiles/remain.h"
-#include "sched/checkpoint/state.h"
 #include "sched/tiles/sweep.h"
-#include "sched/schedule/theory.h"
-#include "sched/schedule/threads.h"
-#include "triangle/refine/census.h"
 #include "triangle/base/clock.h"
-#include "triangle/size/estimate.h"
-#include "triangle/refine/pause.h"
 #include "triangle/base/size_text.h"
+#include "triangle/refine/census.h"
+#include "triangle/refine/pause.h"
+#include "triangle/size/estimate.h"
 
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;

@@ -7,8 +7,8 @@
 
 #include "sched/schedule/theory.h"
 
-#include "triangle/refine/census.h"
 #include "triangle/base/grow.h"
+#include "triangle/refine/census.h"
 
 bool par_ids_grow(struct par_ids *ids)
 {

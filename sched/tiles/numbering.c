@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "sched/tiles/renumber.h"
-#include "triangle/geometry/hilbert.h"
 #include "triangle/base/radix.h"
+#include "triangle/geometry/hilbert.h"
 
 /* --- vertices */
 

@@ -3,10 +3,10 @@
 
 #include <assert.h>
 
+#include "sched/checkpoint/state.h"
 #include "sched/tiles/ahead.h"
 #include "sched/tiles/park.h"
 #include "sched/tiles/remain.h"
-#include "sched/checkpoint/state.h"
 #include "triangle/base/clock.h"
 
 static enum tri_status no_memory(struct tri_error *error)

@@ -13,4 +13,6 @@ typedef int32_t tri_link;        /* what lies across an edge: a tri_halfedge, or
 typedef int32_t tri_parent_id;   /* index into tri_mesh.parents; TRI_NONE: none */
 typedef int32_t tri_region_id;   /* index into tri_mesh.regions; 0: no region */
 
+enum { TRI_MAX_VERTICES = 1 << 28, TRI_MAX_TRIANGLES = 1 << 29 };
+
 #endif

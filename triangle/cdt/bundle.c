@@ -16,9 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/cdt/crossing.h"
 #include "triangle/base/grow.h"
 #include "triangle/base/heap_sort.h"
+#include "triangle/cdt/crossing.h"
 #include "triangle/geometry/predicates.h"
 
 /* In resolutions. */

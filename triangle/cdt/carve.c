@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/mesh/locate.h"
 #include "triangle/geometry/predicates.h"
+#include "triangle/mesh/locate.h"
 
 struct flood {
     struct tri_mesh *mesh;

@@ -2,8 +2,8 @@
 #ifndef TRIANGLE_CDT_CARVE_H
 #define TRIANGLE_CDT_CARVE_H
 
-#include "triangle/mesh/mesh.h"
 #include "triangle/cdt/why_empty.h"
+#include "triangle/mesh/mesh.h"
 
 #ifdef __cplusplus
 extern "C" {

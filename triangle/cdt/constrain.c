@@ -19,18 +19,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/cdt/bundle.h"
-#include "triangle/refine/cavity.h"
-#include "triangle/cdt/crossing.h"
-#include "triangle/cdt/rotation.h"
-#include "triangle/cdt/flip.h"
 #include "triangle/base/grow.h"
+#include "triangle/cdt/bundle.h"
+#include "triangle/cdt/crossing.h"
+#include "triangle/cdt/flip.h"
+#include "triangle/cdt/laying_order.h"
+#include "triangle/cdt/overlap.h"
+#include "triangle/cdt/recover.h"
+#include "triangle/cdt/rotation.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/mesh/cavity.h"
 #include "triangle/mesh/interpolate.h"
 #include "triangle/mesh/locate.h"
-#include "triangle/cdt/overlap.h"
-#include "triangle/cdt/laying_order.h"
-#include "triangle/geometry/predicates.h"
-#include "triangle/cdt/recover.h"
 
 enum { BESIDE = 3 };
 enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */

@@ -7,8 +7,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/cdt/insertion.h"
 #include "triangle/base/radix.h"
+#include "triangle/cdt/insertion.h"
 
 /* What is sorted: a vertex, and the triangle that is sorted by it, with the corner at which that begins. */
 enum { ID_BITS = 29, CORNER_BITS = 2, KEY_SHIFT = ID_BITS + CORNER_BITS, FEW = 24 };

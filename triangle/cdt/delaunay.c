@@ -16,10 +16,10 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/base/scatter.h"
 #include "triangle/cdt/curve_sort.h"
 #include "triangle/cdt/insertion.h"
 #include "triangle/geometry/predicates.h"
-#include "triangle/base/scatter.h"
 
 enum {
     FIRST_ROUND = 512, /* points */

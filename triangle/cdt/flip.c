@@ -7,8 +7,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/cdt/flip_history.h"
 #include "triangle/base/grow.h"
+#include "triangle/cdt/flip_history.h"
 #include "triangle/geometry/predicates.h"
 
 void tri_flips_free(struct tri_flips *f) { free(f->touched); }

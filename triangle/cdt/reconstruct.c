@@ -12,14 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/base/grow.h"
+#include "triangle/base/radix.h"
 #include "triangle/cdt/carve.h"
 #include "triangle/cdt/chain.h"
 #include "triangle/cdt/flip.h"
-#include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
-#include "triangle/base/radix.h"
-#include "triangle/refine/refine.h"
 #include "triangle/mesh/topology.h"
+#include "triangle/refine/refine.h"
 
 enum { LOOSE = INT32_MAX };
 

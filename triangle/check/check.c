@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check/store.h"
 #include "triangle/base/grow.h"
+#include "triangle/check/store.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",

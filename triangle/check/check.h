@@ -19,8 +19,8 @@
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
-#include "triangle/mesh/pslg.h"
 #include "triangle/base/status.h"
+#include "triangle/mesh/pslg.h"
 
 #ifdef __cplusplus
 extern "C" {

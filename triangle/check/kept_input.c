@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check/segment_chains.h"
 #include "triangle/check/internal.h"
+#include "triangle/check/segment_chains.h"
 
 enum { SLICE = 1 << 14 };
 

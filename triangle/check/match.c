@@ -4,8 +4,8 @@
  * same side, are faults, and count as boundary edges, too. */
 #include <stdlib.h>
 
-#include "triangle/check/store.h"
 #include "triangle/base/grow.h"
+#include "triangle/check/store.h"
 
 static int compare_ends(int64_t from, int64_t to, int64_t begin, int64_t end)
 {

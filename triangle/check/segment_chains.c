@@ -18,8 +18,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "triangle/check/tube.h"
 #include "triangle/base/grow.h"
+#include "triangle/check/tube.h"
 #include "triangle/geometry/predicates.h"
 
 enum { MAX_GRID_SIDE = 2048, HUB = 16, MOST_PASSES = 16 };

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check/internal.h"
 #include "triangle/base/grow.h"
+#include "triangle/check/internal.h"
 
 enum { NEAR_ENOUGH = 1 << 12, WINDOW = 1 << 14 }; /* vertices */
 

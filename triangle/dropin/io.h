@@ -5,11 +5,11 @@
 #ifndef TRIANGLE_DROPIN_IO_H
 #define TRIANGLE_DROPIN_IO_H
 
+#include "triangle/cdt/reconstruct.h"
 #include "triangle/dropin/switches.h"
 #include "triangle/dropin/triangle.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/pslg.h"
-#include "triangle/cdt/reconstruct.h"
 
 #define REAL TRI_REAL /* as clients of Triangle have it */
 

@@ -6,6 +6,7 @@
 
 #include <assert.h>
 
+#include "triangle/base/ids.h"
 #include "triangle/base/radix.h"
 
 /* An item to sort is the cell of a point and its id. Points of one cell follow a curve over their own box, unless they

@@ -4,7 +4,7 @@
 #define TRIANGLE_GEOMETRY_HILBERT_H
 
 #include "triangle/base/executor.h"
-#include "triangle/mesh/mesh.h"
+#include "triangle/geometry/point.h"
 
 /* Sorts the ids order[n] of points by position on the curve over the bounding box of those points; points of one cell
  * by their positions on a curve over their own box, or, if they are a few, by coordinates; equal points by id, so that

@@ -39,6 +39,10 @@ static inline int tri_compare_places(struct tri_point p, struct tri_point q)
     return (p.y > q.y) - (p.y < q.y);
 }
 
+/* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
+static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
+static inline double tri_larger(double a, double b) { return a > b ? a : b; }
+
 /* The squared distance. */
 static inline double tri_distance2(struct tri_point p, struct tri_point q)
 {

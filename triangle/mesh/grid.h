@@ -7,8 +7,8 @@
 #ifndef TRIANGLE_MESH_GRID_H
 #define TRIANGLE_MESH_GRID_H
 
-#include "triangle/mesh/mesh.h"
 #include "triangle/cdt/reconstruct.h"
+#include "triangle/mesh/mesh.h"
 
 #ifdef __cplusplus
 extern "C" {

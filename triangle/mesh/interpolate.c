@@ -5,7 +5,7 @@
 
 #include <assert.h>
 
-#include "triangle/refine/quality.h"
+#include "triangle/geometry/point.h"
 
 static double within(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
 

@@ -23,12 +23,12 @@
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
-#include "triangle/refine/groundwork.h"
 #include "triangle/base/ids.h"
-#include "triangle/geometry/point.h"
-#include "triangle/mesh/pslg.h"
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
+#include "triangle/geometry/point.h"
+#include "triangle/mesh/pslg.h"
+#include "triangle/refine/groundwork.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -36,9 +36,7 @@ extern "C" {
 
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
-    TRI_BEYOND = INT32_MIN, /* a link, or a side of a subsegment, to a triangle in another address space: see above */
-    TRI_MAX_VERTICES = 1 << 28,
-    TRI_MAX_TRIANGLES = 1 << 29
+    TRI_BEYOND = INT32_MIN /* a link, or a side of a subsegment, to a triangle in another address space: see above */
 };
 
 enum tri_vertex_kind { /* values of tri_mesh.on below 0 */

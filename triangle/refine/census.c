@@ -4,10 +4,10 @@
 #include <assert.h>
 #include <math.h>
 
+#include "triangle/base/size_text.h"
+#include "triangle/geometry/predicates.h"
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/disk.h"
-#include "triangle/geometry/predicates.h"
-#include "triangle/base/size_text.h"
 #include "triangle/refine/small_angle.h"
 
 /* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */

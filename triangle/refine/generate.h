@@ -10,14 +10,14 @@
 #ifndef TRIANGLE_REFINE_GENERATE_H
 #define TRIANGLE_REFINE_GENERATE_H
 
+#include "triangle/base/status.h"
 #include "triangle/cdt/carve.h"
 #include "triangle/cdt/constrain.h"
+#include "triangle/cdt/reconstruct.h"
+#include "triangle/cdt/spatial.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/pslg.h"
-#include "triangle/cdt/reconstruct.h"
 #include "triangle/refine/refine.h"
-#include "triangle/cdt/spatial.h"
-#include "triangle/base/status.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -13,10 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/size/feature_size.h"
 #include "triangle/base/heap_sort.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/small_angle.h"
+#include "triangle/size/feature_size.h"
 
 bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
 {

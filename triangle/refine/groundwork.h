@@ -8,8 +8,8 @@
 
 #include "triangle/base/executor.h"
 #include "triangle/base/ids.h"
-#include "triangle/geometry/point.h"
 #include "triangle/base/status.h"
+#include "triangle/geometry/point.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -11,7 +11,7 @@
 #ifndef TRIANGLE_REFINE_PETAL_H
 #define TRIANGLE_REFINE_PETAL_H
 
-#include "triangle/refine/fence.h"
+#include "triangle/mesh/fence.h"
 #include "triangle/refine/quality.h"
 
 enum tri_petal {

@@ -13,6 +13,7 @@
 
 #include <math.h>
 
+#include "triangle/geometry/point.h"
 #include "triangle/mesh/mesh.h"
 
 /* The bounds in the form in which the inner loop compares them. */
@@ -26,10 +27,6 @@ struct tri_bounds {
 /* min_angle in degrees; above 60 as 60, which no mesh keeps; 0: no bound. conforming: the lens is the whole diametral
  * disk. */
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
-
-/* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
-static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
-static inline double tri_larger(double a, double b) { return a > b ? a : b; }
 
 /* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
 static inline double tri_rough_log2(double x)

@@ -17,8 +17,8 @@
 #include <string.h>
 
 #include "triangle/refine/census.h"
-#include "triangle/size/estimate.h"
 #include "triangle/refine/pause.h"
+#include "triangle/size/estimate.h"
 
 _Static_assert((int)LAST_STAGE == (int)TRI_PAUSE_LAST_STAGE && (int)SECOND_PASS == (int)TRI_PAUSE_LAST_STEP,
                "pause.c compares with them");

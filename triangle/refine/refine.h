@@ -11,7 +11,7 @@
 #define TRIANGLE_REFINE_REFINE_H
 
 #include "triangle/base/executor.h"
-#include "triangle/refine/fence.h"
+#include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/owners.h"
 

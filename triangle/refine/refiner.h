@@ -3,8 +3,8 @@
 #ifndef TRIANGLE_REFINE_REFINER_H
 #define TRIANGLE_REFINE_REFINER_H
 
+#include "triangle/mesh/cavity.h"
 #include "triangle/refine/bad_queue.h"
-#include "triangle/refine/cavity.h"
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/refine.h"
 

@@ -16,8 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/size/feature_size.h"
 #include "triangle/geometry/predicates.h"
+#include "triangle/size/feature_size.h"
 
 static const double SHARP = 256;
 

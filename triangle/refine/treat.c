@@ -15,15 +15,15 @@
 
 #include <assert.h>
 
-#include "triangle/refine/disk.h"
-#include "triangle/size/feature_size.h"
-#include "triangle/refine/inside.h"
-#include "triangle/mesh/interpolate.h"
-#include "triangle/refine/petal.h"
 #include "triangle/geometry/predicates.h"
+#include "triangle/mesh/interpolate.h"
+#include "triangle/refine/disk.h"
+#include "triangle/refine/inside.h"
+#include "triangle/refine/petal.h"
 #include "triangle/refine/quality.h"
 #include "triangle/refine/small_angle.h"
 #include "triangle/refine/split.h"
+#include "triangle/size/feature_size.h"
 
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
  * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the

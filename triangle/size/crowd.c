@@ -11,9 +11,9 @@
 #include "triangle/size/crowd.h"
 
 #include "triangle/refine/criterion.h"
-#include "triangle/size/estimate.h"
 #include "triangle/refine/quality.h"
 #include "triangle/refine/small_angle.h"
+#include "triangle/size/estimate.h"
 
 static const double SLOPE = 0.35;
 

@@ -2,7 +2,7 @@
 #ifndef TRIANGLE_SIZE_FEATURE_SIZE_H
 #define TRIANGLE_SIZE_FEATURE_SIZE_H
 
-#include "triangle/refine/cavity.h"
+#include "triangle/mesh/cavity.h"
 
 /* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
 void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor);

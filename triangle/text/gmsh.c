@@ -19,8 +19,8 @@
 #include <stdlib.h>
 
 #include "triangle/text/binary.h"
-#include "triangle/text/grouping.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/grouping.h"
 #include "triangle/text/parts.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9 };

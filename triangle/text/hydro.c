@@ -10,8 +10,8 @@
 
 #include "triangle/text/boundary.h"
 #include "triangle/text/decimal.h"
-#include "triangle/text/grouping.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/grouping.h"
 
 enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4, NODES_A_LINE = 10 };
 

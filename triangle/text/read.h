@@ -16,10 +16,10 @@
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
-#include "triangle/mesh/pslg.h"
-#include "triangle/cdt/reconstruct.h"
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
+#include "triangle/cdt/reconstruct.h"
+#include "triangle/mesh/pslg.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -19,9 +19,9 @@
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
-#include "triangle/text/decimal.h"
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
+#include "triangle/text/decimal.h"
 
 struct tri_text_chunk {
     size_t begin;  /* offset of the first line that begins here or later */

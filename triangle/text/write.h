@@ -15,8 +15,8 @@
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
-#include "triangle/mesh/grid.h"
 #include "triangle/base/status.h"
+#include "triangle/mesh/grid.h"
 #include "triangle/text/output.h"
 
 #ifdef __cplusplus

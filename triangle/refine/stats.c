@@ -2,7 +2,7 @@
  *
  * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as
  * the angle grows, so the smallest angle has the largest cosine. */
-#include "triangle/mesh/stats.h"
+#include "triangle/refine/stats.h"
 
 #include <assert.h>
 #include <math.h>

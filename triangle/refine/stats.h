@@ -1,6 +1,6 @@
 /* What is printed about a mesh: its counts, and the shapes of its triangles. */
-#ifndef TRIANGLE_MESH_STATS_H
-#define TRIANGLE_MESH_STATS_H
+#ifndef TRIANGLE_REFINE_STATS_H
+#define TRIANGLE_REFINE_STATS_H
 
 #include "triangle/base/executor.h"
 #include "triangle/mesh/mesh.h"

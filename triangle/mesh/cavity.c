@@ -1,5 +1,5 @@
 /* Search and fill of cavities; see the header for the theorems. */
-#include "triangle/refine/cavity.h"
+#include "triangle/mesh/cavity.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -13,10 +13,10 @@
  * The search carries coordinates relative to p, so each step loads one triangle and one vertex. The filter for incircle
  * is the bound (10 + 96 u) u of Shewchuk (1997), with the permanent overestimated by Cauchy-Schwarz; doubtful cases are
  * decided exactly. */
-#ifndef TRIANGLE_REFINE_CAVITY_H
-#define TRIANGLE_REFINE_CAVITY_H
+#ifndef TRIANGLE_MESH_CAVITY_H
+#define TRIANGLE_MESH_CAVITY_H
 
-#include "triangle/refine/fence.h"
+#include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/owners.h"
 

@@ -1,6 +1,6 @@
 /* What one call of refinement may touch while others work beside it. */
-#ifndef TRIANGLE_REFINE_FENCE_H
-#define TRIANGLE_REFINE_FENCE_H
+#ifndef TRIANGLE_MESH_FENCE_H
+#define TRIANGLE_MESH_FENCE_H
 
 #include <stdbool.h>
 
