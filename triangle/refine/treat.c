@@ -130,49 +130,64 @@ static enum tri_outcome give_up(struct tri_refiner *r, tri_triangle_id triangle,
     return GIVEN_UP;
 }
 
-/* Are vertex `level` and the point whose cavity has been found out of the circles of each other's subsegments? */
-static bool is_level(const struct tri_refiner *r, tri_sub_id s, tri_vertex_id level)
+static bool is_in_circle(const struct tri_mesh *m, tri_sub_id s, struct tri_point p)
 {
-    const struct tri_mesh *m = r->mesh;
-    if (!tri_leaves_disks_empty(m, &m->sub[s], r->cavity.p, m->xy[level]))
-        return false;
-    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
-        const tri_vertex_id *end = m->sub[~r->cavity.edge[r->cavity.wall[i]].outer].v;
-        if ((end[0] == level || end[1] == level) && tri_dot(m->xy[end[0]], m->xy[end[1]], r->cavity.p) < 0)
-            return false;
-    }
-    return true;
+    return tri_dot(m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]], p) < 0;
 }
 
-/* The cavity of one of the places for a split; TRI_SEARCH_OUTSIDE: it has none. */
-static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split, int choice,
-                                    int32_t *n_left)
+/* A wall of the cavity found that has vertex `level` as an end and the new point in its circle; else TRI_NONE. */
+static tri_sub_id wall_out_of_level(const struct tri_refiner *r, tri_vertex_id level)
 {
-    struct tri_point p;
-    return tri_place_disk_split(r->mesh, &r->mesh->sub[s], split, choice, &p)
-               ? tri_cavity_search_split(&r->cavity, r->mesh, p, s, n_left)
-               : TRI_SEARCH_OUTSIDE;
+    const struct tri_mesh *m = r->mesh;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        tri_sub_id wall = ~r->cavity.edge[r->cavity.wall[i]].outer;
+        const tri_vertex_id *end = m->sub[wall].v;
+        if ((end[0] == level || end[1] == level) && is_in_circle(m, wall, r->cavity.p))
+            return wall;
+    }
+    return TRI_NONE;
+}
+
+/* The cavity of the first place level with the vertex that shall be level in spite of rounding: it and the new point
+ * are out of the circles of each other's subsegments. The walls in which one place lay are tested before the next one
+ * is searched. */
+static enum tri_search find_level_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
+                                        int32_t *n_left)
+{
+    const struct tri_mesh *m = r->mesh;
+    tri_sub_id known[2] = {s, s}; /* s: none yet */
+    for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
+        struct tri_point p;
+        if (!tri_place_disk_split(m, &m->sub[s], split, choice, &p) ||
+            !tri_leaves_disks_empty(m, &m->sub[s], p, m->xy[split->level]) ||
+            (known[0] != s && is_in_circle(m, known[0], p)) || (known[1] != s && is_in_circle(m, known[1], p)))
+            continue;
+        enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, n_left);
+        tri_sub_id wall = found == TRI_SEARCH_FOUND ? wall_out_of_level(r, split->level) : TRI_NONE;
+        if (found != TRI_SEARCH_OUTSIDE && wall == TRI_NONE)
+            return found;
+        if (wall != TRI_NONE) {
+            known[1] = known[0];
+            known[0] = wall;
+        }
+    }
+    return TRI_SEARCH_OUTSIDE;
 }
 
 /* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
- * outside the disk of a triangle beside s, or behind one of its edges. Beside a vertex that it shall be level with the
- * first that is so in spite of rounding, if any is. */
+ * outside the disk of a triangle beside s, or behind one of its edges. */
 static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
                                   int32_t *n_left)
 {
     const struct tri_mesh *m = r->mesh;
-    int first = -1;
     if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
         return TRI_SEARCH_OUTSIDE;
-    for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
-        enum tri_search found = search_place(r, s, split, choice, n_left);
-        if (found == TRI_SEARCH_OUTSIDE)
-            continue;
-        if (found != TRI_SEARCH_FOUND || split->level == TRI_NONE || is_level(r, s, split->level))
-            return found;
-        first = first < 0 ? choice : first;
-    }
-    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split, first, n_left);
+    enum tri_search found = split->level == TRI_NONE ? TRI_SEARCH_OUTSIDE : find_level_split(r, s, split, n_left);
+    struct tri_point p;
+    for (int choice = 0; choice < TRI_DISK_PLACES && found == TRI_SEARCH_OUTSIDE; choice++)
+        if (tri_place_disk_split(m, &m->sub[s], split, choice, &p))
+            found = tri_cavity_search_split(&r->cavity, m, p, s, n_left);
+    return found;
 }
 
 /* Splits subsegment s for the sake of a triangle. */
