@@ -384,8 +384,9 @@ static void test_places_are_at_the_fraction(void **state)
         for (int32_t i = 0; i < mesh.n_subs; i++) {
             double fraction = (1 + seed % 7) / 8.0;
             struct tri_point a = mesh.xy[mesh.sub[i].v[0]], b = mesh.xy[mesh.sub[i].v[1]], p;
+            struct tri_split_base base = tri_split_base(&mesh, &mesh.sub[i], fraction);
             int choice = 0;
-            while (choice < TRI_PLACES && !tri_place_split(&mesh, &mesh.sub[i], fraction, choice, &p))
+            while (choice < TRI_PLACES && !tri_place_split(&mesh, &mesh.sub[i], &base, choice, &p))
                 choice++;
             assert_true(choice < TRI_PLACES);
             struct tri_point straight = tri_point_between(a, b, fraction);

@@ -105,17 +105,20 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
     return is;
 }
 
-/* The place on subsegment s at this fraction, level with the point `at`. If it lies within an ulp or two of the foot of
- * the perpendicular (ulps of the end from which the fraction was worked out), the foot is taken: it is level as well,
- * and has been rounded once. */
-static bool place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
-                        struct tri_point at, int choice, struct tri_point *p)
+/* A place at the fraction, which is level with a vertex. If it lies within an ulp or two of the foot of the
+ * perpendicular (ulps of the end from which the fraction was worked out), the foot is taken: it is level as well, and
+ * has been rounded once. */
+struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                    const struct tri_disk_split *split)
 {
-    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], between = tri_point_between(a, b, fraction);
+    if (split->level == TRI_NONE)
+        return tri_split_base(mesh, s, split->fraction);
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[split->level];
+    struct tri_point between = tri_point_between(a, b, split->fraction);
     double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * fmax(tri_resolution(a), tri_resolution(b));
     double off = (x * (at.x - between.x) + y * (at.y - between.y));
-    return off * off <= near * near * l2 ? tri_place_level(mesh, s, at, choice, p)
-                                         : tri_place_split(mesh, s, fraction, choice, p);
+    return off * off <= near * near * l2 ? tri_split_base_level(mesh, s, at)
+                                         : tri_split_base(mesh, s, split->fraction);
 }
 
 /* A unit in the last place. */
@@ -159,16 +162,16 @@ static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subseg
 }
 
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
-                          const struct tri_disk_split *split, int choice, struct tri_point *p)
+                          const struct tri_disk_split *split, const struct tri_split_base *base, int choice,
+                          struct tri_point *p)
 {
-    if (split->level == TRI_NONE)
-        return choice < TRI_SPLIT_PLACES && tri_place_split(mesh, s, split->fraction, choice, p);
-    struct tri_point at = mesh->xy[split->level];
     if (choice < TRI_SPLIT_PLACES)
-        return place_level(mesh, s, split->fraction, at, choice, p);
+        return tri_place_split(mesh, s, base, choice, p);
+    if (split->level == TRI_NONE)
+        return false;
     tri_vertex_id end = tri_common_end(mesh, s->parent, split->level);
-    place_level(mesh, s, split->fraction, at, 0, p);
-    return place_in_column(mesh, s, *p, at, end, choice - TRI_SPLIT_PLACES, p);
+    tri_place_split(mesh, s, base, 0, p);
+    return place_in_column(mesh, s, *p, mesh->xy[split->level], end, choice - TRI_SPLIT_PLACES, p);
 }
 
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,

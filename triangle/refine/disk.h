@@ -22,11 +22,16 @@ bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegme
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
                             struct tri_disk_split *split);
 
+/* What all places for a split begin at. */
+struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                    const struct tri_disk_split *split);
+
 /* The places for a split, as tri_place_split has them. Places from TRI_SPLIT_PLACES on are only for a point level with
  * a vertex, and are nearer to the level than the others. */
 enum { TRI_COLUMNS = 9, TRI_DISK_PLACES = TRI_SPLIT_PLACES + 2 * TRI_COLUMNS };
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
-                          const struct tri_disk_split *split, int choice, struct tri_point *p);
+                          const struct tri_disk_split *split, const struct tri_split_base *base, int choice,
+                          struct tri_point *p);
 
 /* Does `at` lie in the diametral circle of neither part, if s is split at p? Exact. */
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,

@@ -69,18 +69,6 @@ static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subse
     return choice < 2 * TRI_PLACES ? grain : (struct tri_point){coarse, coarse};
 }
 
-/* The place beside a rounded one on the parent's line or on the subsegment. */
-static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point rounded, int choice,
-                  struct tri_point *p)
-{
-    const struct tri_parent *parent = &mesh->parents[s->parent];
-    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
-    double most = began_as_line(mesh, parent) ? ASTRAY : TRI_CHAIN_ASTRAY;
-    double astray = most * fmax(tri_resolution(a), tri_resolution(b));
-    *p = tri_place_beside(rounded, step(mesh, s, rounded, choice), choice % TRI_PLACES);
-    return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
-}
-
 bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     const tri_vertex_id *end = mesh->parents[s->parent].v;
@@ -88,21 +76,32 @@ bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *
            is_allowed(mesh, s, p);
 }
 
-bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
-                     struct tri_point *p)
+struct tri_split_base tri_split_base(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction)
 {
     assert(fraction > 0 && fraction < 1 && s->parent >= 0 && s->parent < mesh->n_parents);
-    assert(choice >= 0 && choice < TRI_SPLIT_PLACES);
     const tri_vertex_id *end = mesh->parents[s->parent].v;
     struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
-    bool on_line = is_on_line(choice);
-    return place(mesh, s, on_line ? tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], between) : between, choice, p);
+    return (struct tri_split_base){tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], between), between};
 }
 
-bool tri_place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at, int choice,
-                     struct tri_point *p)
+struct tri_split_base tri_split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                           struct tri_point at)
 {
-    assert(s->parent >= 0 && s->parent < mesh->n_parents && choice >= 0 && choice < TRI_SPLIT_PLACES);
-    const tri_vertex_id *end = is_on_line(choice) ? mesh->parents[s->parent].v : s->v;
-    return place(mesh, s, tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], at), choice, p);
+    assert(s->parent >= 0 && s->parent < mesh->n_parents);
+    const tri_vertex_id *end = mesh->parents[s->parent].v;
+    return (struct tri_split_base){tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], at),
+                                   tri_onto_line(mesh->xy[s->v[0]], mesh->xy[s->v[1]], at)};
+}
+
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_split_base *base,
+                     int choice, struct tri_point *p)
+{
+    assert(choice >= 0 && choice < TRI_SPLIT_PLACES);
+    const struct tri_parent *parent = &mesh->parents[s->parent];
+    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
+    struct tri_point rounded = is_on_line(choice) ? base->on_line : base->on_sub;
+    double most = began_as_line(mesh, parent) ? ASTRAY : TRI_CHAIN_ASTRAY;
+    double astray = most * fmax(tri_resolution(a), tri_resolution(b));
+    *p = tri_place_beside(rounded, step(mesh, s, rounded, choice), choice % TRI_PLACES);
+    return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
 }

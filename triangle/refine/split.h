@@ -6,15 +6,21 @@
 
 enum { TRI_SPLIT_PLACES = 4 * TRI_PLACES };
 
-/* *p: a place at this fraction of the subsegment, on its parent's line or its own up to about one resolution
- * (crossing.h); choice: which one, the best are the first. False where the place does not keep the boundary to
- * itself, or is too far from the line: see split.c. */
-bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
-                     struct tri_point *p);
+/* The point that a subsegment is to be split at, rounded once: on its parent's line, and on the subsegment. */
+struct tri_split_base {
+    struct tri_point on_line, on_sub;
+};
 
-/* *p: likewise a place at the foot of the perpendicular from `at`, up to rounding. */
-bool tri_place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at, int choice,
-                     struct tri_point *p);
+/* At this fraction of the subsegment; at the foot of the perpendicular from `at`. */
+struct tri_split_base tri_split_base(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction);
+struct tri_split_base tri_split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                           struct tri_point at);
+
+/* *p: one of TRI_SPLIT_PLACES beside the base, up to about one resolution from it (crossing.h); choice: which one, the
+ * best are the first. False where the place does not keep the boundary to itself, or is too far from the line: see
+ * split.c. */
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_split_base *base,
+                     int choice, struct tri_point *p);
 
 /* Does a split of s at p keep within four resolutions of its parent's line, and the boundary to itself? */
 bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p);

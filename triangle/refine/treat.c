@@ -152,13 +152,13 @@ static tri_sub_id wall_out_of_level(const struct tri_refiner *r, tri_vertex_id l
  * are out of the circles of each other's subsegments. The walls in which one place lay are tested before the next one
  * is searched. */
 static enum tri_search find_level_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
-                                        int32_t *n_left)
+                                        const struct tri_split_base *base, int32_t *n_left)
 {
     const struct tri_mesh *m = r->mesh;
     tri_sub_id known[2] = {s, s}; /* s: none yet */
     for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
         struct tri_point p;
-        if (!tri_place_disk_split(m, &m->sub[s], split, choice, &p) ||
+        if (!tri_place_disk_split(m, &m->sub[s], split, base, choice, &p) ||
             !tri_leaves_disks_empty(m, &m->sub[s], p, m->xy[split->level]) ||
             (known[0] != s && is_in_circle(m, known[0], p)) || (known[1] != s && is_in_circle(m, known[1], p)))
             continue;
@@ -182,10 +182,13 @@ static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const str
     const struct tri_mesh *m = r->mesh;
     if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
         return TRI_SEARCH_OUTSIDE;
-    enum tri_search found = split->level == TRI_NONE ? TRI_SEARCH_OUTSIDE : find_level_split(r, s, split, n_left);
+    const struct tri_split_base base = tri_disk_base(m, &m->sub[s], split);
+    enum tri_search found = TRI_SEARCH_OUTSIDE;
+    if (split->level != TRI_NONE)
+        found = find_level_split(r, s, split, &base, n_left);
     struct tri_point p;
     for (int choice = 0; choice < TRI_DISK_PLACES && found == TRI_SEARCH_OUTSIDE; choice++)
-        if (tri_place_disk_split(m, &m->sub[s], split, choice, &p))
+        if (tri_place_disk_split(m, &m->sub[s], split, &base, choice, &p))
             found = tri_cavity_search_split(&r->cavity, m, p, s, n_left);
     return found;
 }
