@@ -2,6 +2,7 @@
 from cases import Ours
 from inputs import letter, norway, random_points, square
 from measure import measure, ratio, seconds_text, table
+from prediction import on_threads
 
 HEAD = ("threads", "Delaunay, s", "Quality, s", "speedup of Quality", "efficiency", "predicted Quality, s",
         "predicted speedup")
@@ -16,8 +17,8 @@ of it was measured. Median (least–most) of
 
 def _predictions(m):
     """Seconds of the stage Quality by number of threads."""
-    schedule = m.typical("quality").facts["schedule"] if m.good else None
-    return {p["threads"]: p["quality_seconds"] for p in schedule["prediction"]} if schedule else {}
+    report = m.typical("quality").facts if m.good else None
+    return {p["threads"]: p["quality_seconds"] for p in on_threads(report)} if report and report["schedule"] else {}
 
 
 def _lines(measured):

@@ -6,6 +6,7 @@ import statistics
 from cases import Failure, Ours, Sequential, Triangle
 from inputs import Domain, letter, norway, random_points, shared_coasts, square
 from measure import measure, millions_per_second, ratio, table
+from prediction import on_threads
 
 HEAD = ("program", "triangles", "smallest angle", "Delaunay, s", "Quality, s", "numbering, s", "all, s",
         "M/s in Quality", "Triangle's Quality over it", "Triangle's all over it", "bytes a triangle")
@@ -50,8 +51,7 @@ def _share_target(asked, most, shares):
 
 def _sequential_shares(m, threads=64):
     for run in m.runs:
-        schedule = run.facts["schedule"]
-        for predicted in schedule["prediction"] if schedule else ():
+        for predicted in on_threads(run.facts) if run.facts["schedule"] else ():
             if predicted["threads"] == threads:
                 yield predicted["sequential_share"]
 

@@ -261,9 +261,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/rank_report.c
     drivers/mesh/shared_input.c
     drivers/mesh/streams.c
-    drivers/mesh/restart.c
-    drivers/mesh/prediction.c
-    drivers/mesh/replay.c)
+    drivers/mesh/restart.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/mesh/report_none.c)
 

@@ -11,8 +11,6 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/prediction.h"
-#include "drivers/mesh/replay.h"
 #include "drivers/resources.h"
 #include "triangle/text/write.h"
 
@@ -49,11 +47,14 @@ static json_t *parts_of(const struct par_report *r)
     json_t *phases = json_array();
     for (int phase = 0; phase < 4; phase++)
         json_array_append_new(phases, real(r->phase_seconds[phase]));
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
+    json_t *shared = json_array();
+    for (int k = 0; k < PAR_SHARINGS; k++)
+        json_array_append_new(shared, real(r->seconds_shared[k]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
                      "prerefine", real(r->seconds_prerefine), "partition", real(r->seconds_partition), "find",
                      real(r->seconds_find), "worklist", real(r->seconds_deal), "room", real(r->seconds_room), "refine",
                      real(r->seconds_refine), "merge", real(r->seconds_merge), "last", real(r->seconds_last), "number",
-                     real(r->seconds_number), "phases", phases);
+                     real(r->seconds_number), "phases", phases, "shared", shared);
 }
 
 static json_t *blocks_of(const struct par_report *r)
@@ -73,56 +74,12 @@ static json_t *blocks_of(const struct par_report *r)
     return blocks;
 }
 
-static json_t *predictions_of(const struct par_report *r)
+/* Share of the schedule in the time from the Delaunay triangulation to the merged mesh; 0: one sequential call did the
+ * work. */
+static json_t *percent(const struct par_report *r, double seconds)
 {
-    json_t *list = json_array();
-    double sequential = prediction_sequential(r);
-    for (int threads = 1; threads <= 256; threads *= 2) {
-        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads);
-        double quality = sequential + refine + prediction_shared(r, threads);
-        if (refine < 0)
-            continue;
-        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
-                                              real(refine), "quality_seconds", real(quality), "number_seconds",
-                                              real(prediction_number(r, threads)),
-                                              "sequential_share", real(quality > 0 ? sequential / quality : 1)));
-    }
-    return list;
-}
-
-static json_t *replay_of(const struct par_report *r, const struct replay_how *how, double triangles)
-{
-    struct replay s;
-    if (!replay_on_ranks(r, how, &s))
-        return json_null();
-    return json_pack("{s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "ranks", how->n_ranks,
-                     "threads", how->threads, "triangles", whole((int64_t)triangles), "seconds", real(s.total),
-                     "alone_seconds", real(s.alone), "refine_seconds", real(s.refine), "merge_seconds", real(s.merge),
-                     "communication_seconds", real(s.communicate), "hand_out_seconds", real(s.hand_out),
-                     "processor_seconds_of_busiest", real(s.processor), "bytes", real(s.bytes), "messages",
-                     real(s.messages), "most_bytes_of_a_rank", real(s.most_bytes));
-}
-
-/* This mesh on ranks; about the largest of the paper's Table 2, and one as large a rank; and one of 10^10 on 4, 16 and
- * 64 nodes of 64 cores. */
-static json_t *replays_of(const struct par_report *r, double triangles)
-{
-    enum { MOST_TIMES = 100 };
-    static const struct {
-        int ranks, threads;
-        double triangles; /* 0: as many as there are */
-    } rows[] = {{1, 1, 0},       {2, 1, 0},       {4, 1, 0},     {9, 1, 0},     {16, 1, 0},   {64, 1, 0},
-                {121, 1, 8.7e8}, {1024, 1, 7.4e9}, {32, 8, 1e10}, {128, 8, 1e10}, {512, 8, 1e10}};
-    json_t *list = json_array();
-    double cells = ((double)r->columns - 1) * ((double)r->rows - 1);
-    for (size_t i = 0; cells > 0 && i < sizeof rows / sizeof *rows; i++) {
-        double times = fmax(1, round(sqrt(rows[i].triangles / triangles)));
-        struct replay_how how = replay_usual(rows[i].ranks, rows[i].threads, (int)fmin(times, MOST_TIMES),
-                                             triangles / cells);
-        if (times <= MOST_TIMES)
-            json_array_append_new(list, replay_of(r, &how, triangles * times * times));
-    }
-    return list;
+    double merged = r->seconds_total - r->seconds_number;
+    return real(r->levels == 0 || !(merged > 0) || seconds < 0 ? 0 : 100 * seconds / merged);
 }
 
 static json_t *by_reason(const int64_t count[TRI_EXCUSES])
@@ -134,7 +91,7 @@ static json_t *by_reason(const int64_t count[TRI_EXCUSES])
 
 static const char *const way_names[] = {[PAR_IN_MEMORY] = "in memory", [PAR_SWEPT] = "swept", [PAR_PARKED] = "parked"};
 
-static json_t *schedule_of(const struct par_report *r, double triangles)
+static json_t *schedule_of(const struct par_report *r)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
@@ -144,7 +101,8 @@ static json_t *schedule_of(const struct par_report *r, double triangles)
                   "inserted", inserted, "deferred", whole(r->deferred), "left_over", whole(r->left_over), "refused",
                   by_reason(r->total.given_up), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
                   "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
-    json_t *way = json_pack("{s:s, s:o, s:o, s:o}", "way", way_names[r->way], "most_live_triangles",
+    json_t *way = json_pack("{s:s, s:i, s:o, s:o, s:o}", "way", way_names[r->way], "schedule", (int)r->schedule,
+                            "most_live_triangles",
                             whole(r->most_live), "parked_bytes", whole(r->parked), "below_bounds",
                             r->remain_known ? by_reason(r->remain) : json_null());
     if (json_object_update(counts, way)) {
@@ -152,12 +110,10 @@ static json_t *schedule_of(const struct par_report *r, double triangles)
         counts = NULL;
     }
     json_decref(way);
-    json_t *times =
-        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
-                  real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)),
-                  "later_rounds_seconds_estimate", real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)),
-                  "prediction", predictions_of(r), "prediction_on_ranks", replays_of(r, triangles), "blocks",
-                  blocks_of(r));
+    double merged = r->seconds_total - r->seconds_number;
+    json_t *times = json_pack("{s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
+                              percent(r, merged - r->seconds_prerefine - r->seconds_refine), "numbering_percent",
+                              percent(r, r->seconds_number), "blocks", blocks_of(r));
     if (json_object_update(counts, times)) {
         json_decref(counts);
         counts = NULL;
@@ -258,7 +214,7 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                      "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
                      "threads", threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
                      stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
-                     schedule ? schedule_of(schedule, (double)run->counts.triangles) : json_null());
+                     schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)
