@@ -31,12 +31,11 @@ static bool grow(struct tri_cavity *c)
     return tri_grow_together(arrays, 4, &c->capacity, c->capacity + 1, MORE_EDGES);
 }
 
-static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
+bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    for (int k = 0; c->fence && k < 3; k++) {
-        if (!tri_fence_holds(c->fence, mesh->xy[mesh->tri[t].v[k]]))
+    for (int k = 0; fence && k < 3; k++)
+        if (!tri_fence_holds(fence, mesh->xy[mesh->tri[t].v[k]]))
             return false;
-    }
     return true;
 }
 
@@ -133,7 +132,7 @@ static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh 
     assert(first >= 0 && first < 3 && (n == 2 || n == 3));
     if (!add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
-    if (!owns(c, mesh, t))
+    if (!tri_fence_owns(c->fence, mesh, t))
         return TRI_SEARCH_FENCED;
     const struct tri_triangle *start = &mesh->tri[t];
     struct tri_relative r[3];

@@ -68,6 +68,9 @@ enum tri_search {
     TRI_SEARCH_NO_MEMORY
 };
 
+/* Do all corners of the triangle lie within the fence? NULL: there is none. */
+bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, tri_triangle_id t);
+
 void tri_cavity_free(struct tri_cavity *cavity);
 
 /* Finds the cavity of p from triangle t. Reads the mesh only. Expected O(1) in a good mesh; O(cavity) always. */

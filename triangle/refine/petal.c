@@ -4,6 +4,8 @@
 
 #include <assert.h>
 
+#include "triangle/mesh/cavity.h"
+
 /* The most edges of the diagram that wait, and triangles that are walked through. Larger trees are left unsearched
  * behind these; a hundred triangles were never seen. Rounding can make a ring of circumcentres around a corner where
  * vertices lie a few units in the last place apart, so only the second ends the walk for sure. */
@@ -133,14 +135,6 @@ static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangl
     return true;
 }
 
-static bool owns(const struct tri_mesh *mesh, const struct tri_fence *fence, const struct tri_triangle *t)
-{
-    for (int k = 0; fence && k < 3; k++)
-        if (!tri_fence_holds(fence, mesh->xy[t->v[k]]))
-            return false;
-    return true;
-}
-
 enum tri_petal tri_petal_point(const struct tri_mesh *mesh, const struct tri_fence *fence, tri_triangle_id triangle,
                                const struct tri_shape *shape, double height, struct tri_point *p,
                                tri_vertex_id beyond[2])
@@ -152,7 +146,7 @@ enum tri_petal tri_petal_point(const struct tri_mesh *mesh, const struct tri_fen
     assert(triangle >= 0 && tri_is_live(t) && height > 0.5);
     petal.b = relative(&petal, t->v[tri_prev[s]]);
     set_disk(&petal, height);
-    if (!owns(mesh, fence, t) || !circumcentre(&petal, triangle, &c) || !is_in_disk(&petal, c))
+    if (!tri_fence_owns(fence, mesh, triangle) || !circumcentre(&petal, triangle, &c) || !is_in_disk(&petal, c))
         return TRI_PETAL_USUAL;
     const double usual2 = c.x * c.x + c.y * c.y;
     petal.best2 = usual2 * GAIN;
