@@ -71,11 +71,11 @@ static bool check_edges_seen(const struct tri_cavity *cavity, const struct tri_m
     int32_t walls = 0;
     bool beyond = false;
     assert_int_equal(cavity->n_edges, cavity->n_tri + 2);
-    assert_int_equal(cavity->edge[cavity->n_edges].a, cavity->edge[0].a);
+    assert_int_equal(cavity->edge[cavity->n_edges].a->v, cavity->edge[0].a->v);
     for (int32_t i = 0; i < cavity->n_edges; i++) {
         const struct tri_cavity_edge *edge = &cavity->edge[i];
-        int32_t a = edge->a, b = edge[1].a;
-        assert_true(edge->area2 == tri_cross(edge[0].ra, edge[1].ra));
+        int32_t a = edge->a->v, b = edge[1].a->v;
+        assert_true(edge->area2 == tri_cross(edge[0].a->r, edge[1].a->r));
         bool seen = tri_orient2d(cavity->p, mesh->xy[a], mesh->xy[b]) > 0;
         if (edge->outer < 0) {
             const struct tri_subsegment *s = &mesh->sub[~edge->outer];
@@ -107,8 +107,8 @@ static void insert(struct tri_cavity *cavity, struct tri_mesh *mesh)
         fail_msg("%s", error.text);
     assert_int_equal(mesh->n_triangles, n + 2);
     for (int32_t i = 0; i < cavity->n_edges; i++) {
-        const struct tri_triangle *t = &mesh->tri[cavity->edge[i].triangle];
-        assert_true(t->v[0] == v && t->v[1] == cavity->edge[i].a);
+        const struct tri_triangle *t = &mesh->tri[cavity->tri[i]];
+        assert_true(t->v[0] == v && t->v[1] == cavity->edge[i].a->v);
         assert_true(t->region == cavity->edge[i].region);
     }
 }

@@ -53,8 +53,8 @@ static double shortest2(const struct tri_mesh *mesh, tri_triangle_id t, struct t
     double least = HUGE_VAL;
     bool behind = tri_cavity_search(&cavity, mesh, p, t) != TRI_SEARCH_FOUND;
     for (int32_t i = 0; i < cavity.n_edges; i++) {
-        behind = behind || tri_orient2d(p, mesh->xy[cavity.edge[i].a], mesh->xy[cavity.edge[i + 1].a]) <= 0;
-        least = fmin(least, cavity.edge[i].ra.l);
+        behind = behind || tri_orient2d(p, mesh->xy[cavity.edge[i].a->v], mesh->xy[cavity.edge[i + 1].a->v]) <= 0;
+        least = fmin(least, cavity.edge[i].a->r.l);
     }
     tri_cavity_free(&cavity);
     return behind ? HUGE_VAL : least;

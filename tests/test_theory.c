@@ -300,7 +300,7 @@ static void test_radius_never_grows(void **state)
             assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, &error), TRI_OK);
             fill(&mesh, &p);
             for (int32_t k = 0; k < p.n_edges; k++)
-                assert_true(radius2_at(&mesh, p.edge[k].triangle) <= before2 * (1 + 1e-9));
+                assert_true(radius2_at(&mesh, p.tri[k]) <= before2 * (1 + 1e-9));
         }
         assert_true(largest_radius(&mesh) <= bound * (1 + 1e-9));
         tri_mesh_free(&mesh);

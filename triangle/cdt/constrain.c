@@ -201,9 +201,9 @@ static bool keep_corners(struct layer *l, tri_vertex_id v)
         return false;
     l->flips.corner = l->corner;
     for (int32_t i = 0; i < l->cavity.n_edges; i++) {
-        const struct tri_triangle *t = &l->mesh->tri[l->cavity.edge[i].triangle];
+        const struct tri_triangle *t = &l->mesh->tri[l->cavity.tri[i]];
         for (int k = 0; k < 3; k++)
-            l->corner[t->v[k]] = l->cavity.edge[i].triangle;
+            l->corner[t->v[k]] = l->cavity.tri[i];
     }
     return l->corner[v] != TRI_NONE;
 }
@@ -306,7 +306,7 @@ static struct choice choose_vertex(const struct layer *l, int32_t first, tri_tri
     for (int k = 0; t != TRI_NONE && k < 3; k++)
         try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
     for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_edges; i++)
-        try_vertex(l, first, l->cavity.edge[i].a, p, within, &best);
+        try_vertex(l, first, l->cavity.edge[i].a->v, p, within, &best);
     return best;
 }
 

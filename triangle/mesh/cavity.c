@@ -8,27 +8,34 @@
 #include "triangle/geometry/predicates.h"
 
 /* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
- * sum of l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2;
- * the factor is rounded up to pay for the rounding of that sum. Nothing underflows in the range of predicates.h. */
-static const double DOUBT = 1.2e-15;
+ * sum of l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2,
+ * and that a third of the squared sum of the l; the factor is rounded up to pay for the rounding of that square.
+ * Nothing underflows in the range of predicates.h. */
+static const double DOUBT = 4e-16;
 
 void tri_cavity_free(struct tri_cavity *cavity)
 {
     free(cavity->tri);
+    free(cavity->corner);
     free(cavity->edge);
     free(cavity->wall);
     free(cavity->pending);
     *cavity = (struct tri_cavity){0};
 }
 
-/* Edges, those that wait among them, beyond the triangles: two, and one that says where the last one ends. */
-enum { MORE_EDGES = 3 };
+/* Beyond the triangles: two edges, those that wait among them, and one that says where the last one ends; on each side
+ * of a split two corners. */
+enum { MORE = 5 };
+
+/* Of one try: the arrays are too small, which stay where they are while a search goes on. It begins again. */
+#define TOO_LARGE TRI_SEARCH_NO_MEMORY
 
 static bool grow(struct tri_cavity *c)
 {
-    const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->edge, sizeof *c->edge},
-                                         {&c->wall, sizeof *c->wall}, {&c->pending, sizeof *c->pending}};
-    return tri_grow_together(arrays, 4, &c->capacity, c->capacity + 1, MORE_EDGES);
+    const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->corner, sizeof *c->corner},
+                                         {&c->edge, sizeof *c->edge}, {&c->wall, sizeof *c->wall},
+                                         {&c->pending, sizeof *c->pending}};
+    return tri_grow_together(arrays, 5, &c->capacity, c->capacity + 1, MORE);
 }
 
 bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, tri_triangle_id t)
@@ -39,14 +46,15 @@ bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, 
     return true;
 }
 
-/* Is p in the circumdisk of a, b, c? The determinant has been worked out; where the filter leaves that open, which is
- * rare, it is decided exactly. The sum of products of the l is written so that what is known first is added first. */
-static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const tri_vertex_id v[3], double la,
-                             double lb, double lc, double det)
+/* Is p in the circumdisk of a, b, c? The determinant and the sum of the l have been worked out; where the filter leaves
+ * that open, which is rare, it is decided exactly. */
+static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const struct tri_cavity_corner *a,
+                             const struct tri_cavity_corner *b, const struct tri_cavity_corner *c, double sum,
+                             double det)
 {
-    if (fabs(det) > DOUBT * (la * lb + (la + lb) * lc))
+    if (fabs(det) > DOUBT * (sum * sum))
         return det > 0;
-    return tri_in_circle_near(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], p);
+    return tri_in_circle_near(mesh->xy[a->v], mesh->xy[b->v], mesh->xy[c->v], p);
 }
 
 static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex_id b)
@@ -59,69 +67,64 @@ static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex
 /* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
  * where the last edge before it has ended; the first at a. Each comes with the cross product of its ends; so of the
  * three products that a test needs one is known, and the other two are those of the edges behind. */
-static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, tri_vertex_id a,
-                               struct tri_relative ra)
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending,
+                               const struct tri_cavity_corner *a)
 {
-    const struct tri_triangle *tri = mesh->tri;
-    const struct tri_point *xy = mesh->xy, p = c->p;
-    int32_t n_tri = c->n_tri, n_edges = c->n_edges;
-    while (n_pending > 0) {
-        struct tri_pending edge = c->pending[--n_pending];
-        while (edge.link >= 0) {
+    const struct tri_triangle *const tri = mesh->tri;
+    const struct tri_point *const xy = mesh->xy, p = c->p;
+    struct tri_cavity_corner *q = c->corner + c->n_corners;
+    struct tri_cavity_edge *ring = c->edge + c->n_edges;
+    struct tri_pending *pending = c->pending + n_pending - 1, edge = *pending;
+    tri_triangle_id *took = c->tri + c->n_tri, *const most = c->tri + c->capacity;
+    uint32_t mixed = 0;
+    for (;;) {
+        if (edge.link >= 0) {
             const struct tri_triangle *t = &tri[edge.link >> 2];
             int e = edge.link & 3;
-            tri_vertex_id apex = t->v[e], corners[3] = {a, apex, edge.end};
-            struct tri_relative rapex = tri_relative(&xy[apex], p);
-            double left = tri_cross(ra, rapex), right = tri_cross(rapex, edge.rend);
-            double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
-            if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
-                break;
-            if (c->fence && !tri_fence_holds(c->fence, xy[apex])) {
-                c->n_tri = n_tri;
-                return TRI_SEARCH_FENCED;
+            q->v = t->v[e];
+            q->r = tri_relative(&xy[q->v], p);
+            double left = tri_cross(a->r, q->r), right = tri_cross(q->r, edge.end->r);
+            double det = a->r.l * right + edge.end->r.l * left - q->r.l * edge.area2;
+            if (in_circle(mesh, p, a, q, edge.end, a->r.l + edge.end->r.l + q->r.l, det)) {
+                if (c->fence && !tri_fence_holds(c->fence, xy[q->v])) {
+                    c->n_tri = (int32_t)(took - c->tri);
+                    return TRI_SEARCH_FENCED;
+                }
+                if (took == most)
+                    return TOO_LARGE;
+                assert(t->v[tri_next[e]] == edge.end->v && t->v[tri_prev[e]] == a->v);
+                *took++ = edge.link >> 2;
+                mixed |= (uint32_t)(t->region ^ c->region);
+                *pending++ = (struct tri_pending){right, edge.end, t->n[tri_prev[e]], t->region};
+                edge = (struct tri_pending){left, q++, t->n[tri_next[e]], t->region};
+                continue;
             }
-            if (n_tri == c->capacity && !grow(c))
-                return TRI_SEARCH_NO_MEMORY;
-            assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);
-            c->tri[n_tri++] = edge.link >> 2;
-            c->mixed |= (uint32_t)(t->region ^ c->region);
-            c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], edge.end, t->region, edge.rend, right};
-            edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
-        }
-        assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1 && c->n_wall <= n_edges && a != edge.end);
-        if (edge.link < 0) {
+        } else {
             if (edge.link == TRI_BEYOND)
-                return stop_at(c, a, edge.end);
-            c->wall[c->n_wall++] = n_edges;
+                return stop_at(c, a->v, edge.end->v);
+            c->wall[c->n_wall++] = (int32_t)(ring - c->edge);
         }
-        c->edge[n_edges++] = (struct tri_cavity_edge){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
+        *ring++ = (struct tri_cavity_edge){edge.area2, a, edge.link, edge.region};
         a = edge.end;
-        ra = edge.rend;
+        if (pending == c->pending)
+            break;
+        edge = *--pending;
     }
     /* So that whoever goes along the edges need not ask which is the last. The chain on the left of a split ends where
      * that on the right begins. */
-    c->edge[n_edges] = (struct tri_cavity_edge){TRI_NONE, a, TRI_NONE, TRI_NONE, ra, 0};
-    c->n_tri = n_tri;
-    c->n_edges = n_edges;
+    ring->a = a;
+    c->n_tri = (int32_t)(took - c->tri);
+    c->n_corners = (int32_t)(q - c->corner);
+    c->n_edges = (int32_t)(ring - c->edge);
+    c->mixed |= mixed;
     return TRI_SEARCH_FOUND;
 }
 
-static bool begin(struct tri_cavity *c, struct tri_point p)
+static void begin(struct tri_cavity *c, struct tri_point p)
 {
     c->p = p;
-    c->n_tri = c->n_edges = c->n_wall = 0;
+    c->n_tri = c->n_corners = c->n_edges = c->n_wall = 0;
     c->mixed = 0;
-    return c->capacity > 0 || grow(c);
-}
-
-static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
-{
-    assert(t >= 0 && tri_is_live(&mesh->tri[t]) && c->n_tri <= c->capacity);
-    if (c->n_tri == c->capacity && !grow(c))
-        return false;
-    c->region = mesh->tri[t].region;
-    c->tri[c->n_tri++] = t;
-    return true;
 }
 
 /* Explores what lies in triangle t and behind n of its edges, in turn from the first on. Where p is not in the disk of
@@ -129,26 +132,28 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_tri
 static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t, int first,
                                     int n)
 {
-    assert(first >= 0 && first < 3 && (n == 2 || n == 3));
-    if (!add_start(c, mesh, t))
-        return TRI_SEARCH_NO_MEMORY;
-    if (!tri_fence_owns(c->fence, mesh, t))
-        return TRI_SEARCH_FENCED;
     const struct tri_triangle *start = &mesh->tri[t];
-    struct tri_relative r[3];
+    assert(first >= 0 && first < 3 && (n == 2 || n == 3));
+    assert(t >= 0 && tri_is_live(start));
+    if (c->n_tri + 2 > c->capacity)
+        return TOO_LARGE;
+    c->region = start->region;
+    c->tri[c->n_tri++] = t;
+    if (c->fence && !tri_fence_owns(c->fence, mesh, t))
+        return TRI_SEARCH_FENCED;
+    struct tri_cavity_corner *q = c->corner + c->n_corners;
     for (int k = 0; k < 3; k++)
-        r[k] = tri_relative(&mesh->xy[start->v[k]], c->p);
-    double area2[3] = {tri_cross(r[1], r[2]), tri_cross(r[2], r[0]), tri_cross(r[0], r[1])};
-    double det = r[0].l * area2[0] + r[1].l * area2[1] + r[2].l * area2[2];
-    bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
-    if (!distinct || !in_circle(mesh, c->p, start->v, r[0].l, r[1].l, r[2].l, det))
+        q[k] = (struct tri_cavity_corner){tri_relative(&mesh->xy[start->v[k]], c->p), start->v[k]};
+    c->n_corners += 3;
+    double area2[3] = {tri_cross(q[1].r, q[2].r), tri_cross(q[2].r, q[0].r), tri_cross(q[0].r, q[1].r)};
+    double det = q[0].r.l * area2[0] + q[1].r.l * area2[1] + q[2].r.l * area2[2];
+    bool distinct = q[0].r.l != 0 && q[1].r.l != 0 && q[2].r.l != 0;
+    if (!distinct || !in_circle(mesh, c->p, &q[0], &q[1], &q[2], q[0].r.l + q[1].r.l + q[2].r.l, det))
         return TRI_SEARCH_OUTSIDE;
     int e = first;
-    for (int32_t k = n - 1; k >= 0; k--, e = tri_next[e]) {
-        int end = tri_prev[e];
-        c->pending[k] = (struct tri_pending){start->n[e], start->v[end], start->region, r[end], area2[e]};
-    }
-    return explore(c, mesh, n, start->v[tri_next[first]], r[tri_next[first]]);
+    for (int32_t k = n - 1; k >= 0; k--, e = tri_next[e])
+        c->pending[k] = (struct tri_pending){area2[e], &q[tri_prev[e]], start->n[e], start->region};
+    return explore(c, mesh, n, &q[tri_next[first]]);
 }
 
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
@@ -157,18 +162,23 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
     assert(tri_is_live(&mesh->tri[t]));
     if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
         return TRI_SEARCH_OUTSIDE;
-    if (!begin(c, p))
-        return TRI_SEARCH_NO_MEMORY;
-    return explore_from(c, mesh, t, 0, 3);
+    enum tri_search found;
+    do {
+        begin(c, p);
+        found = explore_from(c, mesh, t, 0, 3);
+    } while (found == TOO_LARGE && grow(c));
+    return found;
 }
 
 /* Rounding may place a split point off its subsegment: every edge must still be seen counter-clockwise. */
 static bool sees_edges(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
     assert(0 <= first && first <= end && end <= c->n_edges);
-    for (const struct tri_cavity_edge *edge = &c->edge[first]; edge < &c->edge[end]; edge++)
-        if (edge->ra.l == 0 || tri_orient2d(c->p, mesh->xy[edge[0].a], mesh->xy[edge[1].a]) <= 0)
+    for (int32_t i = first; i < end; i++) {
+        const struct tri_cavity_corner *a = c->edge[i].a, *b = c->edge[i + 1].a;
+        if (a->r.l == 0 || tri_orient2d(c->p, mesh->xy[a->v], mesh->xy[b->v]) <= 0)
             return false;
+    }
     return true;
 }
 
@@ -218,14 +228,11 @@ static bool overlaps_itself(const struct tri_cavity *c, tri_sub_id s)
     return false;
 }
 
-enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
-                                        tri_sub_id s, int32_t *n_left)
+/* One try, with the arrays as large as they are. */
+static enum tri_search search_split(struct tri_cavity *c, const struct tri_mesh *mesh, tri_sub_id s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
-    assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
     *n_left = c->n_left_tri = 0;
-    if (!begin(c, p))
-        return TRI_SEARCH_NO_MEMORY;
     for (int side = 0; side < 2; side++) {
         int32_t first = c->n_edges;
         if (sub->side[side] == TRI_NONE)
@@ -245,6 +252,18 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
         }
     }
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
+}
+
+enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
+                                        tri_sub_id s, int32_t *n_left)
+{
+    assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
+    enum tri_search found;
+    do {
+        begin(c, p);
+        found = search_split(c, mesh, s, n_left);
+    } while (found == TOO_LARGE && grow(c));
+    return found;
 }
 
 /* Numbers for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
@@ -287,7 +306,7 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
 {
     assert(0 <= first && first <= end && end <= c->n_edges && 0 <= first_tri && end_tri <= c->n_tri);
     for (int32_t i = first; i < end; i++) {
-        struct tri_point a = mesh->xy[c->edge[i].a], b = mesh->xy[c->edge[i + 1].a];
+        struct tri_point a = mesh->xy[c->edge[i].a->v], b = mesh->xy[c->edge[i + 1].a->v];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
         for (int32_t k = first_tri; k < end_tri; k++)
             if (is_inside(mesh, c->tri[k], centroid)) {
@@ -297,39 +316,29 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
     }
 }
 
-/* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
- * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
-static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
-{
-    tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
-    assert(0 <= first && first < end && end <= c->n_edges);
-    for (int32_t i = first; i < end; i++) {
-        struct tri_cavity_edge *edge = &c->edge[i];
-        tri_triangle_id triangle = c->tri[i];
-        struct tri_triangle *t = &mesh->tri[triangle];
-        assert(edge[0].a != edge[1].a && edge[0].a != v && edge[1].a != v);
-        edge->triangle = triangle;
-        t->v[0] = v;
-        t->v[1] = edge[0].a;
-        t->v[2] = edge[1].a;
-        t->n[0] = edge->outer;
-        t->n[1] = tri_code(c->tri[i + 1], 2);
-        t->n[2] = tri_code(before, 1);
-        t->region = edge->region;
-        t->life++;
-        tri_relink(mesh, edge->outer, edge->a, tri_code(triangle, 0));
-        before = triangle;
-    }
-}
-
-void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
+void tri_cavity_take(struct tri_cavity *c, struct tri_mesh *mesh)
 {
     assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2); /* Euler: a disk without a vertex inside */
-    assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
     assert(claim(c));
     if (c->mixed)
         place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
     take_numbers(c, mesh);
+}
+
+/* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
+ * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+static void fill_chain(const struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
+{
+    tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
+    assert(0 <= first && first < end && end <= c->n_edges);
+    for (int32_t i = first; i < end; before = c->tri[i++])
+        tri_make_fan_triangle(mesh, v, &c->edge[i], before, c->tri[i], c->tri[i + 1]);
+}
+
+void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
+{
+    assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
+    tri_cavity_take(c, mesh);
     fill_chain(c, mesh, v, 0, c->n_edges);
 }
 
@@ -358,10 +367,10 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
         fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
         tri_sub_id at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
-        mesh->tri[c->edge[first].triangle].n[2] = ~at_start;
-        mesh->sub[at_start].side[side] = tri_code(c->edge[first].triangle, 2);
-        mesh->tri[c->edge[end - 1].triangle].n[1] = ~at_end;
-        mesh->sub[at_end].side[side] = tri_code(c->edge[end - 1].triangle, 1);
+        mesh->tri[c->tri[first]].n[2] = ~at_start;
+        mesh->sub[at_start].side[side] = tri_code(c->tri[first], 2);
+        mesh->tri[c->tri[end - 1]].n[1] = ~at_end;
+        mesh->sub[at_end].side[side] = tri_code(c->tri[end - 1], 1);
     }
     return second;
 }

@@ -28,21 +28,23 @@ struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */
 };
 
+struct tri_cavity_corner {
+    struct tri_relative r;
+    tri_vertex_id v;
+};
+
 struct tri_cavity_edge {
-    tri_link outer;       /* across the edge */
-    tri_vertex_id a;      /* the edge starts at this vertex and ends where the next edge starts */
-    tri_region_id region; /* of the cavity triangle inside */
-    tri_triangle_id triangle; /* the new one on this edge, once filled */
-    struct tri_relative ra;
     double area2; /* twice the area of the triangle on this edge: the cross product of its ends */
+    const struct tri_cavity_corner *a; /* the edge starts here and ends where the next edge starts */
+    tri_link outer;       /* across the edge */
+    tri_region_id region; /* of the cavity triangle inside */
 };
 
 struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last edge ended */
-    tri_link link;
-    tri_vertex_id end;
-    tri_region_id region;
-    struct tri_relative rend;
     double area2;
+    const struct tri_cavity_corner *end;
+    tri_link link;
+    tri_region_id region;
 };
 
 struct tri_cavity {
@@ -50,11 +52,12 @@ struct tri_cavity {
     const struct tri_fence *fence; /* NULL: everything is owned */
     const struct tri_owners *owners; /* for asserts in debug builds; NULL: none */
     tri_vertex_id beyond[2];       /* after TRI_SEARCH_BEYOND: the ends of the edge behind which it lies */
-    int32_t n_tri, n_edges, n_wall, capacity;
+    int32_t n_tri, n_corners, n_edges, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     tri_region_id region; /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
-    tri_triangle_id *tri; /* the cavity's triangles; once filled, those of the fan */
+    tri_triangle_id *tri; /* the cavity's triangles; once filled, those of the fan, one for each edge */
+    struct tri_cavity_corner *corner; /* as they were found: at most n_tri + 4, and the one that is looked at */
     struct tri_cavity_edge *edge;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
     int32_t *wall;        /* indices of the edges whose outer link is a subsegment */
     struct tri_pending *pending;
@@ -65,7 +68,7 @@ enum tri_search {
     TRI_SEARCH_FENCED,   /* a triangle of the cavity is not owned */
     TRI_SEARCH_BEYOND,   /* a triangle that may be one of the cavity is not here (TRI_BEYOND) */
     TRI_SEARCH_OUTSIDE,  /* the point is not in the circumdisk of the start triangle, or coincides with a vertex */
-    TRI_SEARCH_NO_MEMORY
+    TRI_SEARCH_NO_MEMORY /* for arrays of the size that the cavity needs */
 };
 
 /* Do all corners of the triangle lie within the fence? NULL: there is none. */
@@ -84,8 +87,8 @@ enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_me
 enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
                                         tri_sub_id s, int32_t *n_left);
 
-/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Edges learn the new triangles; corner 0 of
- * each new triangle is v, corner 1 the start of its edge. Room for two more triangles must exist. */
+/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Corner 0 of each new triangle is v, corner
+ * 1 the start of its edge. Room for two more triangles must exist. */
 void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v);
 
 /* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one
@@ -98,6 +101,21 @@ static inline struct tri_relative tri_relative(const struct tri_point *q, struct
     double x = q->x - p.x, y = q->y - p.y;
     struct tri_relative relative = {x, y, x * x + y * y};
     return relative;
+}
+
+/* The same in two steps, for who has something to do with each new triangle while it is at hand: takes numbers for the
+ * fan; makes its triangle `own` on an edge, between those before and behind it. */
+void tri_cavity_take(struct tri_cavity *cavity, struct tri_mesh *mesh);
+
+static inline void tri_make_fan_triangle(struct tri_mesh *mesh, tri_vertex_id v, const struct tri_cavity_edge *edge,
+                                         tri_triangle_id before, tri_triangle_id own, tri_triangle_id behind)
+{
+    const tri_vertex_id a = edge[0].a->v, b = edge[1].a->v;
+    struct tri_triangle *t = &mesh->tri[own];
+    assert(a != b && a != v && b != v);
+    *t = (struct tri_triangle){{v, a, b}, {edge->outer, tri_code(behind, 2), tri_code(before, 1)}, edge->region,
+                               t->life + 1};
+    tri_relink(mesh, edge->outer, a, tri_code(own, 0));
 }
 
 /* Twice the area of the triangle p, a, b. */

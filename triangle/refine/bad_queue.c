@@ -62,6 +62,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
         return false;
     queue->block[bucket->last].entry[bucket->end++] = entry;
     bucket->count++;
+    queue->n_angles++;
     queue->filled[b / 64] |= UINT64_C(1) << b % 64;
     return true;
 }
@@ -129,6 +130,7 @@ static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *ent
     assert(bucket->first != NIL && bucket->count > 0);
     *entry = queue->block[bucket->first].entry[bucket->begin++];
     bucket->count--;
+    queue->n_angles--;
     if (bucket->count == 0 || bucket->begin == TRI_BLOCK)
         shorten(queue, bucket);
     if (bucket->count == 0)
@@ -168,8 +170,8 @@ static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *t
 
 bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh, struct tri_entry *entry)
 {
-    if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, mesh, entry))
-        return true;
+    if (queue->n_angles > 0)
+        return tri_bad_queue_pop_angle(queue, TRI_BUCKETS, mesh, entry);
     while (queue->next == queue->n_batch) {
         if (queue->head == queue->tail && queue->n_cold > 0)
             refill(queue);

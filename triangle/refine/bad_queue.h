@@ -46,6 +46,7 @@ struct tri_bad_queue {
     int32_t n_blocks, block_capacity, free_block;
     struct tri_bucket bucket[TRI_BUCKETS];
     uint64_t filled[TRI_BUCKETS / 64]; /* bit b % 64 of word b / 64: bucket b holds something */
+    int64_t n_angles;                  /* entries in all buckets */
 
     struct tri_entry *window; /* ring of TRI_WINDOW */
     uint32_t head, tail;      /* tail - head entries wait in the ring */

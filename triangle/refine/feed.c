@@ -53,26 +53,11 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-/* Judges the triangle of an edge and the new vertex, from the coordinates the cavity search left. */
-static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge, double area2_bound)
-{
-    struct tri_relative ra = edge[0].ra, rb = edge[1].ra;
-    assert(edge->triangle >= 0);
-    double area2 = edge->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
-    if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push_angle(r, edge->triangle, tri_lesser(ra.l, tri_lesser(rb.l, l)));
-    bool is_bad = area2 > area2_bound;
-    if (r->options->unsuitable)
-        is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[edge->triangle].v);
-    struct tri_entry entry = {edge->triangle, r->mesh->tri[edge->triangle].life};
-    return tri_bad_queue_push_size(&r->queue, entry, is_bad);
-}
-
 /* Judges the new triangles where only urgent ones count (options->urgent). */
 static bool judge_urgent(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < r->cavity.n_edges; i++) {
-        tri_triangle_id triangle = r->cavity.edge[i].triangle;
+        tri_triangle_id triangle = r->cavity.tri[i];
         const struct tri_triangle *t = &r->mesh->tri[triangle];
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
@@ -82,17 +67,49 @@ static bool judge_urgent(struct tri_refiner *r)
     return true;
 }
 
+/* Judges the new triangle on an edge, by the coordinates that the search for the cavity left. */
+static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_cavity_edge *edge)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    const struct tri_relative a = edge[0].a->r, b = edge[1].a->r;
+    double area2 = edge->area2, x = a.x - b.x, y = a.y - b.y, l = x * x + y * y;
+    if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(a.l, b.l, l))
+        return push_angle(r, triangle, tri_lesser(a.l, tri_lesser(b.l, l)));
+    bool is_bad = area2 > tri_area2_bound(&r->criterion, edge->region);
+    if (r->options->unsuitable)
+        is_bad = is_bad || tri_is_unsuitable(&r->criterion, t->v);
+    return tri_bad_queue_push_size(&r->queue, (struct tri_entry){triangle, t->life}, is_bad);
+}
+
 /* Queues what is bad among the new triangles. */
 bool tri_feed_fan(struct tri_refiner *r)
 {
+    const struct tri_cavity *c = &r->cavity;
     if (r->options->urgent)
         return judge_urgent(r);
-    for (int32_t i = 0; i < r->cavity.n_edges; i++) {
-        const struct tri_cavity_edge *edge = &r->cavity.edge[i];
-        if (!judge_edge(r, edge, tri_area2_bound(&r->criterion, edge->region)))
+    for (int32_t i = 0; i < c->n_edges; i++)
+        if (!judge(r, c->tri[i], &c->edge[i]))
             return false;
-    }
     return true;
+}
+
+/* The fan is whole, even where there is no memory for what waits. */
+bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
+{
+    if (r->options->urgent) {
+        tri_cavity_fill(&r->cavity, r->mesh, v);
+        return judge_urgent(r);
+    }
+    tri_cavity_take(&r->cavity, r->mesh);
+    const int32_t n = r->cavity.n_edges;
+    const tri_triangle_id *id = r->cavity.tri;
+    const struct tri_cavity_edge *edge = r->cavity.edge;
+    bool room = true;
+    for (int32_t i = 0; i < n; i++) {
+        tri_make_fan_triangle(r->mesh, v, &edge[i], id[i > 0 ? i - 1 : n - 1], id[i], id[i + 1]);
+        room = judge(r, id[i], &edge[i]) && room;
+    }
+    return room;
 }
 
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
@@ -107,7 +124,8 @@ bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
 /* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
 bool tri_feed_walls(struct tri_refiner *r)
 {
-    for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++)
+    const int32_t n = r->options->conforming ? r->cavity.n_wall : 0;
+    for (int32_t i = 0; i < n; i++)
         if (!tri_feed_subsegment(r, ~r->cavity.edge[r->cavity.wall[i]].outer))
             return false;
     return true;

@@ -48,8 +48,8 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tr
     double bx = xy[v[1]].x - ax, by = xy[v[1]].y - ay, cx = xy[v[2]].x - ax, cy = xy[v[2]].y - ay;
     double dx = bx - cx, dy = by - cy;
     struct tri_shape s = {{dx * dx + dy * dy, cx * cx + cy * cy, bx * bx + by * by}, bx * cy - by * cx, 0};
-    int k = s.l[1] < s.l[0];
-    s.shortest = s.l[2] < tri_lesser(s.l[0], s.l[1]) ? 2 : k; /* a conditional move */
+    int second = s.l[1] < s.l[0], third = s.l[2] < tri_lesser(s.l[0], s.l[1]);
+    s.shortest = 2 * third + (second & ~third); /* without a branch, which nobody could predict */
     return s;
 }
 

@@ -49,6 +49,9 @@ enum tri_outcome {
 /* Queues the triangle if it is bad, by its size or by its angle. */
 bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes);
 
+/* Fills the cavity with the fan of vertex v, and queues what is bad among its triangles. */
+bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v);
+
 /* Queues what is bad among the new triangles, once a cavity has been filled. */
 bool tri_feed_fan(struct tri_refiner *r);
 

@@ -35,17 +35,22 @@ static const double CLEARANCE = 2;
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
-static enum tri_status make_room(struct tri_refiner *r)
+static enum tri_status find_room(struct tri_refiner *r)
 {
     struct tri_mesh *m = r->mesh;
-    int32_t vertices = m->vertex_capacity - m->n_vertices, triangles = m->triangle_capacity - m->n_triangles;
-    if (vertices >= 1 && triangles >= 2 && m->sub_capacity > m->n_subs)
-        return TRI_OK;
     if (r->options->more_room)
         return r->error.status = r->options->more_room(r->options->more_room_user, m, &r->error);
     enum tri_status status = tri_mesh_reserve_vertices(m, 1, &r->error);
     status = status ? status : tri_mesh_reserve_triangles(m, 2, &r->error);
     return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
+}
+
+static inline enum tri_status make_room(struct tri_refiner *r)
+{
+    const struct tri_mesh *m = r->mesh;
+    bool has_room = m->vertex_capacity > m->n_vertices && m->triangle_capacity - m->n_triangles >= 2 &&
+                    m->sub_capacity > m->n_subs;
+    return has_room ? TRI_OK : find_room(r);
 }
 
 static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
@@ -91,10 +96,10 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
                                              corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
-    tri_cavity_fill(&r->cavity, r->mesh, v);
+    bool room = tri_fill_and_feed(r, v);
     tell_changes(r);
     r->report->inserted_free++;
-    return tri_feed_fan(r) && tri_feed_walls(r) ? DONE : FAILED;
+    return room && tri_feed_walls(r) ? DONE : FAILED;
 }
 
 static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
@@ -233,11 +238,13 @@ static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_
 }
 
 /* May the new point see this wall under any angle? */
-static bool tolerates(const struct tri_refiner *r, const struct tri_cavity_edge *edge, double shortest)
+static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
 {
-    if (!tri_is_protected(r->options, &r->mesh->sub[~edge->outer]))
+    const struct tri_cavity *c = &r->cavity;
+    if (!tri_is_protected(r->options, &r->mesh->sub[~c->edge[i].outer]))
         return false;
-    double x = edge[1].ra.x - edge[0].ra.x, y = edge[1].ra.y - edge[0].ra.y, area2 = edge->area2;
+    struct tri_relative a = c->edge[i].a->r, b = c->edge[i + 1].a->r;
+    double x = b.x - a.x, y = b.y - a.y, area2 = c->edge[i].area2;
     return area2 * area2 > CLEARANCE * CLEARANCE * shortest * (x * x + y * y);
 }
 
@@ -246,16 +253,16 @@ static bool tolerates(const struct tri_refiner *r, const struct tri_cavity_edge 
 static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, bool *behind)
 {
     const struct tri_cavity *c = &r->cavity;
-    const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
-    assert(i >= 0 && i < c->n_edges && edge->outer < 0); /* a wall */
-    double cross = edge->area2, dot = edge->ra.x * next->ra.x + edge->ra.y * next->ra.y;
+    const struct tri_cavity_corner *a = c->edge[i].a, *b = c->edge[i + 1].a;
+    assert(i >= 0 && i < c->n_edges && c->edge[i].outer < 0); /* a wall */
+    double cross = c->edge[i].area2, dot = a->r.x * b->r.x + a->r.y * b->r.y;
     *behind = false;
     if (dot >= 0 && cross > 0)
         return false;
-    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * edge->ra.l * next->ra.l;
-    if (in_lens && !tolerates(r, edge, shortest))
+    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * a->r.l * b->r.l;
+    if (in_lens && !tolerates(r, i, shortest))
         return true;
-    *behind = tri_orient2d(c->p, r->mesh->xy[edge->a], r->mesh->xy[next->a]) <= 0;
+    *behind = tri_orient2d(c->p, r->mesh->xy[a->v], r->mesh->xy[b->v]) <= 0;
     return *behind;
 }
 
@@ -288,8 +295,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     double area2_bound = tri_area2_bound(&r->criterion, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
         double ideal2 = IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
-        double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
-        reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
+        reach = tri_lesser(ideal2 > 0.25 * l ? sqrt(ideal2) : HUGE_VAL, reach);
     }
     return reach;
 }

@@ -145,9 +145,8 @@ double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
 {
     assert(a != b);
     double from_a = sqrt(tri_relative(&mesh->xy[a], p).l), from_b = sqrt(tri_relative(&mesh->xy[b], p).l);
-    double near = from_a < from_b ? from_a : from_b;
-    double inherited = fmin(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
-    return sized && near < inherited ? near : inherited;
+    double inherited = tri_lesser(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
+    return sized ? tri_lesser(tri_lesser(from_a, from_b), inherited) : inherited;
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */
@@ -183,10 +182,10 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
         size = fmin(size, size_from(mesh, sub->parent, cavity->p, sub->v[k], distance));
     }
     for (int32_t i = 0; i < cavity->n_edges; i++) {
-        const struct tri_cavity_edge *edge = &cavity->edge[i];
-        size = fmin(size, size_from(mesh, sub->parent, cavity->p, edge->a, sqrt(edge->ra.l)));
-        if (edge->outer < 0)
-            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~edge->outer));
+        const struct tri_cavity_corner *corner = cavity->edge[i].a;
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, corner->v, sqrt(corner->r.l)));
+        if (cavity->edge[i].outer < 0)
+            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~cavity->edge[i].outer));
     }
     assert(half > 0 && half < HUGE_VAL && size < HUGE_VAL);
     return sized && half < size ? half : size;
