@@ -62,7 +62,7 @@ static void test_equals_naive_twin(void **state)
     static struct waiting list[5000];
     static const int few[6] = {0, 1, 63, 64, 65, TRI_BUCKETS - 1};
     for (uint64_t seed = 0; seed < 40; seed++) {
-        struct tri_bad_queue queue;
+        struct tri_bad_queue queue = {0};
         struct support_random random = {seed};
         int n = 0;
         assert_true(tri_bad_queue_init(&queue));
@@ -92,7 +92,7 @@ static void test_sizes_beyond_the_window(void **state)
 {
     (void)state;
     enum { N = 5 * TRI_WINDOW + 77 };
-    struct tri_bad_queue queue;
+    struct tri_bad_queue queue = {0};
     struct support_random random = {1};
     bool *seen = calloc(N, sizeof *seen);
     int32_t popped = 0;
@@ -119,7 +119,7 @@ static void test_sizes_beyond_the_window(void **state)
 static void test_older_half_is_spilt(void **state)
 {
     (void)state;
-    struct tri_bad_queue queue;
+    struct tri_bad_queue queue = {0};
     assert_true(tri_bad_queue_init(&queue));
     for (int32_t i = 0; i <= TRI_WINDOW; i++)
         push_size(&queue, i);
@@ -137,7 +137,7 @@ static void test_only_what_is_up_to_date(void **state)
 {
     (void)state;
     enum { N = 1000 };
-    struct tri_bad_queue queue;
+    struct tri_bad_queue queue = {0};
     struct support_random random = {3};
     bool kept[N];
     assert_true(tri_bad_queue_init(&queue));
@@ -158,7 +158,7 @@ static void test_only_what_is_up_to_date(void **state)
 static void test_worklist_is_reused(void **state)
 {
     (void)state;
-    struct tri_bad_queue queue;
+    struct tri_bad_queue queue = {0};
     assert_true(tri_bad_queue_init(&queue));
     for (int32_t i = 0; i < 100000; i++) {
         push_angle(&queue, i, i % TRI_BUCKETS);

@@ -12,7 +12,7 @@ enum {
     WIDE_DIGIT = 8,       /* of a pass from the highest digit down */
     BUCKETS = 1 << WIDE_DIGIT,
     SHARES = 16,          /* of a pass from the highest digit down: few, since their counts lie on the stack */
-    FEW = 24,             /* items that are sorted by insertion */
+    FEW = 64,             /* items that are sorted by insertion */
     MANY = 1 << 18,       /* items that do not fit the cache, and are worth several tasks */
     LARGE_SHARE = 8       /* a bucket with more than one in so many of them is worth them, too */
 };

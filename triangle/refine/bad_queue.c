@@ -11,9 +11,7 @@ enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1, MOST_BLOCKS = INT
 
 bool tri_bad_queue_init(struct tri_bad_queue *queue)
 {
-    *queue = (struct tri_bad_queue){.free_block = NIL};
-    for (int b = 0; b < TRI_BUCKETS; b++)
-        queue->bucket[b] = (struct tri_bucket){.first = NIL, .last = NIL};
+    queue->free_block = NIL;
     queue->window = malloc(TRI_WINDOW * sizeof *queue->window);
     return queue->window;
 }
@@ -23,7 +21,8 @@ void tri_bad_queue_free(struct tri_bad_queue *queue)
     free(queue->block);
     free(queue->window);
     free(queue->cold);
-    *queue = (struct tri_bad_queue){0};
+    queue->block = NULL;
+    queue->window = queue->cold = NULL;
 }
 
 static int32_t take_block(struct tri_bad_queue *queue)
@@ -45,10 +44,12 @@ static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
     int32_t block = take_block(queue);
     if (block == NIL)
         return false;
-    if (bucket->first == NIL)
+    if (bucket->count == 0) {
         bucket->first = block;
-    else
+        bucket->begin = 0;
+    } else {
         queue->block[bucket->last].next = block;
+    }
     bucket->last = block;
     bucket->end = 0;
     return true;
@@ -58,7 +59,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
 {
     assert(b >= 0 && b < TRI_BUCKETS);
     struct tri_bucket *bucket = &queue->bucket[b];
-    if ((bucket->first == NIL || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
+    if ((bucket->count == 0 || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
         return false;
     queue->block[bucket->last].entry[bucket->end++] = entry;
     bucket->count++;
@@ -127,7 +128,7 @@ static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *entry)
 {
     struct tri_bucket *bucket = &queue->bucket[b];
-    assert(bucket->first != NIL && bucket->count > 0);
+    assert(bucket->count > 0);
     *entry = queue->block[bucket->first].entry[bucket->begin++];
     bucket->count--;
     queue->n_angles--;
@@ -185,10 +186,9 @@ bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh,
 
 int tri_bad_queue_median(const struct tri_bad_queue *queue)
 {
-    int64_t all = 0, below = 0;
+    const int64_t all = queue->n_angles - queue->bucket[TRI_URGENT_BUCKET].count;
+    int64_t below = 0;
     int bucket = TRI_URGENT_BUCKET + 1; /* ends at the latest with the last entry */
-    for (int b = bucket; b < TRI_BUCKETS; b++)
-        all += queue->bucket[b].count;
     while (all > 0 && 2 * (below += queue->bucket[bucket].count) < all)
         bucket++;
     return bucket;

@@ -36,7 +36,7 @@ struct tri_block {
 };
 
 struct tri_bucket {
-    int32_t first, last; /* block that is served, and that is filled; first == -1: none */
+    int32_t first, last; /* block that is served, and that is filled; only where count > 0 */
     int32_t begin, end;  /* entry of the first that is served next, and of the last that is filled next */
     int32_t count;       /* entries */
 };
@@ -56,6 +56,7 @@ struct tri_bad_queue {
     int64_t n_cold, cold_capacity;
 };
 
+/* The queue is all zero. False: no memory. */
 bool tri_bad_queue_init(struct tri_bad_queue *queue);
 void tri_bad_queue_free(struct tri_bad_queue *queue);
 

@@ -30,7 +30,10 @@ void tri_pause_head(const struct tri_pause *pause, struct tri_pause *head)
     forget_arrays(head);
 }
 
-static bool is_block(const struct tri_bad_queue *q, int32_t block) { return block >= -1 && block < q->n_blocks; }
+static bool is_block(const struct tri_bad_queue *q, int32_t block)
+{
+    return block >= -1 && (block == 0 || block < q->n_blocks);
+}
 
 static bool is_bucket(const struct tri_bad_queue *q, const struct tri_bucket *b)
 {

@@ -252,8 +252,20 @@ struct gap {
     bool spike;
 };
 
-/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in. */
-static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w)
+/* Does filling the space between p and another parent, which an edge uv bridges, cost less than this? True only where
+ * that is sure at a glance: see tri_filling_cost, where the shorter one is no longer than p and log2(1 + x) < 1.5 x. */
+static bool is_cheaper(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
+                       double cost)
+{
+    const struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], from = mesh->xy[u], to = mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y;
+    return 2 * (x * x + y * y) < cost * fabs(x * (to.y - from.y) - y * (to.x - from.x));
+}
+
+/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in; what costs less than
+ * `least` need not be among them. */
+static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w,
+                              double least)
 {
     int32_t nu, nv;
     tri_parent_id beside[2][8];
@@ -265,8 +277,8 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
-            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || !lies_aside(mesh, p, u, v, w) ||
-                !lies_aside(mesh, q, v, u, w))
+            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || is_cheaper(mesh, p, u, v, least) ||
+                !lies_aside(mesh, p, u, v, w) || !lies_aside(mesh, q, v, u, w))
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
@@ -277,26 +289,27 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
     return gap;
 }
 
-static struct gap gap_at(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
+static struct gap gap_at(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,
+                         double least)
 {
     const tri_vertex_id *v = mesh->tri[triangle].v;
     int k = shape->shortest;
-    return gap_between(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+    return gap_between(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], least);
 }
 
 double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    return gap_at(mesh, triangle, shape).cost;
+    return gap_at(mesh, triangle, shape, 0).cost;
 }
 
 bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    return gap_at(mesh, triangle, shape).spike;
+    return gap_at(mesh, triangle, shape, 0).spike;
 }
 
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    struct gap gap = gap_at(mesh, triangle, shape);
+    struct gap gap = gap_at(mesh, triangle, shape, 0);
     return gap.spike || gap.cost > mesh->limits.dearest_gap;
 }
 
@@ -315,34 +328,28 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, cons
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
-/* The cost of filling the dearest space between a parent at u and one at v that face each other across the edge ab: u
- * and v are the apexes on its two sides. */
-static double cost_across(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id a,
-                          tri_vertex_id b)
-{
-    return fmax(gap_between(mesh, u, v, a).cost, gap_between(mesh, u, v, b).cost);
-}
+enum { CHEAP = 10, OCTAVES = 64 };
 
-/* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
- * between its two sides, as on the one that closes its end, no edge bridges it: so the apexes across each edge count,
- * too. */
+/* About so many points it takes to fill the space that a triangle of the input lies in, where it is dear. Where other
+ * vertices lie between its two sides, as on the one that closes its end, no edge bridges it: so the apexes on the two
+ * sides of each edge count, too. */
 static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
+    const double LEAST = 1 << CHEAP;
     const struct tri_triangle *t = &mesh->tri[triangle];
     if (!tri_is_on_parent(mesh, t->v[0]) && !tri_is_on_parent(mesh, t->v[1]) && !tri_is_on_parent(mesh, t->v[2]))
         return 0;
     struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
-    double demand = tri_gap_cost(mesh, triangle, &shape);
+    double demand = gap_at(mesh, triangle, &shape, LEAST).cost;
     for (int e = 0; e < 3; e++) {
         if (t->n[e] < 0 || !tri_is_on_parent(mesh, t->v[e]))
             continue;
         tri_vertex_id apex = tri_apex(mesh, t->n[e]);
-        demand = fmax(demand, cost_across(mesh, t->v[e], apex, t->v[tri_next[e]], t->v[tri_prev[e]]));
+        for (int end = 1; end < 3; end++)
+            demand = tri_larger(demand, gap_between(mesh, t->v[e], apex, t->v[(e + end) % 3], LEAST).cost);
     }
     return demand;
 }
-
-enum { CHEAP = 10, OCTAVES = 64 };
 
 /* 2^(octave - 1) <= cost < 2^octave; beyond the last one, the last one. */
 static int octave_of(double cost)
@@ -380,7 +387,8 @@ static void demand_share(void *context, size_t index)
 
 static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    struct demands d = {.mesh = mesh};
+    struct demands d; /* each task clears its own share: all would take longer than a small mesh */
+    d.mesh = mesh;
     tri_execute(executor, tri_shares(mesh->n_triangles), demand_share, &d);
     for (size_t i = 1; i < tri_shares(mesh->n_triangles); i++)
         for (int octave = 0; octave < OCTAVES; octave++) {
