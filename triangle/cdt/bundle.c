@@ -1,12 +1,13 @@
 /* Paths that are shared by pieces along the same vertices.
  *
- * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
- * resolutions of its line, along it and for as many triangles again beyond its ends; of two stops within APART of each
- * other along the line, the first alone is one. The pieces from stop to stop run through all the stops between them.
- * Where some of these pieces overlap, they are cut there, and one of each elementary piece is left (tri_share_stops).
+ * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within
+ * TRI_BUNDLE_ALONG resolutions of its line, along it and for as many triangles again beyond its ends; of two stops
+ * within TRI_BUNDLE_APART of each other along the line, the first alone is one. The pieces from stop to stop run
+ * through all the stops between them. Where some of these pieces overlap, they are cut there, and one of each
+ * elementary piece is left (tri_share_stops).
  *
- * THEOREM (distance; docs/theory.md, bundles). A piece is cut at vertices within 2 ALONG resolutions of its own line,
- * those of its larger end.
+ * THEOREM (distance; docs/theory.md, bundles). A piece is cut at vertices within 2 TRI_BUNDLE_ALONG resolutions of its
+ * own line, those of its larger end.
  *
  * COST. A carrier costs at most four times what it crosses. Once MOST_IN_VAIN triangles for each piece and vertex have
  * been looked at for nothing, the pieces that are left stay as they are. */
@@ -20,9 +21,7 @@
 #include "triangle/base/heap_sort.h"
 #include "triangle/cdt/crossing.h"
 #include "triangle/geometry/predicates.h"
-
-/* In resolutions. */
-static const double ALONG = 1.25, APART = 2;
+#include "triangle/tunables.h"
 
 enum { MOST_IN_VAIN = 64 };
 
@@ -80,7 +79,7 @@ static void try_stop(struct bundles *b, tri_vertex_id v)
     if (v >= b->n_vertices || b->place[v] != TRI_NONE)
         return;
     struct tri_point q = b->mesh->xy[v];
-    if (tri_line_distance(b->a, b->b, q) > ALONG * tri_resolution(q))
+    if (tri_line_distance(b->a, b->b, q) > TRI_BUNDLE_ALONG * tri_resolution(q))
         return;
     b->place[v] = b->n_stops;
     b->stop[b->n_stops++] = v;
@@ -124,7 +123,7 @@ static bool is_before(const void *context, int32_t v, int32_t w)
     return at_v != at_w ? at_v < at_w : v < w;
 }
 
-/* In their order, each APART from the one before. */
+/* In their order, each TRI_BUNDLE_APART from the one before. */
 static void sort_stops(struct bundles *b)
 {
     double x = b->b.x - b->a.x, y = b->b.y - b->a.y, length = sqrt(x * x + y * y);
@@ -132,7 +131,7 @@ static void sort_stops(struct bundles *b)
     tri_heap_sort(b->stop, b->n_stops, is_before, b);
     for (int32_t k = 0; k < b->n_stops; k++) {
         tri_vertex_id v = b->stop[k];
-        double apart = APART * length * tri_resolution(b->mesh->xy[v]);
+        double apart = TRI_BUNDLE_APART * length * tri_resolution(b->mesh->xy[v]);
         b->place[v] = TRI_NONE;
         if (kept > 0 && along(b, v) - along(b, b->stop[kept - 1]) <= apart)
             continue;

@@ -3,9 +3,7 @@
 #define TRIANGLE_CDT_CHAIN_H
 
 #include "triangle/mesh/mesh.h"
-
-/* In resolutions of a vertex (crossing.h): so far off the line between the ends of its chain it may lie. */
-enum { TRI_CHAIN_ASTRAY = 8 };
+#include "triangle/tunables.h"
 
 /* Subsegments that continue each other on one straight line, as far as rounding tells, get one parent; the vertices
  * between them lie on it (mesh->on). Each subsegment has a parent of its own before. Subsegments keep their order; some

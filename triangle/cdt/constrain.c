@@ -31,13 +31,10 @@
 #include "triangle/mesh/cavity.h"
 #include "triangle/mesh/interpolate.h"
 #include "triangle/mesh/locate.h"
+#include "triangle/tunables.h"
 
-enum { BESIDE = 3 };
 enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
 
-/* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
- * others. */
-static const double NEAR = 0.5, APART = 2;
 static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
 
 struct layer {
@@ -165,7 +162,7 @@ static enum tri_status check_distance(const struct layer *l, struct tri_course c
 {
     int32_t segment[2] = {course.first, course.marked};
     for (int k = 0; k < 2; k++)
-        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
+        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ASTRAY))
             return cannot_keep(l, segment[k]);
     return TRI_OK;
 }
@@ -344,14 +341,14 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     if (s == t || s == TRI_NONE || t == TRI_NONE ||
         !tri_crossing(end_of(l, s, 0), end_of(l, s, 1), end_of(l, t, 0), end_of(l, t, 1), &there))
         return here;
-    double reach = BESIDE * tri_resolution(here);
+    double reach = TRI_BESIDE * tri_resolution(here);
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
-/* So near to a segment that v keeps to whatever shares a piece with it, too: that lies within BESIDE of it. */
+/* So near to a segment that v keeps to whatever shares a piece with it, too: that lies within TRI_BESIDE of it. */
 static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
 {
-    return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ULPS - BESIDE);
+    return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ASTRAY - TRI_BESIDE);
 }
 
 /* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
@@ -363,7 +360,7 @@ static void try_end(const struct layer *l, const struct tri_piece *piece, tri_ve
         !keeps_near(l, piece->course.marked, end))
         return;
     double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
-    if (distance < *least && distance <= (TRI_SEGMENT_ULPS - BESIDE) * tri_resolution(l->mesh->xy[end]))
+    if (distance < *least && distance <= (TRI_SEGMENT_ASTRAY - TRI_BESIDE) * tri_resolution(l->mesh->xy[end]))
         *nearest = end, *least = distance;
 }
 
@@ -413,7 +410,7 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
     bool late = l->crossings_left < l->crossings / 2;
     bool room = found == TRI_SEARCH_FOUND && lies_between(l, p, &l->piece[first]) &&
                 lies_between(l, p, &l->piece[first + 1]);
-    struct choice shared = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    struct choice shared = choose_vertex(l, first, t, p, TRI_CROSSING_APART * tri_resolution(p));
     tri_vertex_id v = late ? nearest_end(l, first) : TRI_NONE;
     if (v == TRI_NONE && shared.astray == 0)
         v = shared.vertex;
@@ -452,9 +449,9 @@ static void consider(const struct layer *l, const struct tri_piece *piece, tri_v
     if (v == piece->from || v == piece->to || !(at > 0 && at < length2) ||
         fabs(det) > 8 * far * (fabs(x) + fabs(y)))
         return;
-    double distance = tri_line_distance(a, b, q), near = NEAR * tri_resolution(q);
+    double distance = tri_line_distance(a, b, q), near = TRI_ON_SEGMENT * tri_resolution(q);
     if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
-        !keeps_to(l, piece->course.first, v, BESIDE) || !comes_between(l, q, piece) ||
+        !keeps_to(l, piece->course.first, v, TRI_BESIDE) || !comes_between(l, q, piece) ||
         (met->beside != TRI_NONE && met->distance <= distance))
         return;
     met->beside = v;

@@ -3,12 +3,11 @@
 #define TRIANGLE_CDT_CONSTRAIN_H
 
 #include "triangle/mesh/mesh.h"
+#include "triangle/tunables.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-enum { TRI_SEGMENT_ULPS = 8 }; /* see tri_constrain */
 
 struct tri_constrain_report {
     int32_t crossings; /* vertices made where segments cross */
@@ -18,7 +17,7 @@ struct tri_constrain_report {
 };
 
 /* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments, whose vertices
- * are at most TRI_SEGMENT_ULPS * 2^-52 * (the largest coordinate of the segment's ends) off its line. Vertices on a
+ * are at most TRI_SEGMENT_ASTRAY * 2^-52 * (the largest coordinate of the segment's ends) off its line. Vertices on a
  * segment, and within rounding of it, split it; crossing segments are cut at a new vertex, which takes marker and
  * interpolated attributes of the segment that comes first; where segments overlap the first non-zero marker wins. The
  * result is constrained Delaunay, ties broken by coordinates. Each subsegment has a parent of its own.

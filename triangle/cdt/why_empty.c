@@ -106,7 +106,7 @@ static bool is_straight(const struct figure *f, int32_t part)
     const struct part *box = &f->parts[part];
     const double size = fmax(fmax(fabs(box->low.x), fabs(box->low.y)), fmax(fabs(box->high.x), fabs(box->high.y)));
     const struct tri_point a = farthest(f, part, f->mesh->xy[part]), b = farthest(f, part, a);
-    const double off = 2 * TRI_SEGMENT_ULPS * 0x1p-52 * size * sqrt(distance2(a, b));
+    const double off = 2 * TRI_SEGMENT_ASTRAY * 0x1p-52 * size * sqrt(distance2(a, b));
     for (tri_vertex_id v = 0; v < f->mesh->n_vertices; v++)
         if (root_of(f, v) == part && fabs(tri_orient2d(a, b, f->mesh->xy[v])) > off)
             return false;

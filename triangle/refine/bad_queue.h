@@ -21,8 +21,9 @@
 #include <stdint.h>
 
 #include "triangle/mesh/mesh.h"
+#include "triangle/tunables.h"
 
-enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_BLOCK = 31, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
+enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_BLOCK = 31, TRI_BATCH = 16 };
 
 struct tri_entry {
     tri_triangle_id t;

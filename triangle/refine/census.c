@@ -9,9 +9,7 @@
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/disk.h"
 #include "triangle/refine/small_angle.h"
-
-/* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
-static const double MOST_OVER_BOUND = 0.75;
+#include "triangle/tunables.h"
 
 struct demand {
     const struct tri_mesh *mesh;
@@ -45,7 +43,7 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
     tri_execute(executor, tri_shares(mesh->n_triangles), add_demand, &d);
     for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
         triangles += d.triangles[share];
-    return triangles / MOST_OVER_BOUND;
+    return triangles / TRI_MOST_OVER_BOUND;
 }
 
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,

@@ -3,13 +3,14 @@
  * RULE. The point of a subsegment e level with a vertex v is that at the distance of v from o, where e and v lie on two
  * parents with the common end o; else the foot of the perpendicular from v. Let e have length l, v distance h from it,
  * and the level point distance d from the nearer end a. Then e is split
- *   - level with v, if h <= d and h < l / NARROW;
+ *   - level with v, if h <= d and h < l / TRI_NARROW;
  *   - d + h^2 / d from a, if h > d and that is less than
  *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
  *
  * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
  * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
- * shortest edge. What stays is where coordinates have no place for a level: h^2 < MOST_PARTS ulps of the length. */
+ * shortest edge. What stays is where coordinates have no place for a level: h^2 < TRI_LEVEL_PARTS
+ * ulps of the length. */
 #include "triangle/refine/disk.h"
 
 #include <assert.h>
@@ -18,6 +19,7 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/small_angle.h"
 #include "triangle/refine/split.h"
+#include "triangle/tunables.h"
 
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
 {
@@ -28,9 +30,6 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 
 /* A unit in the last place of the largest coordinate, in shortest edges. */
 static const double ULP = 0x1p-5;
-
-/* The rule's NARROW; and the most parts into which a subsegment is cut because of rounding. */
-enum { NARROW = 8, MOST_PARTS = 8 };
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
@@ -65,14 +64,14 @@ static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subse
 /* Is the subsegment split at the point level with the vertex? A d below the shortest edge is rounding. */
 static bool is_split_level(const struct sight *v, double shortest)
 {
-    return NARROW * v->h < v->l && v->d >= shortest && v->d >= v->h;
+    return TRI_NARROW * v->h < v->l && v->d >= shortest && v->d >= v->h;
 }
 
 /* The fraction at which to split, by the rule. */
 static double fraction_for(const struct sight *v, double usual, double shortest)
 {
     double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
-    if (NARROW * v->h >= v->l || v->d < shortest || (v->d < v->h && far >= from_nearer))
+    if (TRI_NARROW * v->h >= v->l || v->d < shortest || (v->d < v->h && far >= from_nearer))
         return usual;
     double fraction = v->d < v->h ? far : v->d / v->l;
     return v->from_end ? 1 - fraction : fraction;
@@ -88,7 +87,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
         return false;
     split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
     split->level = is_split_level(&sight, shortest) ? v : TRI_NONE;
-    return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h;
+    return TRI_NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= TRI_LEVEL_PARTS * sight.h * sight.h;
 }
 
 bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)

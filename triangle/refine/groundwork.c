@@ -17,6 +17,7 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/small_angle.h"
 #include "triangle/size/feature_size.h"
+#include "triangle/tunables.h"
 
 bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
 {
@@ -162,9 +163,6 @@ static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *err
     return TRI_OK;
 }
 
-/* 32 resolutions: what is nearer to each other counts as rounding, not as features. With 8, which keeps angles from 9
- * resolutions on, overlaid maps keep 1.06 times the bad triangles and get up to 1.5 times the triangles: their
- * crossings lie side by side by rounding. With 128 real drawings lose features. */
 double tri_shortest_edge2(const struct tri_mesh *mesh)
 {
     double size = 0;
@@ -172,7 +170,7 @@ double tri_shortest_edge2(const struct tri_mesh *mesh)
         size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
         size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
     }
-    return size * 0x1p-47 * (size * 0x1p-47);
+    return size * TRI_SHORTEST_EDGE * (size * TRI_SHORTEST_EDGE);
 }
 
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)

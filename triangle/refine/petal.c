@@ -5,6 +5,7 @@
 #include <assert.h>
 
 #include "triangle/mesh/cavity.h"
+#include "triangle/tunables.h"
 
 /* The most edges of the diagram that wait, and triangles that are walked through. Larger trees are left unsearched
  * behind these; a hundred triangles were never seen. Rounding can make a ring of circumcentres around a corner where
@@ -13,9 +14,6 @@ enum { MOST_PENDING = 64, MOST_WALKED = 1024 };
 
 /* Flatter triangles have no circumcentre to rely on: twice the area over the longest squared edge. */
 static const double FLAT = 1e-12;
-
-/* By so much of its squared distance must a point be better to be worth another search. */
-static const double GAIN = 1 + 1e-6;
 
 struct petal {
     const struct tri_mesh *mesh;
@@ -149,10 +147,10 @@ enum tri_petal tri_petal_point(const struct tri_mesh *mesh, const struct tri_fen
     if (!tri_fence_owns(fence, mesh, triangle) || !circumcentre(&petal, triangle, &c) || !is_in_disk(&petal, c))
         return TRI_PETAL_USUAL;
     const double usual2 = c.x * c.x + c.y * c.y;
-    petal.best2 = usual2 * GAIN;
+    petal.best2 = usual2 * TRI_PETAL_GAIN;
     if (!walk(&petal, fence, triangle, s, c, beyond))
         return TRI_PETAL_BEYOND;
-    if (!(petal.best2 > usual2 * GAIN))
+    if (!(petal.best2 > usual2 * TRI_PETAL_GAIN))
         return TRI_PETAL_USUAL;
     *p = (struct tri_point){tri_round_coordinate(petal.a.x + petal.best.x),
                             tri_round_coordinate(petal.a.y + petal.best.y)};

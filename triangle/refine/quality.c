@@ -4,6 +4,7 @@
 #include <assert.h>
 
 #include "triangle/geometry/degrees.h"
+#include "triangle/tunables.h"
 
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {
@@ -19,7 +20,7 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
         bounds.lens_cos2 = twice > 0 ? twice * twice : 0;
     /* The off-centre that sees its edge under exactly the angle bound lies at 0.5 of this (Üngör 2004); 0.2% nearer,
      * rounding cannot make the new triangle bad. */
-    bounds.off_centre = 0.499 * sqrt((1 + cosine) / (1 - cosine));
+    bounds.off_centre = TRI_OFF_CENTRE * sqrt((1 + cosine) / (1 - cosine));
     return bounds;
 }
 

@@ -19,11 +19,10 @@
 #include "triangle/refine/census.h"
 #include "triangle/refine/pause.h"
 #include "triangle/size/estimate.h"
+#include "triangle/tunables.h"
 
 _Static_assert((int)LAST_STAGE == (int)TRI_PAUSE_LAST_STAGE && (int)SECOND_PASS == (int)TRI_PAUSE_LAST_STEP,
                "pause.c compares with them");
-
-enum { WORKLIST_CHUNK = 1 << 16 };
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -67,7 +66,7 @@ static int32_t listed_count(const struct tri_refiner *r)
 /* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
 static bool queue_chunk(struct tri_refiner *r)
 {
-    for (int32_t i = 0; i < WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
+    for (int32_t i = 0; i < TRI_WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
         tri_triangle_id triangle = listed(r, r->next_listed);
         if ((r->options->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
             return false;

@@ -14,19 +14,11 @@
 #include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/owners.h"
+#include "triangle/tunables.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). A
- * larger one is worked for as this one; triangles are still counted by what is asked for. */
-#define TRI_USUAL_ANGLE 38.0
-
-/* Where the bound on angles is above TRI_EASY_ANGLE degrees, sizes may be refined first, with TRI_SIZES_ANGLE as bound
- * (begin_stages in refine.c). */
-#define TRI_EASY_ANGLE 31.0
-#define TRI_SIZES_ANGLE 25.0
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule/schedule.h). */

@@ -4,7 +4,7 @@
  * 60 degrees or more. RULE. A triangle stays if its shortest edge is of one of these kinds (docs/theory.md, the rule):
  *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
  *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the angle of the input dictates its length;
- *   - it joins the sides of a spike, two segments that meet at less than 1 / SHARP;
+ *   - it joins the sides of a spike, two segments that meet at less than 1 / TRI_SHARP;
  *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
  *     width each (tri_choose_gaps);
  *   - it, or the triangle's height, is shorter than limits.shortest2 says: rounding;
@@ -18,8 +18,7 @@
 
 #include "triangle/geometry/predicates.h"
 #include "triangle/size/feature_size.h"
-
-static const double SHARP = 256;
+#include "triangle/tunables.h"
 
 static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
@@ -70,7 +69,7 @@ static enum tri_corner corner_at(struct tri_point o, struct tri_point a, struct 
     double dot = ax * bx + ay * by, sine = fabs(ax * by - ay * bx);
     if (!(dot > 0 && 3 * dot * dot > sine * sine))
         return TRI_WIDE_CORNER;
-    return SHARP * sine > dot ? TRI_NARROW_CORNER : TRI_SPIKE;
+    return TRI_SHARP * sine > dot ? TRI_NARROW_CORNER : TRI_SPIKE;
 }
 
 enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
@@ -328,14 +327,14 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, cons
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
-enum { CHEAP = 10, OCTAVES = 64 };
+enum { OCTAVES = 64 };
 
 /* About so many points it takes to fill the space that a triangle of the input lies in, where it is dear. Where other
  * vertices lie between its two sides, as on the one that closes its end, no edge bridges it: so the apexes on the two
  * sides of each edge count, too. */
 static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
-    const double LEAST = 1 << CHEAP;
+    const double LEAST = 1 << TRI_CHEAP_GAP;
     const struct tri_triangle *t = &mesh->tri[triangle];
     if (!tri_is_on_parent(mesh, t->v[0]) && !tri_is_on_parent(mesh, t->v[1]) && !tri_is_on_parent(mesh, t->v[2]))
         return 0;
@@ -378,7 +377,7 @@ static void demand_share(void *context, size_t index)
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         double cost = demand_of(d->mesh, t);
         int octave = octave_of(cost);
-        if (octave > CHEAP) {
+        if (octave > TRI_CHEAP_GAP) {
             sum->cost[octave] += cost;
             sum->count[octave]++;
         }
@@ -400,33 +399,33 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
 
 /* Chooses the narrow spaces that are filled, by their cost.
  *
- * The demand counts a space once for every triangle in it. If all demands come to at most ALL, every space is filled:
- * thin layers and slits of ordinary parts. Else there are spikes of no width, or lines a few units in the last place
- * apart, and the cheap spaces are filled: those up to the largest power of two, 2^10 or more, for which filling every
- * space as far as this cost goes takes at most PER_VERTEX points for each vertex of the input (or each end of a segment
- * if these are fewer) and an ALLOWANCE. A dearer space is still filled where it is wide. Vertices in a space may hide
- * it here; whether hidden or not, no space takes more points than limits.gap_points. */
+ * The demand counts a space once for every triangle in it. If all demands come to at most TRI_ALL_GAPS, every space
+ * is filled: thin layers and slits of ordinary parts. Else there are spikes of no width, or lines a few units in the
+ * last place apart, and the cheap spaces are filled: those up to the largest power of two, 2^TRI_CHEAP_GAP or more,
+ * for which filling every space as far as this cost goes takes at most TRI_GAP_ALLOWANCE points and
+ * TRI_GAP_PER_VERTEX for each vertex of the input (or each end of a segment if these are fewer). A dearer space is
+ * still filled where it is wide. Vertices in a space may hide it here; whether hidden or not, no space takes more
+ * points than limits.gap_points. */
 void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     const struct demand demand = whole_demand(mesh, executor);
-    const double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    const double affordable = TRI_GAP_ALLOWANCE + TRI_GAP_PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
     double all = 0, dearer = 0, cheaper = 0;
     int limit = octave_of(affordable);
-    for (int octave = CHEAP + 1; octave < OCTAVES; octave++) {
+    for (int octave = TRI_CHEAP_GAP + 1; octave < OCTAVES; octave++) {
         all += demand.cost[octave];
         dearer += demand.count[octave];
         limit = demand.count[octave] > 0 && octave > limit ? octave : limit;
     }
-    mesh->limits.gap_points = all <= ALL ? all : affordable;
-    limit = all <= ALL ? limit : CHEAP;
-    for (int octave = CHEAP + 1; octave < OCTAVES && all > ALL; octave++) {
+    mesh->limits.gap_points = all <= TRI_ALL_GAPS ? all : affordable;
+    limit = all <= TRI_ALL_GAPS ? limit : TRI_CHEAP_GAP;
+    for (int octave = TRI_CHEAP_GAP + 1; octave < OCTAVES && all > TRI_ALL_GAPS; octave++) {
         cheaper += demand.cost[octave];
         dearer -= demand.count[octave];
         if (cheaper + ldexp(dearer, octave) > affordable)
             break;
         limit = octave;
     }
-    assert(limit >= CHEAP && limit <= OCTAVES);
+    assert(limit >= TRI_CHEAP_GAP && limit <= OCTAVES);
     mesh->limits.dearest_gap = ldexp(1, limit);
 }

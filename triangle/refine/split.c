@@ -3,9 +3,9 @@
  * A split point is rounded, so it lies beside its subsegment. Errors would add up from split to split, and a boundary
  * subsegment that moves outwards might meet another part of the boundary. RULE. The place is the one on the parent's
  * line, rounded once, or a neighbour of it or of the place on the subsegment. A neighbour is a unit away in each
- * coordinate's own measure, or else in the measure of the larger coordinate, and at most ASTRAY away from the line
- * (TRI_CHAIN_ASTRAY in a mesh that was read: chain.h). The first place from which all of the cavity can be seen is
- * taken.
+ * coordinate's own measure, or else in the measure of the larger coordinate, and at most TRI_SPLIT_ASTRAY resolutions
+ * of the parent's largest coordinate away from the line (TRI_CHAIN_ASTRAY in a mesh that was read): a part that begins
+ * near a coarse end is as far off. The first place from which all of the cavity can be seen is taken.
  *
  * THEOREM (boundary; docs/theory.md, split points). Each parent on the boundary has an empty triangle of its own
  * outside: its ends and its guard. If every split point of a boundary subsegment lies on its inner side, in that
@@ -16,11 +16,7 @@
 
 #include "triangle/cdt/chain.h"
 #include "triangle/geometry/predicates.h"
-
-/* How far a split point may lie off its line, in resolutions of the parent's largest coordinate: a part that begins at
- * a point near a coarse end is as far off, also where its other coordinates are finer. A point that is to be level with
- * a vertex is measured in its own resolutions: the wider this bound, the more places coordinates offer (disk.c). */
-static const double ASTRAY = 4;
+#include "triangle/tunables.h"
 
 /* Is p on the line of the parent, or on the side of it that is left of the way from `from` to `to`? (Subsegments are
  * far longer than their distance from the line.) */
@@ -72,7 +68,7 @@ static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subse
 bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     const tri_vertex_id *end = mesh->parents[s->parent].v;
-    return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= ASTRAY * tri_resolution(p) &&
+    return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= TRI_SPLIT_ASTRAY * tri_resolution(p) &&
            is_allowed(mesh, s, p);
 }
 
@@ -100,7 +96,7 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     const struct tri_parent *parent = &mesh->parents[s->parent];
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
     struct tri_point rounded = is_on_line(choice) ? base->on_line : base->on_sub;
-    double most = began_as_line(mesh, parent) ? ASTRAY : TRI_CHAIN_ASTRAY;
+    double most = began_as_line(mesh, parent) ? TRI_SPLIT_ASTRAY : TRI_CHAIN_ASTRAY;
     double astray = most * fmax(tri_resolution(a), tri_resolution(b));
     *p = tri_place_beside(rounded, step(mesh, s, rounded, choice), choice % TRI_PLACES);
     return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);

@@ -9,7 +9,7 @@
  * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can
  * afford (small_angle.c). Sizes are never given up: see inside.c.
  *
- * A subsegment that must not be split (-Y) tolerates points in its lens that are CLEARANCE times the shortest edge
+ * A subsegment that must not be split (-Y) tolerates points in its lens that are TRI_CLEARANCE times the shortest edge
  * away: docs/theory.md, protected walls. */
 #include "triangle/refine/refiner.h"
 
@@ -24,13 +24,10 @@
 #include "triangle/refine/small_angle.h"
 #include "triangle/refine/split.h"
 #include "triangle/size/feature_size.h"
+#include "triangle/tunables.h"
 
-/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
- * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
- * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
-static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
-
-static const double CLEARANCE = 2;
+/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. */
+static const double EQUILATERAL = 2.3094010767585030580;
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
@@ -245,7 +242,7 @@ static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
         return false;
     struct tri_relative a = c->edge[i].a->r, b = c->edge[i + 1].a->r;
     double x = b.x - a.x, y = b.y - a.y, area2 = c->edge[i].area2;
-    return area2 * area2 > CLEARANCE * CLEARANCE * shortest * (x * x + y * y);
+    return area2 * area2 > TRI_CLEARANCE * TRI_CLEARANCE * shortest * (x * x + y * y);
 }
 
 /* Does the new point, for a triangle with this shortest edge, squared, lie on the wrong side of a wall, or see it under
@@ -294,7 +291,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
     double area2_bound = tri_area2_bound(&r->criterion, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
-        double ideal2 = IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
+        double ideal2 = TRI_IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
         reach = tri_lesser(ideal2 > 0.25 * l ? sqrt(ideal2) : HUGE_VAL, reach);
     }
     return reach;

@@ -1,7 +1,7 @@
 /* The integral of 1 / h^2, the number of triangles of a graded mesh to a constant (Ruppert 1995, theorem 4).
  *
  * h(x) is the least of
- *   - s(v) + SLOPE * |xv| for the corners v of the triangle, s being the size of the features around v
+ *   - s(v) + TRI_CROWD_SLOPE * |xv| for the corners v of the triangle, s being the size of the features around v
  *     (triangle/size/feature_size.h): the corners are about the nearest vertices to x in a Delaunay triangulation;
  *   - between a subsegment that is an edge of the triangle and one that ends at the corner opposite to it, the sum of
  *     the distances of x from both: the width of a gap that vertices at its ends alone would not tell.
@@ -14,8 +14,7 @@
 #include "triangle/refine/quality.h"
 #include "triangle/refine/small_angle.h"
 #include "triangle/size/estimate.h"
-
-static const double SLOPE = 0.35;
+#include "triangle/tunables.h"
 
 enum { STRIPS = 6, MOST_TURNS = 32, DEEPEST = 128 };
 
@@ -59,7 +58,7 @@ static struct place place_at(const struct field *f, struct tri_point q)
 {
     double h = HUGE_VAL;
     for (int k = 0; k < 3; k++)
-        h = tri_lesser(h, f->size[k] + SLOPE * sqrt(tri_distance2(q, f->corner[k])));
+        h = tri_lesser(h, f->size[k] + TRI_CROWD_SLOPE * sqrt(tri_distance2(q, f->corner[k])));
     for (int i = 0; i < f->n_strips; i++)
         h = tri_lesser(h, distance_from(&f->strip[i][0], q) + distance_from(&f->strip[i][1], q));
     return (struct place){q, tri_larger(h, f->least)};
@@ -192,7 +191,6 @@ static double gap_of(const struct tri_mesh *mesh, tri_triangle_id t, const struc
  * grow there. A good one stays, unless sizes around do not let it; a hopeless one stays. */
 static double triangles_of(const struct forecast *e, tri_triangle_id t)
 {
-    const double AN_OCTAVE = 0.4, A_GAP = 4;
     const struct tri_mesh *mesh = e->mesh;
     const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     const double asked = 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->areas, mesh->tri[t].region));
@@ -204,21 +202,19 @@ static double triangles_of(const struct forecast *e, tri_triangle_id t)
     bool bad = shape.area2 * shape.area2 < e->sin2 * product;
     if (!bad)
         return itself + fmax(e->fineness * crowd - 1, 0);
-    double grown = crowd + AN_OCTAVE * octaves_of(&shape, most), filled = A_GAP * gap_of(mesh, t, &shape, most);
+    double grown = crowd + TRI_AN_OCTAVE * octaves_of(&shape, most), filled = TRI_A_GAP * gap_of(mesh, t, &shape, most);
     return itself + fmin(e->fineness * fmax(grown, filled), 1e15);
 }
 
-/* Where sizes come first, angles are mended in a mesh that is there already, which takes AGAIN more of it. All four
- * constants are fitted to 19 coasts, parts, maps and point sets at 20 to 36 degrees, without areas and with two area
- * bounds each. Triangles lie along a curve, so that every n-th is a fair sample. */
+/* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it.
+ * Triangles lie along a curve, so that every n-th is a fair sample. */
 double tri_forecast(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     enum { SURVEY = 1 << 15 };
-    const double FINENESS = 7.1, NEVER = 42.5, AGAIN = 1.5, NEVER_AGAIN = 39;
     const double angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
-    const double again = tri_sizes_come_first(mesh, options, NULL) ? AGAIN / (NEVER_AGAIN - angle) : 0;
+    const double again = tri_sizes_come_first(mesh, options, NULL) ? TRI_AGAIN / (TRI_NEVER_AGAIN - angle) : 0;
     const struct forecast f = {mesh, options, tri_criterion_of_areas(mesh, options), tri_bounds_for(angle, false).sin2,
-                               angle > 0 ? FINENESS / (NEVER - angle) : 0};
+                               angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
     const int32_t step = mesh->n_triangles / SURVEY + 1;
     double sum = 0;
     for (int64_t t = 0; t < mesh->n_triangles; t += step)

@@ -9,6 +9,7 @@
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/quality.h"
 #include "triangle/refine/small_angle.h"
+#include "triangle/tunables.h"
 
 enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
 
@@ -105,8 +106,7 @@ static double area_work(const struct estimator *e, tri_triangle_id t)
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
  * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
- * hopeless triangle stays one.
- * Fitted to coasts, parts and point sets at 20 to 36 degrees. */
+ * hopeless triangle stays one. */
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
@@ -116,17 +116,14 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     if (tri_is_hopeless(mesh, t, &shape))
         return 1;
     gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
-    double work = angle > 0 ? 20 / (44 - angle) * (octaves + 2 * gap) : 0;
+    double work = angle > 0 ? TRI_ROWS / (TRI_NO_ROWS - angle) * (octaves + 2 * gap) : 0;
     return work < 1 ? 1 : work < MOST_WORK ? work : MOST_WORK;
 }
-
-/* A bad triangle becomes more than triangles do on average. */
-static const double BAD = 1.25;
 
 double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
-    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
+    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + TRI_BAD_WORK * angle_work(mesh, options, t) : 0;
 }
 
 /* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
@@ -248,20 +245,15 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
     return areas + sum_of(angle_works(&e), executor);
 }
 
-/* TWICE: measured on 19 coasts, parts and figures at 33 to 36 degrees with up to six area bounds each. Where areas ask
- * for less than twice what angles do, meshes made at once have 0.73 to 0.85 times the triangles in the mean, and up to
- * 34 degrees keep the bound as often. Up to eight times they have 0.93 times the triangles, but vertices run away in a
- * third of them at 34 degrees and in all at 36; far beyond, 1.01 times. */
 bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           const struct tri_executor *executor)
 {
-    const double TWICE = 2;
     if (fmin(options->min_angle, TRI_USUAL_ANGLE) <= TRI_EASY_ANGLE || !tri_has_sizes(options))
         return false;
     if (options->unsuitable)
         return true;
     const struct estimator e = estimator_for(mesh, options);
-    return sum_of(area_works(&e), executor) > TWICE * sum_of(angle_works(&e), executor);
+    return sum_of(area_works(&e), executor) > TRI_SIZES_FIRST * sum_of(angle_works(&e), executor);
 }
 
 /* Who is given the samples. */

@@ -3,12 +3,11 @@
 #define TRIANGLE_SIZE_ESTIMATE_H
 
 #include "triangle/refine/refine.h"
+#include "triangle/tunables.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#define TRI_MEAN_OVER_BOUND 0.655 /* measured: mean area over bound */
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any

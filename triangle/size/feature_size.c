@@ -2,13 +2,13 @@
  *
  * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995):
  *   - a vertex of the input: its distance from the vertices and segments that its triangles reach;
- *   - a point p for a triangle with shortest edge ab: the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|,
- *     inherited as insertion radii are (Shewchuk 2002);
+ *   - a point p for a triangle with shortest edge ab: the lesser of s(a) + TRI_SLOPE * |ap| and s(b) + TRI_SLOPE *
+ *     |bp|, inherited as insertion radii are (Shewchuk 2002);
  *   - a split point: the same from all vertices around it, but no more than its distance from other features;
  *   - a point inserted because of sizes: no more than its distance from its neighbours.
  * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches).
  *
- * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
+ * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / TRI_SHRINK is not refined for its angle.
  *
  * THEOREM (docs/theory.md, sizes). Points for angles are no more than C * integral of dx / s(x)^2, C independent of the
  * bound and of the order of insertion: to a constant as many as Ruppert's algorithm inserts. */
@@ -20,8 +20,7 @@
 #include "triangle/base/grow.h"
 #include "triangle/refine/quality.h"
 #include "triangle/refine/small_angle.h"
-
-static const double SLOPE = 0.5;
+#include "triangle/tunables.h"
 
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
@@ -145,7 +144,7 @@ double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
 {
     assert(a != b);
     double from_a = sqrt(tri_relative(&mesh->xy[a], p).l), from_b = sqrt(tri_relative(&mesh->xy[b], p).l);
-    double inherited = tri_lesser(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
+    double inherited = tri_lesser(mesh->feature[a] + TRI_SLOPE * from_a, mesh->feature[b] + TRI_SLOPE * from_b);
     return sized ? tri_lesser(tri_lesser(from_a, from_b), inherited) : inherited;
 }
 
@@ -154,7 +153,7 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
                         double distance)
 {
     int32_t on = mesh->on[v];
-    double inherited = mesh->feature[v] + SLOPE * distance;
+    double inherited = mesh->feature[v] + TRI_SLOPE * distance;
     bool is_feature = on >= 0 ? tri_is_filled(mesh, p, on, at, mesh->xy[v])
                               : on != TRI_VERTEX_FREE && !tri_touches(mesh, p, v);
     return is_feature && distance < inherited ? distance : inherited;
@@ -191,11 +190,8 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
     return sized && half < size ? half : size;
 }
 
-/* How many times shorter than the features around them edges may become for the sake of angles. */
-static const double SHRINK = 6;
-
 bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
 {
     double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
-    return size * size > SHRINK * SHRINK * l2;
+    return size * size > TRI_SHRINK * TRI_SHRINK * l2;
 }

@@ -1,0 +1,108 @@
+/* The numbers that decide what a mesh looks like and that no theorem gives: each was measured, or guessed and not found
+ * wrong. Whoever changes one changes meshes. Numbers that only decide how fast something is, and bounds on errors,
+ * which are derived, stand where they are used. docs/performance-history.md has the measurements.
+ *
+ * A resolution is a unit in the last place of the larger coordinate of a point (cdt/crossing.h). */
+#ifndef TRIANGLE_TUNABLES_H
+#define TRIANGLE_TUNABLES_H
+
+/* --- angles, in degrees */
+
+/* Up to about this bound refinement ends in practice (28.6 is proved, with input angles of 60 and more). A larger one
+ * is worked for as this one; triangles are still counted by what is asked for. */
+#define TRI_USUAL_ANGLE 38.0
+/* Above this bound sizes may be refined first, with TRI_SIZES_ANGLE as bound, where areas ask for TRI_SIZES_FIRST times
+ * the triangles that angles do. Measured on 19 coasts, parts and figures at 33 to 36 degrees: below twice, meshes made
+ * at once have 0.73 to 0.85 times the triangles. */
+#define TRI_EASY_ANGLE 31.0
+#define TRI_SIZES_ANGLE 25.0
+#define TRI_SIZES_FIRST 2.0
+
+/* --- where points go */
+
+/* The point of a triangle that is only too large makes an equilateral one of this share of the bound. Measured: the
+ * mean area is 0.663 of the bound; of circumcentres 0.645. */
+#define TRI_IDEAL 0.85
+/* Height of off-centres over the exact one that sees its edge under the bound, 0.5. Measured: 0.475 makes up to 2% more
+ * triangles; at 0.5 rounding makes bad ones, 9% to 110% more. */
+#define TRI_OFF_CENTRE 0.499
+/* A point of the petal is worth another search if its squared distance is larger by this factor. Guess: rounding. */
+#define TRI_PETAL_GAIN (1 + 1e-6)
+/* Points in the lens of a subsegment that must not be split keep off it by so many shortest edges (docs/theory.md,
+ * protected walls). Guess. */
+#define TRI_CLEARANCE 2.0
+/* Triangles that are only too large wait in a window of so many, a power of two. Measured: 7.4 M points a second
+ * instead of 5.2 M with an endless one; sizes spread as evenly. */
+#define TRI_WINDOW (1 << 13)
+/* Triangles of the worklist whose bad angles are queued at once. Measured: 2.5 times as fast as all at once; of 2^12
+ * meshes are 3% to 12% larger. */
+#define TRI_WORKLIST_CHUNK (1 << 16)
+
+/* --- what is given up */
+
+/* Edges become at most so many times shorter than the features around, for angles. Measured: another value for each
+ * bound on angles changes no ordinary mesh. */
+#define TRI_SHRINK 6.0
+/* How fast the size of features grows with the distance. Guess. */
+#define TRI_SLOPE 0.5
+/* Shortest edge over the largest coordinate: 32 resolutions. Measured: with 8 overlaid maps keep 1.06 times the bad
+ * triangles; with 128 real drawings lose features. */
+#define TRI_SHORTEST_EDGE 0x1p-47
+/* Two segments that meet at less than 1 over this are a spike, and not filled: a quarter of a degree. Guess. */
+#define TRI_SHARP 256.0
+/* Spaces between segments that take no more than 2^TRI_CHEAP_GAP points are filled in any case; all are, if they take
+ * TRI_ALL_GAPS points together; else those that fit TRI_GAP_ALLOWANCE points and TRI_GAP_PER_VERTEX for each vertex.
+ * Measured: with one constant instead overlaid maps get up to 97 times the triangles. */
+#define TRI_CHEAP_GAP 10
+#define TRI_ALL_GAPS 250000.0
+#define TRI_GAP_ALLOWANCE 20000.0
+#define TRI_GAP_PER_VERTEX 4.0
+/* -D: a vertex is level with a place where it lies nearer than the subsegment's length over this; and the most parts
+ * into which a subsegment is cut because of rounding (disk.h). Measured: without the rule an
+ * overlaid map has 18 times the triangles. */
+#define TRI_NARROW 8
+#define TRI_LEVEL_PARTS 8
+
+/* --- segments and rounding, in resolutions */
+
+/* A vertex so near to a segment is on it. Half a unit is what coordinates tell. */
+#define TRI_ON_SEGMENT 0.5
+/* A new crossing keeps so far from other vertices. Guess. */
+#define TRI_CROSSING_APART 2.0
+/* Pieces of an input segment lie within this of its line; those shared with another one within TRI_BESIDE. Guess. */
+#define TRI_SEGMENT_ASTRAY 8
+#define TRI_BESIDE 3
+/* A split point lies within this of its segment's line. Measured: of 200 bundles 1,624 instead of 2,201 circles that
+ * are not empty, with 2. */
+#define TRI_SPLIT_ASTRAY 4.0
+/* A vertex of a mesh that is read lies on a chain of subsegments within this of its line. Twice
+ * what split points are given. */
+#define TRI_CHAIN_ASTRAY 8
+/* A carrier of a bundle stops at vertices so near to its line, and so far apart (bundle.h). Measured on overlaid maps:
+ * without, up to 2.5 times the bad triangles at small angles. */
+#define TRI_BUNDLE_ALONG 1.25
+#define TRI_BUNDLE_APART 2.0
+
+/* --- estimates */
+
+/* Mean area over bound, and a share that no mesh has. Measured: 0.63 to 0.67. */
+#define TRI_MEAN_OVER_BOUND 0.655
+#define TRI_MOST_OVER_BOUND 0.75
+/* A bad triangle becomes so many times what triangles do on average. Guess. */
+#define TRI_BAD_WORK 1.25
+/* An octave of sizes takes TRI_ROWS / (TRI_NO_ROWS - angle) triangles. Fitted to coasts, parts and point sets at 20 to
+ * 36 degrees. */
+#define TRI_ROWS 20.0
+#define TRI_NO_ROWS 44.0
+/* Forecast of triangles (crowd.h): growth of h over distance, triangles for an octave and for a gap, and
+ * TRI_FINENESS / (TRI_NEVER - angle) for each of the squares that features impose; once more where sizes come first.
+ * Fitted to 19 coasts, parts, maps and point sets at 20 to 36 degrees, without areas and with two area bounds each. */
+#define TRI_CROWD_SLOPE 0.35
+#define TRI_AN_OCTAVE 0.4
+#define TRI_A_GAP 4.0
+#define TRI_FINENESS 7.1
+#define TRI_NEVER 42.5
+#define TRI_AGAIN 1.5
+#define TRI_NEVER_AGAIN 39.0
+
+#endif
