@@ -331,7 +331,7 @@ struct tri_mesh support_delaunay(const struct tri_pslg *pslg, int32_t leaf_size,
     struct tri_error error = {0};
     int32_t *rank;
     assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, pslg, NULL, &error), TRI_OK);
     assert_int_equal(tri_sort_points(&mesh, &rank, executor, &error), TRI_OK);
     free(rank);
     if (leaf_size == 0 ? tri_delaunay(&mesh, executor, &error)

@@ -59,7 +59,7 @@ static struct tri_mesh points_of(enum support_kind kind, int32_t n, uint64_t see
     struct tri_pslg pslg = support_points(kind, n, seed);
     struct tri_mesh mesh;
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL, NULL), TRI_OK);
     tri_pslg_free(&pslg);
     return mesh;
 }

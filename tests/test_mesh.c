@@ -68,7 +68,7 @@ static void test_points_are_taken_over(void **state)
         .n_points = 4, .points = points, .n_attributes = 1, .attributes = attributes, .markers = markers};
     struct tri_mesh mesh;
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL, NULL), TRI_OK);
     assert_true(mesh.n_vertices == 4 && mesh.n_input == 4 && mesh.unit == 1);
     assert_true(mesh.xy[3].x == -6 && mesh.attributes[2] == 7 && mesh.vertex_markers[0] == 4);
     assert_int_equal(mesh.on[2], TRI_VERTEX_INPUT);
@@ -83,7 +83,7 @@ static void test_no_points_with_attributes(void **state)
     struct tri_pslg pslg = {.n_attributes = 2};
     struct tri_mesh mesh;
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL, NULL), TRI_OK);
     assert_int_equal(mesh.n_vertices, 0);
     tri_mesh_free(&mesh);
 }
@@ -98,7 +98,7 @@ static void test_units_bring_coordinates_into_range(void **state)
         struct tri_mesh mesh;
         int exponent;
         assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
-        assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+        assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL, NULL), TRI_OK);
         assert_true(frexp(mesh.unit, &exponent) == 0.5);
         for (int32_t v = 0; v < 3; v++) {
             double at[2];

@@ -45,7 +45,7 @@ static void test_sorting_follows_the_curve(void **state)
     struct tri_mesh mesh;
     int32_t *rank, order[600];
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL, NULL), TRI_OK);
     assert_true(mesh.n_input <= 600);
     uint64_t scratch[1200];
     for (int32_t v = 0; v < mesh.n_input; v++)

@@ -68,7 +68,7 @@ static bool is_refused(const struct tri_pslg *pslg)
 {
     struct tri_mesh mesh;
     struct tri_error error;
-    bool is = tri_mesh_init(&mesh, &error) || tri_mesh_take_points(&mesh, pslg, &error);
+    bool is = tri_mesh_init(&mesh, &error) || tri_mesh_take_points(&mesh, pslg, NULL, &error);
     tri_mesh_free(&mesh);
     return is;
 }

@@ -524,7 +524,7 @@ static enum tri_status check_elements(const struct tri_elements *elements, struc
 static enum tri_status build(struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
-    enum tri_status status = tri_mesh_take_points(mesh, m->pslg, m->error);
+    enum tri_status status = tri_mesh_take_points(mesh, m->pslg, m->options->executor, m->error);
     status = status ? status : tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(m->error) : take_triangles(m);
     status = status ? status : allocate_and_match(m);
     status = status ? status : add_subsegments(m);

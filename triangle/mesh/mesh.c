@@ -351,7 +351,28 @@ static double unit_for(double size)
     return ldexp(1, exponent > -805 ? exponent - 1 : -806); /* the largest is in [1, 2) then, or below */
 }
 
-enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error)
+struct taking {
+    struct tri_mesh *mesh;
+    const struct tri_pslg *pslg;
+};
+
+static void take_share(void *context, size_t share)
+{
+    const struct taking *taking = context;
+    struct tri_mesh *mesh = taking->mesh;
+    const struct tri_pslg *pslg = taking->pslg;
+    struct tri_range range = tri_share(share, pslg->n_points);
+    for (int32_t i = range.first; i < range.last; i++) {
+        mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
+        assert(tri_is_in_range(mesh->xy[i]));
+        mesh->on[i] = TRI_VERTEX_INPUT;
+        mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
+        mesh->feature[i] = HUGE_VAL;
+    }
+}
+
+enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                     const struct tri_executor *executor, struct tri_error *error)
 {
     int32_t n = pslg->n_points, attributes = pslg->n_attributes;
     const double size = size_of(pslg);
@@ -364,13 +385,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     if (status)
         return status;
     mesh->unit = unit_for(size);
-    for (int32_t i = 0; i < n; i++) {
-        mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
-        assert(tri_is_in_range(mesh->xy[i]));
-        mesh->on[i] = TRI_VERTEX_INPUT;
-        mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
-        mesh->feature[i] = HUGE_VAL;
-    }
+    tri_execute(executor, tri_shares(n), take_share, &(struct taking){mesh, pslg});
     if (n > 0 && attributes > 0)
         memcpy(mesh->attributes, pslg->attributes, (size_t)n * (size_t)attributes * sizeof *mesh->attributes);
     mesh->n_vertices = mesh->n_input = n;

@@ -211,7 +211,8 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
  * all coordinates lie in the range of the exact predicates; what is smaller than 2^-216 units is rounded to multiples
  * of 2^-268. So the caller's coordinates of every vertex that there will be are exact: no rounding folds a mesh. But
  * where the largest one is subnormal: TRI_BAD_INPUT. */
-enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error);
+enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                     const struct tri_executor *executor, struct tri_error *error);
 
 /* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been
  * reserved. */

@@ -57,7 +57,7 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
 {
     int32_t *place = NULL;
     struct tri_pslg renamed = {0};
-    enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
+    enum tri_status status = tri_mesh_take_points(mesh, pslg, options->executor, error);
     announce(options, TRI_STAGE_DELAUNAY);
     status = status ? status : tri_sort_points(mesh, &place, options->executor, error);
     status = status ? status : tri_delaunay(mesh, options->executor, error);
