@@ -35,21 +35,28 @@ def pointer(values, kind):
     return ctypes.cast(values.buffer_info()[0], kind) if len(values) else None
 
 
+def given(path, switches):
+    """The input, whose arrays must live on, and what triangulate() is given of it."""
+    pslg = meshfiles.read_mesh(path) if "r" in switches else meshfiles.read(path)
+    io = Triangulateio()
+    io.points, io.n_points = pointer(pslg.points, REAL_P), len(pslg.points) // 2
+    if "p" in switches:
+        io.segments, io.n_segments = pointer(pslg.segments, INT_P), len(pslg.segments) // 2
+        io.holes, io.n_holes = pointer(pslg.holes, REAL_P), len(pslg.holes) // 2
+    if "r" in switches:
+        io.triangles, io.n_triangles = pointer(pslg.triangles, INT_P), len(pslg.triangles) // 3
+        io.n_corners = 3
+    return pslg, io
+
+
 def main():
     library, path, switches = sys.argv[1:4]
-    pslg = meshfiles.read_mesh(path) if "r" in switches else meshfiles.read(path)
-    given, made, voronoi = Triangulateio(), Triangulateio(), Triangulateio()
-    given.points, given.n_points = pointer(pslg.points, REAL_P), len(pslg.points) // 2
-    if "p" in switches:
-        given.segments, given.n_segments = pointer(pslg.segments, INT_P), len(pslg.segments) // 2
-        given.holes, given.n_holes = pointer(pslg.holes, REAL_P), len(pslg.holes) // 2
-    if "r" in switches:
-        given.triangles, given.n_triangles = pointer(pslg.triangles, INT_P), len(pslg.triangles) // 3
-        given.n_corners = 3
+    _pslg, io = given(path, switches)
+    made, voronoi = Triangulateio(), Triangulateio()
     triangulate = ctypes.CDLL(library).triangulate
     text = (switches + "zQ").encode()
     start = time.perf_counter()
-    triangulate(text, ctypes.byref(given), ctypes.byref(made), ctypes.byref(voronoi))
+    triangulate(text, ctypes.byref(io), ctypes.byref(made), ctypes.byref(voronoi))
     seconds = time.perf_counter() - start
     print(json.dumps({"seconds": seconds, "counts": [made.n_points, made.n_triangles, made.n_segments]}), flush=True)
     if len(sys.argv) > 4:
@@ -57,4 +64,5 @@ def main():
                              made.segments[:2 * made.n_segments] if "p" in switches else [])
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -273,11 +273,13 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
     if (nu == 0)
         return gap;
     const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
-    for (int32_t i = 0; i < nu; i++)
+    for (int32_t i = 0; i < nu; i++) {
+        const struct tri_parent *p = &mesh->parents[pu[i]];
+        if (is_end(p, v) || is_cheaper(mesh, p, u, v, least))
+            continue;
         for (int32_t k = 0; k < nv; k++) {
-            const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
-            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || is_cheaper(mesh, p, u, v, least) ||
-                !lies_aside(mesh, p, u, v, w) || !lies_aside(mesh, q, v, u, w))
+            const struct tri_parent *q = &mesh->parents[pv[k]];
+            if (pu[i] == pv[k] || is_end(q, u) || !lies_aside(mesh, p, u, v, w) || !lies_aside(mesh, q, v, u, w))
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
@@ -285,6 +287,7 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
             gap.cost = cost > gap.cost ? cost : gap.cost;
             gap.spike |= tri_corner_between(mesh, pu[i], pv[k]) == TRI_SPIKE;
         }
+    }
     return gap;
 }
 

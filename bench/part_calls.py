@@ -1,0 +1,71 @@
+"""Small meshes, made many times in one process: the time of a call of triangulate(), beside Triangle's."""
+import json
+import os
+import statistics
+import subprocess
+
+from cases import Triangle, peer, python
+from inputs import letter, random_points
+from measure import table
+from process import execute
+from settings import say
+
+HEAD = ("input", "switches", "triangles", "ours, µs", "Triangle 1.6, µs", "Triangle over ours")
+NOTE = """\
+Processor time of one call of the library function, its output freed again, in a process that makes many; median of {}
+runs in turns. Points and segments lie in arrays before, the mesh after. These meshes are not judged here.
+
+"""
+LETTER = ("p", "pq20", "pa0.001", "pq30a0.0001", "pq30a0.00001")
+POINTS = (10, 100, 1_000)
+LIMIT = 60
+
+
+def _harness(settings):
+    """bench/calls.c with our library."""
+    made = os.path.join(settings.work, "calls.so")
+    subprocess.run([os.environ.get("CC", "cc"), "-O2", "-fPIC", "-shared", "-D_POSIX_C_SOURCE=200809L",
+                    "-I", os.path.join(settings.root, "triangle", "dropin"),
+                    os.path.join(settings.root, "bench", "calls.c"), "-o", made,
+                    os.path.join(settings.programs, "libtriangle.a"), "-lm"], check=True)
+    return made
+
+
+def _run(settings, harness, library, given):
+    ended = execute([python(settings), peer("small_calls.py"), harness, library, "0.01" if settings.small else "0.1",
+                     *(word for path, switches in given for word in (path, switches))], LIMIT, settings.scratch)
+    if ended.code != 0:
+        settings.fail(f"calls of {library}: exit code {ended.code}: {ended.errors[-200:]}")
+        return None
+    return json.loads(ended.output)
+
+
+def _medians(runs):
+    """For each input: seconds and triangles."""
+    return [(statistics.median(took for took, _ in of_one), of_one[0][1]) for of_one in zip(*runs)]
+
+
+def run(settings):
+    domains = [(letter(settings, 1), switches) for switches in LETTER]
+    scale = 100 if settings.small else 1
+    domains += [(random_points(settings, 0, n * scale), "") for n in POINTS]
+    given = [(domain.path, switches) for domain, switches in domains]
+    library = Triangle(settings, domains[0][0]).library
+    say("calls: small meshes")
+    harness, runs = _harness(settings), {}
+    for _ in range(settings.repeats):
+        for name in ("ours", library) if library else ("ours",):
+            found = _run(settings, harness, name, given)
+            if found:
+                runs.setdefault(name, []).append(found)
+    ours, theirs = _medians(runs.get("ours", [])), _medians(runs.get(library, []))
+    lines, rows = [], []
+    for i, (domain, switches) in enumerate(domains if ours else []):
+        (took, n), other = ours[i], theirs[i][0] if theirs else None
+        lines.append((domain.name, f"-{switches}" if switches else "", f"{n:,}", f"{took * 1e6:.1f}",
+                      f"{other * 1e6:.1f}" if other else "missing", f"{other / took:.2f}" if other else "–"))
+        rows += [{"part": "calls", "input": domain.name, "switches": switches, "program": name, "threads": 1,
+                  "stage": "call", "runs": len(runs[key]), "median_seconds": of[i][0], "triangles": of[i][1]}
+                 for name, key, of in (("ours", "ours", ours), ("Triangle 1.6", library, theirs)) if of]
+    yield {"title": "Small meshes", "text": NOTE.format(settings.repeats) + table(HEAD, lines), "rows": rows,
+           "targets": []}
