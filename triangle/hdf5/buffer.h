@@ -6,10 +6,6 @@
 #include "triangle/hdf5/rows.h"
 #include "triangle/text/output.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Where the rows of all arrays lie; the same on all machines that may write parts. */
 struct tri_h5_layout {
     struct tri_h5_laid {
@@ -32,9 +28,5 @@ enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *erro
 
 /* NULL is fine. */
 void tri_h5_part_free(struct tri_h5_part *part);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

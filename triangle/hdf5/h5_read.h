@@ -8,10 +8,6 @@
 
 #include "triangle/base/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_h5;
 
 struct tri_h5_counts {
@@ -46,9 +42,5 @@ enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int
                                 struct tri_error *error);
 enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
                                        struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

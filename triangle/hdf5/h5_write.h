@@ -11,10 +11,6 @@
 #include "triangle/hdf5/buffer.h"
 #include "triangle/text/output.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_h5_options {
     const char *program;   /* name and version, for /about */
     const char *name;      /* of the file, as the XDMF text beside it calls it */
@@ -45,9 +41,5 @@ void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const dou
 
 /* NULL is fine. */
 void tri_h5_writer_free(struct tri_h5_writer *writer);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -9,10 +9,6 @@
 #include "triangle/mesh/pslg.h"
 #include "triangle/text/write.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { TRI_OPEN_BOUNDARY = 2 }; /* marker by which fort.14 tells open boundaries from land */
 
 tri_write_call tri_write_vtu; /* VTK XML, unstructured grid: binary, appended raw */
@@ -58,9 +54,5 @@ const char *tri_format_missing(const char *name);
 
 /* How much of a name is the base of Triangle's files: all of it, less .node, .ele or .poly at its end. */
 size_t tri_format_base(const char *name);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

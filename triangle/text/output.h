@@ -20,10 +20,6 @@
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { TRI_MAX_OUTPUTS = 544 };
 
 /* Which file it is: of one that exists its own node, of a new one its folder's, where its name tells it. */
@@ -115,9 +111,5 @@ void tri_outputs_abort(struct tri_output_set *set);
 /* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
  * link itself? */
 bool tri_is_same_file(const char *a, const char *b);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -12,10 +12,6 @@
 #include "ptriangle/tiles.h"
 #include "triangle/text/write.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_text_options {
     struct tri_output *node, *ele, *poly; /* opened, the caller's, with places; NULL: not wanted */
     int32_t base;                         /* 0 or 1: what files count from */
@@ -35,9 +31,5 @@ enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struc
 
 /* NULL is fine. */
 void tri_text_stream_free(struct tri_text_stream *stream);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
