@@ -22,6 +22,7 @@
 #include "triangle/hdf5/array.h"
 #include "triangle/hdf5/h5_read.h"
 #include "triangle/hdf5/h5_write.h"
+#include "triangle/text/behind.h"
 
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
                             PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
@@ -52,9 +53,9 @@ static void compare_points(struct tri_h5 *h5, const struct lattice *l, bool mark
 {
     double(*at)[2] = malloc((size_t)n * sizeof *at), *attributes = malloc((size_t)n * 16), place[2];
     int32_t *marker = malloc((size_t)n * sizeof *marker);
-    assert_int_equal(tri_h5_points(h5, first, n, at, NULL), TRI_OK);
-    assert_int_equal(tri_h5_point_markers(h5, first, n, marker, NULL), TRI_OK);
-    assert_int_equal(tri_h5_point_attributes(h5, first, n, attributes, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINTS, first, n, at, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINT_MARKERS, first, n, marker, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINT_ATTRIBUTES, first, n, attributes, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_point(l, first + i, place);
         assert_memory_equal(at[i], place, sizeof place);
@@ -71,8 +72,8 @@ static void compare_triangles(struct tri_h5 *h5, const struct lattice *l, int64_
 {
     int64_t(*corners)[3] = malloc((size_t)n * sizeof *corners), wanted[3];
     double *columns = malloc((size_t)n * 16);
-    assert_int_equal(tri_h5_triangles(h5, first, n, corners, NULL), TRI_OK);
-    assert_int_equal(tri_h5_triangle_attributes(h5, first, n, columns, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_TRIANGLES, first, n, corners, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, columns, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_corners(l, first + i, wanted);
         assert_memory_equal(corners[i], wanted, sizeof wanted);
@@ -88,8 +89,8 @@ static void compare_segments(struct tri_h5 *h5, const struct lattice *l, bool ma
     const int64_t n = lattice_segments(l);
     int64_t(*ends)[2] = malloc((size_t)n * sizeof *ends), wanted[2];
     int32_t *marker = malloc((size_t)n * sizeof *marker);
-    assert_int_equal(tri_h5_segments(h5, 0, n, ends, NULL), TRI_OK);
-    assert_int_equal(tri_h5_segment_markers(h5, 0, n, marker, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_SEGMENTS, 0, n, ends, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_SEGMENT_MARKERS, 0, n, marker, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_ends(l, i, wanted);
         assert_memory_equal(ends[i], wanted, sizeof wanted);
@@ -124,7 +125,7 @@ static void compare(const struct lattice *l, bool markers)
     for (int64_t first = 0; first < lattice_triangles(l); first += slice)
         compare_triangles(h5, l, first, lattice_triangles(l) - first < slice ? lattice_triangles(l) - first : slice);
     compare_segments(h5, l, markers);
-    assert_int_equal(tri_h5_points(h5, lattice_points(l), 0, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINTS, lattice_points(l), 0, NULL, NULL), TRI_OK);
     tri_h5_free(h5);
 }
 
@@ -236,15 +237,14 @@ static enum tri_status begin_parts(void *user, const struct tri_stream *stream, 
                   triangles[] = {0, 0, 7, lattice_triangles(p->lattice)},
                   segments[] = {0, 0, 1, lattice_segments(p->lattice)};
     struct tri_stream on_ranks = *stream;
-    int64_t *place;
     on_ranks.n_ranks = PARTS;
     on_ranks.first_vertex = points;
     on_ranks.first_triangle = triangles;
     on_ranks.first_segment = segments;
     enum tri_status status = p->whole.begin(p->whole.user, &on_ranks, error);
     for (int i = 0; i < PARTS && !status; i++) {
-        const struct tri_h5_layout *layout = tri_h5_writer_layout(p->writer, &place);
-        status = tri_h5_part_new(&p->part[i], layout, place, &on_ranks, p->options.file, error);
+        const struct tri_h5_layout *layout = tri_h5_writer_layout(p->writer);
+        status = tri_h5_part_new(&p->part[i], layout, false, &on_ranks, p->options.file, error);
     }
     return status;
 }

@@ -1,105 +1,170 @@
 /* INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
- * not been written; all that have come before have been. */
+ * not been written; all that have come before have been, or are on their way from the other buffer. */
 #include "triangle/hdf5/buffer.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/text/behind.h"
+
 enum { BUFFER_BYTES = 1 << 20 };
 
 struct strip {
-    struct tri_h5_laid laid;
-    const int64_t *place; /* [laid.n] */
-    size_t row_bytes;
+    const struct tri_h5_laid *laid;
     int64_t next;
-    int32_t n, room;      /* rows in the buffer, at most */
-    char *buffer;
+    int32_t n, room; /* rows in the buffer, at most */
+    char *buffer;    /* NULL: nothing has come */
+    char *other;     /* as large: what is on its way into the file; NULL: none was needed */
+    struct tri_behind behind;
 };
 
 struct tri_h5_part {
     struct tri_output *file;
+    bool alone;
     struct tri_h5_rows rows;
     double *columns;
     struct strip strip[TRI_H5_KINDS];
 };
 
+static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, part->file->path, 0, "no memory to write rows of the file");
+}
+
 /* --- one array */
 
-static bool begin_strip(struct strip *s, const struct tri_h5_laid *laid, const int64_t *place)
+/* Where bytes go that may pass the system's cache. */
+static char *new_buffer(const struct strip *s)
 {
-    if (laid->n == 0)
-        return true;
-    *s = (struct strip){.laid = *laid, .place = place + laid->first};
-    s->row_bytes = (laid->type == TRI_H5_INT32 ? 4u : 8u) * (size_t)laid->width;
-    s->room = s->row_bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / s->row_bytes) : 1;
-    s->buffer = malloc((size_t)s->room * s->row_bytes);
+    void *buffer = NULL;
+    const size_t bytes = (size_t)s->room * tri_h5_row_bytes(s->laid);
+    return posix_memalign(&buffer, TRI_BEHIND_BYTES, bytes) == 0 ? buffer : NULL;
+}
+
+static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
+{
+    const size_t bytes = tri_h5_row_bytes(s->laid);
+    s->room = part->alone ? s->laid->chunk_rows : bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / bytes) : 1;
+    s->buffer = new_buffer(s);
     return s->buffer;
 }
 
-static enum tri_status flush(struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+/* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
+static int send(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
 {
-    const int64_t first = s->next - s->n;
-    const size_t bytes = (size_t)s->n * s->row_bytes;
+    int result = tri_behind_wait(&s->behind, part->file);
+    s->other = part->alone && !s->other ? new_buffer(s) : s->other;
+    if (result || !s->other)
+        return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
+    char *buffer = s->buffer;
+    result = tri_behind_start(&s->behind, part->file, place, buffer, bytes);
+    s->buffer = s->other;
+    s->other = buffer;
+    return result;
+}
+
+static enum tri_status flush(const struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+{
+    const int64_t first = s->next - s->n, chunk_rows = s->laid->chunk_rows;
+    const size_t row_bytes = tri_h5_row_bytes(s->laid), bytes = (size_t)s->n * row_bytes;
     if (s->n == 0)
         return TRI_OK;
-    assert(first / s->laid.chunk_rows < s->laid.n);
-    const uint64_t place = (uint64_t)s->place[first / s->laid.chunk_rows] +
-                           (uint64_t)(first % s->laid.chunk_rows) * s->row_bytes;
+    assert(first / chunk_rows < s->laid->n);
+    const uint64_t place = (uint64_t)s->laid->place[first / chunk_rows] + (uint64_t)(first % chunk_rows) * row_bytes;
     s->n = 0;
-    return tri_output_conclude(part->file, tri_output_write_at(part->file, place, s->buffer, bytes), error);
+    return tri_output_conclude(part->file, send(part, s, place, bytes), error);
 }
 
 /* How many rows may follow, as far as the buffer and the place reach. */
 static int32_t room_of(const struct strip *s)
 {
-    const int64_t here = s->laid.chunk_rows - s->next % s->laid.chunk_rows;
+    const int64_t here = s->laid->chunk_rows - s->next % s->laid->chunk_rows;
     return here < s->room - s->n ? (int32_t)here : s->room - s->n;
 }
 
+static bool is_full(const struct strip *s)
+{
+    return s->n == s->room || (s->n > 0 && s->next % s->laid->chunk_rows == 0);
+}
+
+/* A full buffer is written when more comes: by then it is known where. */
 static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind, int64_t first, int32_t n,
                                 struct tri_error *error)
 {
     struct strip *s = &part->strip[kind];
     enum tri_status status = TRI_OK;
-    if (!s->buffer || n == 0)
+    if (s->laid->width == 0 || n == 0)
         return TRI_OK;
+    if (!s->buffer && !begin_strip(part, s))
+        return no_memory(part, error);
     if (first != s->next)
         status = flush(part, s, error);
     s->next = first;
     for (int32_t i = 0; !status && i < n;) {
+        status = is_full(s) ? flush(part, s, error) : TRI_OK;
         const int32_t room = room_of(s), end = room < n - i ? i + room : n;
-        tri_h5_put_of(kind, s->laid.type)(&part->rows, i, end, s->buffer + (size_t)s->n * s->row_bytes);
+        tri_h5_put_of(kind, s->laid->type)(&part->rows, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
         s->n += end - i;
         s->next += end - i;
         i = end;
-        if (s->n == s->room || s->next % s->laid.chunk_rows == 0)
-            status = flush(part, s, error);
     }
     return status;
 }
 
+int64_t tri_h5_part_written(const struct tri_h5_part *part, enum tri_h5_kind kind)
+{
+    return part->strip[kind].next - part->strip[kind].n;
+}
+
+/* From the last to the first. */
+void tri_h5_widen_numbers(char *data, size_t n)
+{
+    for (size_t i = n; i-- > 0;) {
+        memmove(data + 8 * i, data + 4 * i, 4);
+        memset(data + 8 * i + 4, data[8 * i + 3] < 0 ? -1 : 0, 4);
+    }
+}
+
+enum tri_status tri_h5_part_widen(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
+{
+    struct strip *s = &part->strip[kind];
+    const size_t bytes = (size_t)s->n * tri_h5_row_bytes(s->laid), room = (size_t)s->room * tri_h5_row_bytes(s->laid);
+    void *wide = NULL;
+    assert(s->laid->type == TRI_H5_INT32);
+    const int result = tri_behind_wait(&s->behind, part->file);
+    free(s->other); /* too small from now on */
+    s->other = NULL;
+    if (!s->buffer || result)
+        return tri_output_conclude(part->file, result, error);
+    if (posix_memalign(&wide, TRI_BEHIND_BYTES, 2 * room) != 0)
+        return no_memory(part, error);
+    memcpy(wide, s->buffer, bytes);
+    tri_h5_widen_numbers(wide, bytes / 4);
+    free(s->buffer);
+    s->buffer = wide;
+    return TRI_OK;
+}
+
 /* --- all */
 
-enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, const int64_t *place,
+enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, bool alone,
                                 const struct tri_stream *stream, struct tri_output *file, struct tri_error *error)
 {
     const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
     struct tri_h5_part *p = calloc(1, sizeof *p);
+    double *columns = malloc((n + 1) * sizeof *columns);
     *part = p;
-    bool memory = p;
-    if (p) {
-        p->file = file;
-        p->columns = malloc((n + 1) * sizeof *p->columns);
-        p->rows = (struct tri_h5_rows){NULL, p->columns, stream->n_attributes, stream->n_columns};
-        memory = p->columns;
+    if (!p || !columns) {
+        free(columns);
+        return tri_fail(error, TRI_NO_MEMORY, file->path, 0, "no memory to write the file");
     }
-    for (int kind = 0; memory && kind < TRI_H5_KINDS; kind++)
-        memory = begin_strip(&p->strip[kind], &layout->array[kind], place);
-    if (!memory)
-        return tri_fail(error, TRI_NO_MEMORY, file->path, 0, "no memory to write a part of the file");
+    *p = (struct tri_h5_part){.file = file, .alone = alone, .columns = columns,
+                              .rows = {NULL, columns, stream->n_attributes, stream->n_columns}};
+    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
+        p->strip[kind].laid = &layout->array[kind];
     if (n > 0)
-        memcpy(p->columns, stream->regions, n * sizeof *p->columns);
+        memcpy(columns, stream->regions, n * sizeof *columns);
     return TRI_OK;
 }
 
@@ -121,17 +186,23 @@ enum tri_status tri_h5_part_take(struct tri_h5_part *part, const struct tri_tile
 enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int kind = 0; !status && kind < TRI_H5_KINDS; kind++)
-        status = flush(part, &part->strip[kind], error);
+    for (int kind = 0; !status && kind < TRI_H5_KINDS; kind++) {
+        struct strip *s = &part->strip[kind];
+        status = flush(part, s, error);
+        status = status ? status : tri_output_conclude(part->file, tri_behind_wait(&s->behind, part->file), error);
+    }
     return status;
 }
 
 void tri_h5_part_free(struct tri_h5_part *part)
 {
-    if (!part)
-        return;
-    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
-        free(part->strip[kind].buffer);
-    free(part->columns);
+    for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
+        struct strip *s = &part->strip[kind];
+        (void)tri_behind_wait(&s->behind, part->file);
+        free(s->buffer);
+        free(s->other);
+    }
+    if (part)
+        free(part->columns);
     free(part);
 }

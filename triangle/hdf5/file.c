@@ -15,6 +15,8 @@
 #include <H5FDdevelop.h>
 #endif
 
+#include "triangle/base/at_place.h"
+
 enum { PAGE_BYTES = 4096, LARGE_BYTES = 1 << 16 }; /* what is large begins at a page */
 
 /* --- the driver */
@@ -80,31 +82,12 @@ static herr_t note(struct tri_h5_file *file, int failure)
 static herr_t read_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, void *data)
 {
     const struct driven *driven = (const struct driven *)head;
-    char *at = data;
+    const ssize_t got = tri_read_at(driven->file->output->file, data, size, place);
     (void)kind, (void)transfer;
-    while (size > 0) {
-        ssize_t n = pread(driven->file->output->file, at, size, (off_t)place);
-        if (n < 0 && errno != EINTR)
-            return note(driven->file, errno);
-        if (n == 0) {
-            memset(at, 0, size);
-            return 0;
-        }
-        if (n > 0) {
-            at += n;
-            place += (haddr_t)n;
-            size -= (size_t)n;
-        }
-    }
+    if (got < 0)
+        return note(driven->file, errno);
+    memset((char *)data + got, 0, size - (size_t)got);
     return 0;
-}
-
-/* A chunk comes through HDF5 as it is. */
-static int write_now_or_behind(struct tri_h5_file *file, haddr_t place, const void *data, size_t size)
-{
-    struct tri_behind *behind = data == file->behind_data ? file->behind : NULL;
-    return behind ? tri_behind_start(behind, file->output, place, data, size)
-                  : tri_output_write_at(file->output, place, data, size);
 }
 
 static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, const void *data)
@@ -117,13 +100,9 @@ static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_
     }
     if (driven->written < place + size)
         driven->written = place + size;
-    return driven->file->failure != 0 ? 0 : note(driven->file, write_now_or_behind(driven->file, place, data, size));
-}
-
-void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind)
-{
-    const int failure = tri_behind_wait(behind, file->output);
-    (void)note(file, failure);
+    if (driven->file->failure != 0)
+        return 0;
+    return note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
 }
 
 /* The file ends where what has been allocated ends. */

@@ -9,7 +9,7 @@
 #include <hdf5.h>
 
 #include "triangle/base/status.h"
-#include "triangle/text/behind.h"
+#include "triangle/text/output.h"
 
 struct tri_h5_file {
     hid_t id;       /* of the file; < 0: not open */
@@ -17,9 +17,7 @@ struct tri_h5_file {
     struct tri_output *output; /* borrowed */
     int failure;    /* what writing has met first, as of tri_output_write_at; 0: nothing. From then on nothing is
                        written, and HDF5 is told that all is well, so that it lets go of what it has */
-    struct tri_behind *behind; /* NULL, or by which the next write is to be done if these are its data: */
-    const char *behind_data;
-    const char *sought; /* what is written from there is not: the driver tells where it would have gone; NULL */
+    const void *sought; /* what is written from there is not: the driver tells where it would have gone; NULL */
     int64_t found;      /* there; < 0: nothing has come */
 };
 
@@ -28,9 +26,6 @@ enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *outpu
 
 /* Writes what HDF5 has kept, and closes the file, unless that has been done; the output stays open. */
 enum tri_status tri_h5_close(struct tri_h5_file *file, struct tri_error *error);
-
-/* Waits for a write that has been begun; failures are noted in the file. */
-void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind);
 
 /* What to say after a call of HDF5 has failed: what writing met, or what HDF5 tells. Never TRI_OK. */
 enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct tri_error *error);

@@ -12,14 +12,8 @@
 
 #include "triangle/hdf5/array.h"
 
-/* The arrays as they have ended; those without a file are not there. */
-struct tri_h5_arrays {
-    struct tri_h5_array points, point_markers, point_attributes;
-    struct tri_h5_array triangles, triangle_attributes;
-    struct tri_h5_array segments, segment_markers;
-};
-
-enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_arrays *arrays,
+/* arrays: by kind, as they have ended; those without a file are not there. */
+enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_array arrays[TRI_H5_KINDS],
                                    struct tri_error *error);
 
 #endif
