@@ -112,7 +112,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/gmsh.c
     triangle/text/hydro.c
     triangle/text/bytes.c
-    triangle/text/tags.c
+    triangle/text/reading.c
     triangle/text/read_vtu.c
     triangle/text/read_gmsh.c
     triangle/text/read_hydro.c

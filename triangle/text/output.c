@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/text/text.h"
 
 #ifndef O_DIRECT
@@ -481,18 +482,6 @@ int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t s
 
 enum { SHIFT_BYTES = 1 << 20 };
 
-/* Moves n bytes, which fit in the buffer. */
-static int move_piece(const struct tri_output *output, uint64_t from, uint64_t to, size_t n, char *buffer)
-{
-    for (size_t done = 0; done < n;) {
-        const ssize_t got = pread(output->file, buffer + done, n - done, (off_t)(from + done));
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return got == 0 ? EIO : errno;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return tri_output_write_at(output, to, buffer, n);
-}
-
 /* Forwards from the end, so that nothing is overwritten before it has been moved; backwards from the begin. */
 static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
 {
@@ -502,7 +491,9 @@ static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *
         const uint64_t left = end - from - done;
         const size_t n = left < SHIFT_BYTES ? (size_t)left : SHIFT_BYTES;
         const uint64_t at = by > 0 ? end - done - n : from + done;
-        result = move_piece(output, at, at + (uint64_t)by, n, buffer);
+        result = tri_read_again(output->file, buffer, n, at)
+                     ? tri_output_write_at(output, at + (uint64_t)by, buffer, n)
+                     : errno;
         done += n;
     }
     output->size = end + (uint64_t)by;

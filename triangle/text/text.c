@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
 
 enum { DEFAULT_CHUNK = 1 << 18 };
@@ -102,22 +103,6 @@ struct load {
     int *errors; /* [n_chunks] error number of each chunk's read; -1: the file has become shorter */
 };
 
-/* Up to n bytes from offset; fewer only at the end of the file. -1 and errno on failure. */
-static ssize_t read_at(int file, char *at, size_t n, size_t offset)
-{
-    size_t done = 0;
-    while (done < n) {
-        const ssize_t got = pread(file, at + done, n - done, (off_t)(offset + done));
-        if (got == 0)
-            break;
-        if (got < 0 && errno != EINTR)
-            return -1;
-        if (got > 0)
-            done += (size_t)got;
-    }
-    return (ssize_t)done;
-}
-
 static void read_chunk(void *context, size_t i)
 {
     struct load *const load = context;
@@ -126,7 +111,7 @@ static void read_chunk(void *context, size_t i)
     const size_t begin = i * load->text->chunk_bytes;
     const size_t left = load->file_size - begin;
     const size_t n = left < load->text->chunk_bytes ? left : load->text->chunk_bytes;
-    const ssize_t got = read_at(load->file, load->text->data + begin, n, begin);
+    const ssize_t got = tri_read_at(load->file, load->text->data + begin, n, begin);
     load->errors[i] = got < 0 ? errno : (size_t)got < n ? -1 : 0;
 }
 

@@ -14,6 +14,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
@@ -45,20 +46,12 @@ static enum tri_status cannot_write(const struct tri_tile_store *s, struct tri_e
 static bool append(struct tri_tile_store *s, enum kind kind, const void *bytes, size_t n)
 {
     struct sheet *sheet = &s->sheet[kind];
-    const char *at = bytes;
     if (sheet->file < 0)
         sheet->file = tri_scratch_file(s->folder);
-    while (sheet->file >= 0 && n > 0) {
-        ssize_t done = pwrite(sheet->file, at, n, (off_t)sheet->bytes);
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return false;
-        at += done;
-        n -= (size_t)done;
-        sheet->bytes += (size_t)done;
-    }
-    return sheet->file >= 0;
+    if (sheet->file < 0 || !tri_write_at(sheet->file, bytes, n, sheet->bytes))
+        return false;
+    sheet->bytes += n;
+    return true;
 }
 
 static bool map(struct sheet *sheet)
