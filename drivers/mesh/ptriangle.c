@@ -170,10 +170,10 @@ static void show_streams(struct program *p)
 {
     struct joint_files *joint = &p->joint;
     joint->text_options = p->streams.text_options;
-    joint->text = p->streams.text_sink;
+    joint->text = p->streams.text ? p->streams.sink[p->streams.n] : joint->text;
     for (int i = 0; i < p->streams.n; i++) {
         const struct stream *s = &p->streams.stream[i];
-        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = s->sink, .output = s->options.file};
+        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = p->streams.sink[i], .output = s->options.file};
     }
 }
 

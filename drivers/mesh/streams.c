@@ -30,8 +30,8 @@ static const char *without_folder(const char *name)
 
 /* --- opening and closing */
 
-static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_output_set *set,
-                                   struct tri_error *error)
+static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_sink *sink,
+                                   struct tri_output_set *set, struct tri_error *error)
 {
     s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
     s->xdmf = stream_xdmf(name);
@@ -39,7 +39,7 @@ static enum tri_status open_stream(struct stream *s, const char *name, bool mark
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, name, &s->options.file, error);
     status = status ? status : interrupt_open(set, s->xdmf, &s->options.xdmf, error);
-    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
+    return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
 enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
@@ -48,7 +48,8 @@ enum tri_status streams_open(struct streams *streams, const struct file_names *n
     enum tri_status status = TRI_OK;
     *streams = (struct streams){0};
     for (int i = 0; !status && i < names->n; i++)
-        status = open_stream(&streams->stream[streams->n++], names->name[i], markers, set, error);
+        status = open_stream(&streams->stream[streams->n++], names->name[i], markers,
+                             &streams->sink[streams->n_sinks++], set, error);
     return status;
 }
 
@@ -80,7 +81,7 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
     status = status ? status : open_text(&o->poly, &files, ".poly", set, error);
     if (status || !(o->node || o->ele || o->poly))
         return status;
-    return tri_text_stream_new(&streams->text, o, &streams->text_sink, error);
+    return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], error);
 }
 
 enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
@@ -97,7 +98,7 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
     streams->n_exports = names->n;
     if (status || names->n == 0)
         return status;
-    return tri_tile_store_new(&streams->store, folder, &streams->store_sink, error);
+    return tri_tile_store_new(&streams->store, folder, &streams->sink[streams->n_sinks++], error);
 }
 
 void streams_close(struct streams *streams)
@@ -116,47 +117,12 @@ void streams_close(struct streams *streams)
 
 /* --- the sink */
 
-static enum tri_status begin_again(struct stream *s, struct tri_error *error)
-{
-    tri_h5_writer_free(s->writer);
-    s->writer = NULL;
-    enum tri_status status = tri_output_restart(s->options.file, error);
-    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
-}
-
-static enum tri_status begin_text_again(struct streams *streams, struct tri_error *error)
-{
-    struct tri_output *const outputs[] = {streams->text_options.node, streams->text_options.ele,
-                                          streams->text_options.poly};
-    enum tri_status status = TRI_OK;
-    tri_text_stream_free(streams->text);
-    streams->text = NULL;
-    for (int i = 0; !status && i < 3; i++)
-        status = outputs[i] ? tri_output_restart(outputs[i], error) : TRI_OK;
-    return status ? status : tri_text_stream_new(&streams->text, &streams->text_options, &streams->text_sink, error);
-}
-
-static enum tri_status begin_text(struct streams *streams, const struct tri_stream *stream, struct tri_error *error)
-{
-    if (!streams->text)
-        return TRI_OK;
-    enum tri_status status = streams->begun ? begin_text_again(streams, error) : TRI_OK;
-    return status ? status : streams->text_sink.begin(streams->text_sink.user, stream, error);
-}
-
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = streams->begun ? begin_again(s, error) : TRI_OK;
-        status = status ? status : s->sink.begin(s->sink.user, stream, error);
-    }
-    status = status ? status : begin_text(streams, stream, error);
-    if (!status && streams->store)
-        status = streams->store_sink.begin(streams->store_sink.user, stream, error);
-    streams->begun = true;
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].begin(streams->sink[i].user, stream, error);
     streams->vertices = streams->triangles = streams->segments = 0;
     return status;
 }
@@ -165,14 +131,8 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = s->sink.take(s->sink.user, tile, error);
-    }
-    if (!status && streams->text)
-        status = streams->text_sink.take(streams->text_sink.user, tile, error);
-    if (!status && streams->store)
-        status = streams->store_sink.take(streams->store_sink.user, tile, error);
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].take(streams->sink[i].user, tile, error);
     streams->vertices += tile->n_vertices;
     streams->triangles += tile->n_triangles;
     streams->segments += tile->n_segments;
@@ -192,12 +152,8 @@ static enum tri_status end(void *user, struct tri_error *error)
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = s->sink.end(s->sink.user, error);
-    }
-    if (!status && streams->text)
-        status = streams->text_sink.end(streams->text_sink.user, error);
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].end ? streams->sink[i].end(streams->sink[i].user, error) : TRI_OK;
     return status || !streams->store ? status : write_exports(streams, error);
 }
 

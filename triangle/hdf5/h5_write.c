@@ -184,16 +184,45 @@ void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const dou
 
 /* --- all together */
 
+static void empty(struct tri_h5_writer *w)
+{
+    const struct tri_h5_options options = w->options;
+    *w = (struct tri_h5_writer){.options = options, .file = {.id = -1, .driver = -1},
+                                .most_narrow = options.most_narrow > 0 ? options.most_narrow : (int64_t)INT32_MAX + 1,
+                                .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+}
+
+/* What an unfinished file holds is of no use: it is let go of without a write. */
+static void let_go(struct tri_h5_writer *w)
+{
+    if (w->file.id >= 0 && w->file.failure == 0)
+        w->file.failure = -1;
+    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
+        tri_h5_array_free(&w->arrays[kind]);
+    tri_h5_part_free(w->part);
+    tri_h5_segments_free(&w->segments);
+    (void)tri_h5_close(&w->file, NULL);
+}
+
+static enum tri_status begin_again(struct tri_h5_writer *w, struct tri_error *error)
+{
+    let_go(w);
+    empty(w);
+    return tri_output_restart(w->options.file, error);
+}
+
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     const bool alone = stream->n_ranks <= 1;
-    enum tri_status status = tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
-    begin_arrays(w, stream);
-    if (!status && alone)
-        status = tri_h5_part_new(&w->part, &w->layout, true, stream, w->options.file, error);
+    enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
+        status = w->segments.ends ? begin_again(w, error) : TRI_OK;
+        begin_arrays(w, stream);
+        status = status ? status : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
+        if (!status && alone)
+            status = tri_h5_part_new(&w->part, &w->layout, true, stream, w->options.file, error);
         status = status ? status : tri_h5_create(&w->file, w->options.file, error);
         if (!status && !alone)
             status = lay_out(w, stream, error);
@@ -248,24 +277,11 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
     *writer = w;
     if (!w)
         return tri_fail(error, TRI_NO_MEMORY, options->file->path, 0, "no memory to write the file");
-    *w = (struct tri_h5_writer){.options = *options, .file = {.id = -1, .driver = -1},
-                                .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    w->options = *options;
+    empty(w);
     (void)H5dont_atexit(); /* at the end of the process HDF5 would print about files that could not be written */
-    w->most_narrow = options->most_narrow > 0 ? options->most_narrow : (int64_t)INT32_MAX + 1;
     *sink = (struct tri_sink){w, begin, take, end};
     return TRI_OK;
-}
-
-/* What an unfinished file holds is of no use: it is let go of without a write. */
-static void let_go(struct tri_h5_writer *w)
-{
-    if (w->file.id >= 0 && w->file.failure == 0)
-        w->file.failure = -1;
-    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
-        tri_h5_array_free(&w->arrays[kind]);
-    tri_h5_part_free(w->part);
-    tri_h5_segments_free(&w->segments);
-    (void)tri_h5_close(&w->file, NULL);
 }
 
 void tri_h5_writer_free(struct tri_h5_writer *writer)

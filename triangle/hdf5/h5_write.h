@@ -24,10 +24,10 @@ struct tri_h5_writer;
 /* Is there HDF5 in this build? */
 bool tri_h5_is_there(void);
 
-/* *sink writes the file; its calls come from one thread at a time. After its end the outputs are complete, and their
- * owner commits them; after any failure, or where no end comes, he aborts them. Texts and outputs of the options
- * outlive the writer. TRI_NO_MEMORY; TRI_CANNOT_WRITE: this build has no HDF5. Errors of the sink: those of
- * triangle/text/output.h. */
+/* *sink writes the file, anew where it is told of the beginning again; its calls come from one thread at a time. After
+ * its end the outputs are complete, and their owner commits them; after any failure, or where no end comes, he aborts
+ * them. Texts and outputs of the options outlive the writer. TRI_NO_MEMORY; TRI_CANNOT_WRITE: this build has no HDF5.
+ * Errors of the sink: those of triangle/text/output.h. */
 enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
                                   struct tri_sink *sink, struct tri_error *error);
 

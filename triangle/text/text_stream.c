@@ -109,6 +109,18 @@ static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream
 
 /* --- the sink */
 
+/* What was written is void. */
+static enum tri_status begin_again(struct tri_text_stream *s, struct tri_error *error)
+{
+    struct tri_output *files[] = {s->options.node, s->options.ele, s->options.poly};
+    enum tri_status status = TRI_OK;
+    for (int i = 0; i < 3 && !status; i++)
+        status = files[i] ? tri_output_restart(files[i], error) : TRI_OK;
+    free(s->columns);
+    s->columns = NULL;
+    return status;
+}
+
 static enum tri_status copy_columns(struct tri_text_stream *s, const struct tri_stream *stream, struct tri_error *error)
 {
     const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
@@ -133,7 +145,8 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     s->triangles = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
     s->segments = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
     s->known = stream->n_ranks > 1;
-    enum tri_status status = copy_columns(s, stream, error);
+    enum tri_status status = s->columns ? begin_again(s, error) : TRI_OK;
+    status = status ? status : copy_columns(s, stream, error);
     if (status || stream->rank > 0)
         return status;
     if (o->poly)
