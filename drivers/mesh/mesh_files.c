@@ -14,58 +14,45 @@ enum plan { NOT_ASKED, SUPPRESSED, WRITTEN };
 
 /* --- the table of files, in the order in which they are written */
 
-static enum plan asked(bool by_switch) { return by_switch ? WRITTEN : NOT_ASKED; }
-
-static enum plan plan_node(const struct mesh_files *f)
-{
-    const struct tri_switches *s = &f->arguments->switches;
-    return s->no_node || (s->no_iteration && !f->points_in_poly) ? SUPPRESSED : WRITTEN;
-}
-
-static enum plan plan_ele(const struct mesh_files *f) { return f->arguments->switches.no_ele ? SUPPRESSED : WRITTEN; }
-
-static enum plan plan_poly(const struct mesh_files *f)
-{
-    const struct tri_switches *s = &f->arguments->switches;
-    if (!tri_switches_show_segments(s))
-        return NOT_ASKED;
-    return s->no_poly || s->no_iteration ? SUPPRESSED : WRITTEN;
-}
-
-static enum plan plan_off(const struct mesh_files *f) { return asked(f->arguments->switches.off); }
-static enum plan plan_edge(const struct mesh_files *f) { return asked(f->arguments->switches.edges); }
-static enum plan plan_voronoi(const struct mesh_files *f) { return asked(f->arguments->switches.voronoi); }
-static enum plan plan_neigh(const struct mesh_files *f) { return asked(f->arguments->switches.neighbors); }
-
-/* Not a word about what nobody wants. */
-static enum plan plan_of(const struct mesh_files *files, enum plan (*plan)(const struct mesh_files *files))
-{
-    return files->exports_alone ? NOT_ASKED : plan(files);
-}
+enum { NODE, ELE, POLY, OFF, EDGE, V_NODE, V_EDGE, NEIGH, N_KINDS };
 
 static const struct kind {
     const char *suffix, *article;
-    enum plan (*plan)(const struct mesh_files *files);
     tri_write_call *write;
     bool of_voronoi; /* it shows the Voronoi diagram */
-} kinds[] = {
-    {".node", "a", plan_node, tri_write_node, false},
-    {".ele", "an", plan_ele, tri_write_ele, false},
-    {".poly", "a", plan_poly, tri_write_poly, false},
-    {".off", "an", plan_off, tri_write_off, false},
-    {".edge", "an", plan_edge, tri_write_edge, false},
-    {".v.node", "a", plan_voronoi, tri_write_node, true},
-    {".v.edge", "a", plan_voronoi, tri_write_v_edge, true},
-    {".neigh", "a", plan_neigh, tri_write_neigh, false},
+} kinds[N_KINDS] = {
+    {".node", "a", tri_write_node, false},   {".ele", "an", tri_write_ele, false},
+    {".poly", "a", tri_write_poly, false},   {".off", "an", tri_write_off, false},
+    {".edge", "an", tri_write_edge, false},  {".v.node", "a", tri_write_node, true},
+    {".v.edge", "a", tri_write_v_edge, true}, {".neigh", "a", tri_write_neigh, false},
 };
 
-enum { N_KINDS = sizeof kinds / sizeof *kinds };
+static enum plan asked(bool by_switch, bool suppressed)
+{
+    return !by_switch ? NOT_ASKED : suppressed ? SUPPRESSED : WRITTEN;
+}
+
+/* Where other formats stand alone, not a word about what nobody wants. */
+static enum plan plan_of(const struct mesh_files *f, int kind)
+{
+    const struct tri_switches *s = &f->arguments->switches;
+    const bool any = !f->exports_alone;
+    switch (kind) {
+    case NODE: return asked(any, s->no_node || (s->no_iteration && !f->points_in_poly));
+    case ELE: return asked(any, s->no_ele);
+    case POLY: return asked(any && tri_switches_show_segments(s), s->no_poly || s->no_iteration);
+    case OFF: return asked(any && s->off, false);
+    case EDGE: return asked(any && s->edges, false);
+    case NEIGH: return asked(any && s->neighbors, false);
+    default: return asked(any && s->voronoi, false);
+    }
+}
 
 bool mesh_files_has(const struct mesh_files *files, const char *suffix)
 {
     for (int k = 0; k < N_KINDS; k++)
         if (strcmp(kinds[k].suffix, suffix) == 0)
-            return plan_of(files, kinds[k].plan) == WRITTEN;
+            return plan_of(files, k) == WRITTEN;
     return false;
 }
 
@@ -102,7 +89,7 @@ static enum tri_status try_all(struct tri_output_set *set, const struct mesh_fil
 {
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS && !status; k++) {
-        if (plan_of(files, kinds[k].plan) != WRITTEN)
+        if (plan_of(files, k) != WRITTEN)
             continue;
         char *path = tri_joined(files->arguments->output, kinds[k].suffix);
         status = path ? try_file(set, path, read, error)
@@ -168,7 +155,7 @@ static enum tri_status write_all(struct writer *w)
 {
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS; k++) {
-        enum plan plan = plan_of(w->files, kinds[k].plan);
+        enum plan plan = plan_of(w->files, k);
         if (plan == SUPPRESSED)
             console_say(w->files->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
         status = plan == WRITTEN ? write_file(w, &kinds[k]) : TRI_OK;

@@ -63,16 +63,8 @@ static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 static hid_t create_dataset(const struct tri_h5_array *array, int64_t n, bool in_chunks)
 {
     const hsize_t width = (hsize_t)array->laid->width, size[2] = {(hsize_t)n, width}, most[2] = {H5S_UNLIMITED, width};
-    hid_t space = H5Screate_simple(dimensions(array), size, in_chunks ? most : NULL);
-    hid_t creation = creation_of(array, in_chunks), dataset = -1;
-    if (space >= 0 && creation >= 0)
-        dataset = H5Dcreate2(array->file->id, array->name, tri_h5_type_id(array->laid->type), space, H5P_DEFAULT,
-                             creation, H5P_DEFAULT);
-    if (creation >= 0)
-        H5Pclose(creation);
-    if (space >= 0)
-        H5Sclose(space);
-    return dataset;
+    return tri_h5_new_dataset(array->file, array->name, tri_h5_type_id(array->laid->type), dimensions(array), size,
+                              in_chunks ? most : NULL, creation_of(array, in_chunks));
 }
 
 static bool resize(const struct tri_h5_array *array, int64_t n)

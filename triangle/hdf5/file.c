@@ -192,6 +192,19 @@ hid_t tri_h5_no_times(hid_t kind)
     return -1;
 }
 
+hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t type, int rank, const hsize_t *size,
+                         const hsize_t *most, hid_t creation)
+{
+    hid_t space = H5Screate_simple(rank, size, most), dataset = -1;
+    if (space >= 0 && creation >= 0)
+        dataset = H5Dcreate2(file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    if (creation >= 0)
+        H5Pclose(creation);
+    if (space >= 0)
+        H5Sclose(space);
+    return dataset;
+}
+
 enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *output, struct tri_error *error)
 {
     *file = (struct tri_h5_file){.id = -1, .driver = -1, .output = output};

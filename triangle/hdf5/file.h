@@ -40,4 +40,9 @@ struct tri_h5_reason tri_h5_reason(void);
 /* Properties of a new file, group or dataset (H5P_.._CREATE) that keeps no times; to be closed. < 0: an error. */
 hid_t tri_h5_no_times(hid_t kind);
 
+/* A new dataset of that size, which may grow to `most` (NULL: not). Closes the properties, whose failure (< 0) is passed
+ * on. < 0: an error. */
+hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t type, int rank, const hsize_t *size,
+                         const hsize_t *most, hid_t creation);
+
 #endif

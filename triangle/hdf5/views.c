@@ -84,17 +84,12 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
 {
     if (v->failed)
         return;
-    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
-    hid_t space = checked(v, H5Screate_simple(rank, size, NULL));
+    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE));
     if (!v->failed)
         checked(v, H5Pset_fill_value(creation, H5T_NATIVE_INT, &fill));
     for (int i = 0; i < n; i++)
         add_part(v, creation, rank, size, &parts[i]);
-    if (!v->failed)
-        dataset = checked(v, H5Dcreate2(v->file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    close_with(H5Dclose, dataset);
-    close_with(H5Sclose, space);
-    close_with(H5Pclose, creation);
+    close_with(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
 }
 
 /* --- VTK */
@@ -102,18 +97,13 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
 /* One number, as an array. */
 static void add_count(struct views *v, const char *path, int64_t count)
 {
-    const hsize_t one = 1;
     if (v->failed)
         return;
-    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
-    hid_t space = checked(v, H5Screate_simple(1, &one, NULL));
-    if (!v->failed)
-        dataset = checked(v, H5Dcreate2(v->file->id, path, H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    if (dataset >= 0)
+    hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
+    hid_t dataset = tri_h5_new_dataset(v->file, path, H5T_STD_I64LE, 1, &(hsize_t){1}, NULL, creation);
+    if (checked(v, dataset) >= 0)
         checked(v, H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count));
     close_with(H5Dclose, dataset);
-    close_with(H5Pclose, creation);
-    close_with(H5Sclose, space);
 }
 
 static void add_vtk_cells(struct views *v)
