@@ -60,7 +60,7 @@ done
 tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
-    triangle/hdf5/* | triangle/text/behind.c) echo hdf5 ;;
+    triangle/hdf5/*) echo hdf5 ;;
     triangle/api/* | sched/schedule/library.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;

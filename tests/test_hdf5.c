@@ -22,7 +22,6 @@
 #include "triangle/hdf5/array.h"
 #include "triangle/hdf5/h5_read.h"
 #include "triangle/hdf5/h5_write.h"
-#include "triangle/text/behind.h"
 
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
                             PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
@@ -410,38 +409,6 @@ static void test_full_disk(void **state)
     }
 }
 
-/* Pieces that the system writes while the caller goes on: past its cache or, at an odd place, through it. */
-static void test_behind(void **state)
-{
-    (void)state;
-    enum { LARGE_PIECE = 5 * TRI_BEHIND_BYTES, SMALL_PIECE = 100 };
-    struct tri_output_set set;
-    struct tri_output *output;
-    struct tri_error error;
-    struct tri_behind behind[2] = {{0}, {0}};
-    char *data, found[LARGE_PIECE + SMALL_PIECE + 1];
-    assert_int_equal(posix_memalign((void **)&data, TRI_BEHIND_BYTES, LARGE_PIECE), 0);
-    for (int i = 0; i < LARGE_PIECE; i++)
-        data[i] = (char)(i * 7 + i / 256);
-    tri_outputs_begin(&set);
-    assert_int_equal(tri_output_open(&set, "x.bytes", &output, &error), TRI_OK);
-    assert_int_equal(tri_behind_start(&behind[1], output, LARGE_PIECE, data, SMALL_PIECE), 0);
-    assert_int_equal(tri_behind_start(&behind[0], output, 0, data, LARGE_PIECE), 0);
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(tri_behind_wait(&behind[i], output), 0);
-    assert_int_equal(tri_behind_wait(&behind[0], output), 0);
-    assert_int_equal(tri_output_sync(output, &error), TRI_OK);
-    assert_int_equal(tri_outputs_commit(&set, &error), TRI_OK);
-    FILE *file = fopen("x.bytes", "rb");
-    assert_non_null(file);
-    assert_int_equal(fread(found, 1, sizeof found, file), LARGE_PIECE + SMALL_PIECE);
-    fclose(file);
-    assert_memory_equal(found, data, LARGE_PIECE);
-    assert_memory_equal(found + LARGE_PIECE, data, SMALL_PIECE);
-    remove("x.bytes");
-    free(data);
-}
-
 /* Our own allocations, one after the other. */
 static void test_no_memory(void **state)
 {
@@ -655,7 +622,6 @@ int main(void)
         cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
-        cmocka_unit_test_teardown(test_behind, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),
         cmocka_unit_test_teardown(test_no_memory, remove_files),
         cmocka_unit_test_teardown(test_stop, remove_files),

@@ -15,7 +15,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "drivers/mesh/disk_needs.h"
 #include "drivers/resources.h"
 #include "triangle/base/size_text.h"
 
@@ -233,7 +232,49 @@ static enum tri_status check_stream(const struct run *run, const struct estimate
     return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
 }
 
+/* --- disks */
+
+enum { DISK_PLACES = 3 };
+
 /* What a run puts on disk. */
+struct disk_place {
+    const char *what; /* "its files" */
+    const char *path; /* a folder, or a file that is there or will be */
+    double bytes;     /* that will be needed there */
+};
+
+/* Bytes left where the place is; HUGE_VAL: not known. */
+static double disk_left(const struct disk_place *place) { return resources_disk(place->path); }
+
+static bool device_of(const struct disk_place *place, dev_t *device)
+{
+    char folder[RESOURCES_PATH];
+    struct stat info;
+    resources_folder(place->path, folder);
+    bool known = stat(folder, &info) == 0;
+    *device = known ? info.st_dev : 0;
+    return known;
+}
+
+static bool are_on_one_disk(const struct disk_place *a, const struct disk_place *b)
+{
+    dev_t one, other;
+    return a == b || (device_of(a, &one) && device_of(b, &other) && one == other);
+}
+
+/* The first place on a disk that has less left than all places on it need; NULL: none. *needed receives that. */
+static const struct disk_place *too_small(const struct disk_place places[DISK_PLACES], double *needed)
+{
+    for (int i = 0; i < DISK_PLACES; i++) {
+        *needed = 0;
+        for (int k = 0; places[i].bytes > 0 && k < DISK_PLACES; k++)
+            *needed += places[k].bytes > 0 && are_on_one_disk(&places[i], &places[k]) ? places[k].bytes : 0;
+        if (*needed > 0 && *needed > disk_left(&places[i]))
+            return &places[i];
+    }
+    return NULL;
+}
+
 static void list_places(struct disk_place places[DISK_PLACES], const struct run *run, const struct needs *n,
                         double left)
 {
@@ -259,13 +300,13 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     double needed;
     list_places(sure, run, &e->least, memory);
     list_places(likely, run, &e->likely, memory);
-    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
+    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? too_small(sure, &needed) : NULL;
     if (place)
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
                         tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
-    place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
+    place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;
     if (place)
         console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
                      place->path, place->what, tri_size_text(needed).text, tri_size_text(disk_left(place)).text);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/blocks_file.h"
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/help.h"
 #include "drivers/mesh/joint_files.h"
@@ -32,6 +31,7 @@
 #include "triangle/refine/census.h"
 #include "triangle/size/crowd.h"
 #include "triangle/size/estimate.h"
+#include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/write.h"
@@ -376,6 +376,38 @@ static enum tri_status write_streams(struct program *p, struct run *run, struct 
     return status;
 }
 
+/* --- blocks and report */
+
+enum { BLOCK_ROW_BYTES = 48 };
+
+struct blocks {
+    const struct par_report *report;
+    const struct tri_mesh *mesh;
+};
+
+static char *block_row(void *user, size_t i, char *at)
+{
+    const struct blocks *blocks = user;
+    int phase;
+    int32_t block = par_block_of(blocks->report, blocks->mesh, (int32_t)i, &phase);
+    at = tri_print_integer(at, block, 0);
+    *at++ = ' ';
+    at = tri_print_integer(at, phase, 0);
+    *at++ = '\n';
+    return at;
+}
+
+/* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
+static enum tri_status write_blocks(const char *path, struct tri_output_set *set, const struct par_report *report,
+                             const struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct blocks blocks = {report, mesh};
+    const size_t n = (size_t)mesh->n_triangles;
+    struct tri_output *output;
+    enum tri_status status = interrupt_open(set, path, &output, error);
+    return status ? status : tri_write_table(output, n, BLOCK_ROW_BYTES, block_row, &blocks, NULL, error);
+}
+
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
 static void count_remaining(struct program *p, const struct run *run)
 {
@@ -398,7 +430,7 @@ static enum tri_status write_further(void *user, struct run *run, struct tri_out
     progress_stage(&p->progress, text);
     enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
     if (!status && p->options.blocks)
-        status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
+        status = write_blocks(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
     count_remaining(p, run);

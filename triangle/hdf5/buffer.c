@@ -1,14 +1,25 @@
-/* INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
+/* A large piece is written by POSIX's asynchronous writing, past the system's cache where the file system allows that:
+ * what a mesh of many gigabytes would push out of the cache stays there, processors copy nothing, and little is left to
+ * sync at the end.
+ *
+ * INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
  * not been written; all that have come before have been, or are on their way from the other buffer. */
 #include "triangle/hdf5/buffer.h"
 
+#include <aio.h>
 #include <assert.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/text/behind.h"
+enum { BUFFER_BYTES = 1 << 20, PAGE_BYTES = 4096 }; /* what is a multiple of the latter may pass the system's cache */
 
-enum { BUFFER_BYTES = 1 << 20 };
+/* At most one piece at a time. All 0: nothing is under way. May not move while something is. */
+struct behind {
+    bool under_way;
+    const char *data; /* lent */
+    struct aiocb control;
+};
 
 struct strip {
     const struct tri_h5_laid *laid;
@@ -16,7 +27,7 @@ struct strip {
     int32_t n, room; /* rows in the buffer, at most */
     char *buffer;    /* NULL: nothing has come */
     char *other;     /* as large: what is on its way into the file; NULL: none was needed */
-    struct tri_behind behind;
+    struct behind behind;
 };
 
 struct tri_h5_part {
@@ -32,6 +43,49 @@ static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_erro
     return tri_fail(error, TRI_NO_MEMORY, part->file->path, 0, "no memory to write rows of the file");
 }
 
+/* --- writing that goes on while its caller does */
+
+static bool is_aligned(uint64_t place, const char *data, size_t size)
+{
+    return (place | (uint64_t)(uintptr_t)data | size) % PAGE_BYTES == 0;
+}
+
+/* Begins to write to a place; nothing is under way. The data are lent until it is waited for. Returns 0 or what
+ * tri_output_conclude makes an error of. */
+static int behind_start(struct behind *behind, struct tri_output *output, uint64_t place, const char *data,
+                     size_t size)
+{
+    assert(!behind->under_way && tri_output_has_places(output));
+    if (tri_stop_is_asked(output->stop))
+        return TRI_OUTPUT_STOPPED;
+    memset(&behind->control, 0, sizeof behind->control);
+    behind->control.aio_fildes = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
+    behind->control.aio_offset = (off_t)place;
+    behind->data = data;
+    behind->control.aio_buf = (void *)data; /* is read alone */
+    behind->control.aio_nbytes = size;
+    behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
+    behind->under_way = aio_write(&behind->control) == 0;
+    return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
+}
+
+/* Waits for what is under way, if anything is: then it is written. Returns the same. What cannot be asked for, or is
+ * done in part only, is written as everything else is. */
+static int behind_wait(struct behind *behind, const struct tri_output *output)
+{
+    const struct aiocb *const control = &behind->control;
+    if (!behind->under_way)
+        return 0;
+    while (aio_error(control) == EINPROGRESS)
+        (void)aio_suspend(&control, 1, NULL);
+    const int fault = aio_error(control);
+    const ssize_t written = aio_return(&behind->control);
+    const size_t done = fault == 0 && written > 0 ? (size_t)written : 0;
+    behind->under_way = false;
+    return tri_output_write_at(output, (uint64_t)control->aio_offset + done, behind->data + done,
+                               control->aio_nbytes - done);
+}
+
 /* --- one array */
 
 /* Where bytes go that may pass the system's cache. */
@@ -39,7 +93,7 @@ static char *new_buffer(const struct strip *s)
 {
     void *buffer = NULL;
     const size_t bytes = (size_t)s->room * tri_h5_row_bytes(s->laid);
-    return posix_memalign(&buffer, TRI_BEHIND_BYTES, bytes) == 0 ? buffer : NULL;
+    return posix_memalign(&buffer, PAGE_BYTES, bytes) == 0 ? buffer : NULL;
 }
 
 static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
@@ -53,12 +107,12 @@ static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
 /* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
 static int send(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
 {
-    int result = tri_behind_wait(&s->behind, part->file);
+    int result = behind_wait(&s->behind, part->file);
     s->other = part->alone && !s->other ? new_buffer(s) : s->other;
     if (result || !s->other)
         return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
     char *buffer = s->buffer;
-    result = tri_behind_start(&s->behind, part->file, place, buffer, bytes);
+    result = behind_start(&s->behind, part->file, place, buffer, bytes);
     s->buffer = s->other;
     s->other = buffer;
     return result;
@@ -132,12 +186,12 @@ enum tri_status tri_h5_part_widen(struct tri_h5_part *part, enum tri_h5_kind kin
     const size_t bytes = (size_t)s->n * tri_h5_row_bytes(s->laid), room = (size_t)s->room * tri_h5_row_bytes(s->laid);
     void *wide = NULL;
     assert(s->laid->type == TRI_H5_INT32);
-    const int result = tri_behind_wait(&s->behind, part->file);
+    const int result = behind_wait(&s->behind, part->file);
     free(s->other); /* too small from now on */
     s->other = NULL;
     if (!s->buffer || result)
         return tri_output_conclude(part->file, result, error);
-    if (posix_memalign(&wide, TRI_BEHIND_BYTES, 2 * room) != 0)
+    if (posix_memalign(&wide, PAGE_BYTES, 2 * room) != 0)
         return no_memory(part, error);
     memcpy(wide, s->buffer, bytes);
     tri_h5_widen_numbers(wide, bytes / 4);
@@ -189,7 +243,7 @@ enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *erro
     for (int kind = 0; !status && kind < TRI_H5_KINDS; kind++) {
         struct strip *s = &part->strip[kind];
         status = flush(part, s, error);
-        status = status ? status : tri_output_conclude(part->file, tri_behind_wait(&s->behind, part->file), error);
+        status = status ? status : tri_output_conclude(part->file, behind_wait(&s->behind, part->file), error);
     }
     return status;
 }
@@ -198,7 +252,7 @@ void tri_h5_part_free(struct tri_h5_part *part)
 {
     for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
         struct strip *s = &part->strip[kind];
-        (void)tri_behind_wait(&s->behind, part->file);
+        (void)behind_wait(&s->behind, part->file);
         free(s->buffer);
         free(s->other);
     }

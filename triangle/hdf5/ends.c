@@ -6,7 +6,7 @@
  * that its planes 0 and 1 are those of every other chunk, and most of the others consist of one value. Deflate streams
  * that have been flushed can be put behind each other, and their checksums combined (RFC 1950, 1951; zlib): so a plane
  * that is the same as in the chunk before is deflated once. Chunks that reach beyond the triangles take HDF5's way. */
-#include "triangle/hdf5/ends.h"
+#include "triangle/hdf5/views.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -40,9 +40,17 @@ struct tri_h5_reason tri_h5_reason(void);
 /* Properties of a new file, group or dataset (H5P_.._CREATE) that keeps no times; to be closed. < 0: an error. */
 hid_t tri_h5_no_times(hid_t kind);
 
-/* A new dataset of that size, which may grow to `most` (NULL: not). Closes the properties, whose failure (< 0) is passed
- * on. < 0: an error. */
+/* A new dataset of that size, which may grow to `most` (NULL: not). Closes the properties, whose failure (< 0) is
+ * passed on. < 0: an error. */
 hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t type, int rank, const hsize_t *size,
                          const hsize_t *most, hid_t creation);
+
+/* Groups and attributes, by paths that begin at the root. False: HDF5 could not (tri_h5_fail tells). */
+bool tri_h5_add_group(struct tri_h5_file *file, const char *path);
+
+/* An attribute of n numbers, or, where n is 0, of a single one that is no array. */
+bool tri_h5_add_integers(struct tri_h5_file *file, const char *path, const char *name, int n, const int64_t *values);
+bool tri_h5_add_reals(struct tri_h5_file *file, const char *path, const char *name, int n, const double *values);
+bool tri_h5_add_text(struct tri_h5_file *file, const char *path, const char *name, const char *text);
 
 #endif

@@ -16,11 +16,9 @@
 #include <string.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 #include "triangle/hdf5/segment_spool.h"
 #include "triangle/hdf5/views.h"
-#include "triangle/hdf5/xdmf.h"
 
 enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENTS = CHUNK_POINTS };
 

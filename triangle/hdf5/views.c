@@ -1,8 +1,6 @@
 /* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
 #include "triangle/hdf5/views.h"
 
-#include "triangle/hdf5/ends.h"
-#include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };

@@ -1,5 +1,5 @@
 /* One grid: its topology, its geometry, and its attributes. */
-#include "triangle/hdf5/xdmf.h"
+#include "triangle/hdf5/views.h"
 
 #include <inttypes.h>
 #include <stdio.h>
