@@ -25,7 +25,8 @@ struct tri_text_stream;
 
 /* *sink writes the files, anew where it is told of the beginning again. After its end they are complete, and their
  * owner commits them; after any failure, or where no end comes, he aborts them. What the options name outlives the
- * stream. TRI_NO_MEMORY, and of the sink what is said in triangle/text/output.h; TRI_CANNOT_WRITE also for a device or pipe. */
+ * stream. TRI_NO_MEMORY, and of the sink what is said in triangle/text/output.h; TRI_CANNOT_WRITE also for a device or
+ * pipe. */
 enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struct tri_text_options *options,
                                     struct tri_sink *sink, struct tri_error *error);
 
