@@ -49,7 +49,7 @@ struct gmsh {
     int64_t n_inner;                          /* nodes that no other part has */
     int64_t *border;                          /* [n_nodes - n_inner] the others */
     int64_t first;                            /* of the rows of a block */
-    int32_t k;                                /* column of a data section */
+    int32_t k;                                /* column of a data section, or MARKER */
 };
 
 /* --- what is in the file */
@@ -75,21 +75,12 @@ static int count_blocks(const struct groups *groups)
     return n;
 }
 
-static void choose_all(struct groups *groups)
-{
-    groups->place = NULL;
-    for (int k = 0; k < groups->n; k++) {
-        groups->first[k] = groups->all.first[k];
-        groups->end[k] = groups->all.first[k + 1];
-    }
-}
-
-/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. */
+/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. NULL: each is its own. */
 static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t bound)
 {
     while (at < end) {
         const int64_t middle = at + (end - at) / 2;
-        if (place[middle] < bound)
+        if ((place ? place[middle] : middle) < bound)
             at = middle + 1;
         else
             end = middle;
@@ -97,8 +88,9 @@ static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t
     return at;
 }
 
-/* Places at .. end - 1 of a list of the parts; they ascend, as groups do. Returns how many they are. */
-static int64_t choose_some(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
+/* Places at .. end - 1 of a list of the parts, or, where that is NULL, of all; they ascend, as groups do. Returns how
+ * many they are. */
+static int64_t choose(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
 {
     const int64_t n = end - at;
     groups->place = place;
@@ -452,68 +444,55 @@ static enum tri_status write_elements(struct gmsh *g)
     return status ? status : put_text(g, "\n$EndElements\n");
 }
 
-/* --- data: a tag and a number */
+/* --- data: a tag and a number; triangles have no marker, and segments no attributes: 0 */
+
+enum { MARKER = -1 };
 
 static char *put_datum(char *at, int64_t tag, double value)
 {
     return tri_put_f64(tri_put_i32(at, (int32_t)tag), value);
 }
 
-static char *node_marker_row(void *user, size_t i, char *at)
+static char *node_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
     const int64_t node = node_at(g, (int64_t)i);
     struct tri_grid_point point;
+    if (g->k != MARKER)
+        return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
     g->grid->point(g->grid->user, node, &point);
     return put_datum(at, node + 1, point.marker);
 }
 
-static char *node_attribute_row(void *user, size_t i, char *at)
+static char *triangle_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    const int64_t node = node_at(g, (int64_t)i);
-    return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
+    const int64_t tag = element_tag(g, &g->surfaces, g->first + (int64_t)i);
+    const bool none = g->k == MARKER;
+    return put_datum(at, tag, none ? 0 : g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k));
 }
 
-/* Triangles have no marker, and segments no attributes. */
-static char *triangle_zero_row(void *user, size_t i, char *at)
+static char *segment_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), 0);
-}
-
-static char *triangle_attribute_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    const double value = g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k);
-    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), value);
-}
-
-static char *segment_zero_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), 0);
-}
-
-static char *segment_marker_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    const double value = tri_segment_group(g->grid, item_at(g, &g->curves, i));
-    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), value);
+    const int64_t tag = element_tag(g, &g->curves, g->first + (int64_t)i);
+    return put_datum(at, tag, g->k == MARKER ? tri_segment_group(g->grid, item_at(g, &g->curves, i)) : 0);
 }
 
 /* Without time: one step, one component. */
-static enum tri_status begin_data(const struct gmsh *g, const char *section, const char *name, int64_t n)
+static enum tri_status begin_data(const struct gmsh *g, const char *section, int64_t n)
 {
-    char head[192];
+    char head[192], name[32] = "marker";
+    if (g->k != MARKER)
+        snprintf(name, sizeof name, "attribute %" PRId32, g->k);
     snprintf(head, sizeof head, "$%s\n1\n\"%s\"\n1\n0\n3\n0\n1\n%" PRId64 "\n", section, name, n);
     return put_text(g, head);
 }
 
-static enum tri_status write_node_data(struct gmsh *g, const char *name, char *(*row)(void *, size_t, char *))
+static enum tri_status write_node_data(struct gmsh *g)
 {
-    enum tri_status status = begin_data(g, "NodeData", name, g->n_nodes);
-    status = status ? status : put_rows(g, g->n_nodes, 12, row);
+    enum tri_status status = begin_data(g, "NodeData", g->n_nodes);
+    status = status ? status : put_rows(g, g->n_nodes, 12, node_datum);
     return status ? status : put_text(g, "\n$EndNodeData\n");
 }
 
@@ -528,36 +507,29 @@ static enum tri_status put_data_blocks(struct gmsh *g, const struct groups *grou
     return status;
 }
 
-static enum tri_status write_element_data(struct gmsh *g, const char *name, char *(*triangle)(void *, size_t, char *),
-                                          char *(*segment)(void *, size_t, char *))
+static enum tri_status write_element_data(struct gmsh *g)
 {
-    enum tri_status status = begin_data(g, "ElementData", name, g->n_triangles + g->n_segments);
-    status = status ? status : put_data_blocks(g, &g->surfaces, triangle);
-    status = status ? status : put_data_blocks(g, &g->curves, segment);
+    enum tri_status status = begin_data(g, "ElementData", g->n_triangles + g->n_segments);
+    status = status ? status : put_data_blocks(g, &g->surfaces, triangle_datum);
+    status = status ? status : put_data_blocks(g, &g->curves, segment_datum);
     return status ? status : put_text(g, "\n$EndElementData\n");
-}
-
-static const char *name_column(char name[32], int32_t k)
-{
-    snprintf(name, 32, "attribute %" PRId32, k);
-    return name;
 }
 
 static enum tri_status write_all_data(struct gmsh *g)
 {
     const struct tri_grid *grid = g->grid;
     enum tri_status status = TRI_OK;
-    char name[32];
     if (grid->n_points > INT32_MAX || grid->n_triangles + grid->n_segments > INT32_MAX)
         return TRI_OK; /* the format has no room for their tags */
+    g->k = MARKER;
     if (grid->has_markers) {
-        status = write_node_data(g, "marker", node_marker_row);
-        status = status ? status : write_element_data(g, "marker", triangle_zero_row, segment_marker_row);
+        status = write_node_data(g);
+        status = status ? status : write_element_data(g);
     }
     for (g->k = 0; g->k < grid->n_attributes && !status; g->k++)
-        status = write_node_data(g, name_column(name, g->k), node_attribute_row);
+        status = write_node_data(g);
     for (g->k = 0; g->k < grid->n_columns && !status; g->k++)
-        status = write_element_data(g, name_column(name, g->k), triangle_attribute_row, segment_zero_row);
+        status = write_element_data(g);
     return status;
 }
 
@@ -605,8 +577,8 @@ enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *
     struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
                      .n_inner = grid->n_points, .n_triangles = grid->n_triangles, .n_segments = grid->n_segments};
     enum tri_status status = begin(&g);
-    choose_all(&g.surfaces);
-    choose_all(&g.curves);
+    choose(&g.surfaces, NULL, 0, grid->n_triangles);
+    choose(&g.curves, NULL, 0, grid->n_segments);
     status = status ? status : write_all(&g);
     end(&g);
     return status;
@@ -617,8 +589,8 @@ static enum tri_status write_part(struct gmsh *g, int part, struct tri_output *o
     const struct tri_parts *p = g->parts;
     g->part = part;
     g->output = output;
-    g->n_triangles = choose_some(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
-    g->n_segments = choose_some(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
+    g->n_triangles = choose(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
+    g->n_segments = choose(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
     enum tri_status status = choose_nodes(g);
     status = status ? status : write_all(g);
     free(g->border);

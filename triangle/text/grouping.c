@@ -71,8 +71,7 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
     }
     accumulate(g);
     g->storage = grid->storage;
-    const size_t bytes = (size_t)n * sizeof *g->order;
-    g->order = g->storage ? g->storage->extra(g->storage->user, bytes) : malloc(bytes);
+    g->order = tri_room(g->storage, n, sizeof *g->order);
     if (!g->order)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to group %lld items: %s", (long long)n,
                         strerror(errno));
@@ -84,11 +83,22 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
 
 void tri_grouping_free(struct tri_grouping *g)
 {
-    if (g->order && g->storage)
-        g->storage->extra_free(g->storage->user, g->order);
-    else
-        free(g->order);
+    tri_room_free(g->storage, g->order);
     g->order = NULL;
+}
+
+void *tri_room(const struct tri_storage *storage, int64_t n, size_t bytes)
+{
+    const size_t all = (size_t)n * bytes;
+    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
+}
+
+void tri_room_free(const struct tri_storage *storage, void *room)
+{
+    if (room && storage)
+        storage->extra_free(storage->user, room);
+    else
+        free(room);
 }
 
 int32_t tri_group_tag(double value)

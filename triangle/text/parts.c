@@ -53,20 +53,6 @@ struct work {
     bool no_memory;
 };
 
-static void *get(const struct tri_storage *storage, int64_t n, size_t bytes)
-{
-    const size_t all = (size_t)n * bytes;
-    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
-}
-
-static void give_back(const struct tri_storage *storage, void *at)
-{
-    if (at && storage)
-        storage->extra_free(storage->user, at);
-    else
-        free(at);
-}
-
 /* --- cutting the plane */
 
 static int by_axis(int axis, const struct site *a, const struct site *b)
@@ -412,12 +398,12 @@ static enum tri_status get_room(struct work *w, struct tri_error *error)
 {
     const struct tri_grid *g = w->grid;
     struct tri_parts *p = w->parts;
-    w->part = get(p->storage, g->n_triangles, sizeof *w->part);
-    w->user = get(p->storage, g->n_points, sizeof *w->user);
-    w->segment_part = get(p->storage, g->n_segments, sizeof *w->segment_part);
-    p->triangle = get(p->storage, g->n_triangles, sizeof *p->triangle);
-    p->inner = get(p->storage, g->n_points, sizeof *p->inner);
-    p->segment = get(p->storage, g->n_segments, sizeof *p->segment);
+    w->part = tri_room(p->storage, g->n_triangles, sizeof *w->part);
+    w->user = tri_room(p->storage, g->n_points, sizeof *w->user);
+    w->segment_part = tri_room(p->storage, g->n_segments, sizeof *w->segment_part);
+    p->triangle = tri_room(p->storage, g->n_triangles, sizeof *p->triangle);
+    p->inner = tri_room(p->storage, g->n_points, sizeof *p->inner);
+    p->segment = tri_room(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts: %s", strerror(errno));
     for (int64_t i = 0; i < g->n_points; i++) {
@@ -441,9 +427,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
         status = assign_segments(&w, error);
     }
     status = status ? status : make_lists(&w, surfaces, curves, error);
-    give_back(parts->storage, w.part);
-    give_back(parts->storage, w.user);
-    give_back(parts->storage, w.segment_part);
+    tri_room_free(parts->storage, w.part);
+    tri_room_free(parts->storage, w.user);
+    tri_room_free(parts->storage, w.segment_part);
     free(w.use);
     free(w.edge);
     return status;
@@ -451,9 +437,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
 
 void tri_parts_free(struct tri_parts *parts)
 {
-    give_back(parts->storage, parts->triangle);
-    give_back(parts->storage, parts->inner);
-    give_back(parts->storage, parts->segment);
+    tri_room_free(parts->storage, parts->triangle);
+    tri_room_free(parts->storage, parts->inner);
+    tri_room_free(parts->storage, parts->segment);
     free(parts->shared);
     free(parts->part_list);
     free(parts->first_shared);
