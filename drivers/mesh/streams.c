@@ -169,33 +169,11 @@ struct piece {
     const struct tri_mesh *mesh; /* of the grid */
     const struct tri_sink *sink;
     int64_t n_before;            /* points that there were before refinement */
-    double (*points)[2], *attributes;
-    int32_t *point_markers, *regions, *segment_markers;
-    int64_t (*corners)[3], (*ends)[2];
+    double points[PIECE][2];
+    int32_t point_markers[PIECE], regions[PIECE], segment_markers[PIECE];
+    int64_t corners[PIECE][3], ends[PIECE][2];
+    double attributes[];         /* [PIECE][grid->n_attributes] */
 };
-
-static bool reserve(struct piece *p)
-{
-    p->points = malloc(PIECE * sizeof *p->points);
-    p->attributes = malloc((size_t)PIECE * (size_t)p->grid->n_attributes * sizeof *p->attributes + 1);
-    p->point_markers = malloc(PIECE * sizeof *p->point_markers);
-    p->regions = malloc(PIECE * sizeof *p->regions);
-    p->segment_markers = malloc(PIECE * sizeof *p->segment_markers);
-    p->corners = malloc(PIECE * sizeof *p->corners);
-    p->ends = malloc(PIECE * sizeof *p->ends);
-    return p->points && p->attributes && p->point_markers && p->regions && p->segment_markers && p->corners && p->ends;
-}
-
-static void release(struct piece *p)
-{
-    free(p->points);
-    free(p->attributes);
-    free(p->point_markers);
-    free(p->regions);
-    free(p->segment_markers);
-    free(p->corners);
-    free(p->ends);
-}
 
 static int32_t least(int64_t a, int64_t b) { return (int32_t)(a < b ? a : b); }
 
@@ -203,6 +181,7 @@ static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t e
 {
     const struct tri_grid *g = p->grid;
     int32_t place = first < p->n_before ? -1 : 0;
+    double *attribute = p->attributes;
     struct tri_tile tile = {.column = place, .row = place, .first_vertex = first,
                             .n_vertices = least(end - first, PIECE), .points = (const double(*)[2])p->points,
                             .point_markers = p->point_markers, .attributes = p->attributes};
@@ -212,7 +191,7 @@ static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t e
         memcpy(p->points[i], point.at, sizeof point.at);
         p->point_markers[i] = point.marker;
         for (int32_t k = 0; k < g->n_attributes; k++)
-            p->attributes[(size_t)i * (size_t)g->n_attributes + (size_t)k] = g->attribute(g->user, first + i, k);
+            *attribute++ = g->attribute(g->user, first + i, k);
     }
     return p->sink->take(p->sink->user, &tile, error);
 }
@@ -272,20 +251,13 @@ static double *columns_of(const struct tri_mesh *mesh, int32_t n_columns)
     return columns;
 }
 
-static enum tri_status hand_out(struct piece *p, struct tri_error *error)
+static enum tri_status hand_out(struct piece *p, const double *columns, struct tri_error *error)
 {
-    double *columns = columns_of(p->mesh, p->grid->n_columns);
     struct tri_stream stream = {.n_attributes = p->grid->n_attributes, .n_columns = p->grid->n_columns,
                                 .n_regions = p->mesh->n_regions, .regions = columns,
                                 .estimate = (double)p->grid->n_triangles, .n_ranks = 1};
-    enum tri_status status = TRI_OK;
-    if (!columns || !reserve(p))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
-    status = status ? status : p->sink->begin(p->sink->user, &stream, error);
-    status = status ? status : hand_out_all(p, error);
-    release(p);
-    free(columns);
-    return status;
+    enum tri_status status = p->sink->begin(p->sink->user, &stream, error);
+    return status ? status : hand_out_all(p, error);
 }
 
 enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
@@ -296,9 +268,21 @@ enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const 
     options.is_edge = s->segments ? run->is_edge : NULL;
     struct tri_grid grid;
     enum tri_status status = tri_grid_make(&grid, &options, error);
-    int64_t left_out = status ? 0 : run->mesh.n_vertices - grid.n_points; /* with -j: none of them is new */
-    struct piece piece = {.grid = &grid, .mesh = &run->mesh, .sink = sink, .n_before = n_before - left_out};
-    status = status ? status : hand_out(&piece, error);
+    if (status)
+        return status;
+    struct piece *piece = malloc(sizeof *piece + PIECE * (size_t)grid.n_attributes * sizeof *piece->attributes);
+    double *columns = columns_of(&run->mesh, grid.n_columns);
+    if (piece && columns) {
+        piece->grid = &grid;
+        piece->mesh = &run->mesh;
+        piece->sink = sink;
+        piece->n_before = n_before - (run->mesh.n_vertices - grid.n_points); /* with -j: none of these is new */
+        status = hand_out(piece, columns, error);
+    } else {
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+    }
+    free(piece);
+    free(columns);
     tri_grid_free(&grid);
     return status;
 }
