@@ -30,16 +30,6 @@ void console_say(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
-void console_detail(const struct console *console, int verbosity, const char *format, ...)
-{
-    if (console->verbosity < verbosity)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    one_line_print(stdout, format, arguments);
-    va_end(arguments);
-}
-
 void console_warn(const struct console *console, const char *format, ...)
 {
     if (console->quiet)

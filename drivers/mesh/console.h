@@ -34,9 +34,6 @@ void console_open(void);
 /* A line or a part of one, unless quiet. */
 void console_say(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 
-/* A line of the given verbosity (number of V), also if quiet. */
-void console_detail(const struct console *console, int verbosity, const char *format, ...) CONSOLE_FORMAT(3, 4);
-
 /* "Warning:  " and the text; the caller ends the line. */
 void console_warn(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 

@@ -513,7 +513,7 @@ static enum tri_status tell(struct runner *r)
     run->counts.subsegments += run->report.loose;
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
-        summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);
+        summary_shapes(&run->mesh, &run->report, run->hooks->executor);
     return s->check ? check(r) : TRI_OK;
 }
 

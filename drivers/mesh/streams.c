@@ -10,17 +10,7 @@ static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
 /* --- names */
 
-char *stream_xdmf(const char *name)
-{
-    static const char suffix[] = ".xdmf";
-    size_t n = strlen(name) - strlen(STREAM_SUFFIX);
-    char *path = malloc(n + sizeof suffix);
-    if (path) {
-        memcpy(path, name, n);
-        memcpy(path + n, suffix, sizeof suffix);
-    }
-    return path;
-}
+char *stream_xdmf(const char *name) { return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf"); }
 
 static const char *without_folder(const char *name)
 {
@@ -34,11 +24,12 @@ static enum tri_status open_stream(struct stream *s, const char *name, bool mark
                                    struct tri_output_set *set, struct tri_error *error)
 {
     s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
-    s->xdmf = stream_xdmf(name);
-    if (!s->xdmf)
+    char *xdmf = stream_xdmf(name);
+    if (!xdmf)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, name, &s->options.file, error);
-    status = status ? status : interrupt_open(set, s->xdmf, &s->options.xdmf, error);
+    status = status ? status : interrupt_open(set, xdmf, &s->options.xdmf, error);
+    free(xdmf);
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
@@ -103,11 +94,8 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
 
 void streams_close(struct streams *streams)
 {
-    for (int i = 0; i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        tri_h5_writer_free(s->writer);
-        free(s->xdmf);
-    }
+    for (int i = 0; i < streams->n; i++)
+        tri_h5_writer_free(streams->stream[i].writer);
     tri_text_stream_free(streams->text);
     tri_tile_store_free(streams->store);
     streams->text = NULL;

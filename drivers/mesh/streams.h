@@ -17,7 +17,6 @@ enum { STREAMS_MOST = 4 };
 
 /* One HDF5 file and the text beside it. */
 struct stream {
-    char *xdmf; /* name */
     struct tri_h5_options options;
     struct tri_h5_writer *writer;
 };

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
@@ -124,8 +125,8 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
 
 /* --- wider numbers */
 
-/* Moves a chunk, by way of the buffer. What lies in a file must not depend on what has lain there before: the place is
- * empty afterwards. */
+/* Moves a chunk, by way of the buffer. What lies in a file must not depend on what has lain there before: the place holds
+ * zeros afterwards. */
 static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from, int64_t to, char *buffer,
                                   struct tri_error *error)
 {
@@ -134,8 +135,9 @@ static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from
     if (!tri_read_again(output->file, buffer, half, (uint64_t)from))
         return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot read again", errno);
     tri_h5_widen_numbers(buffer, half / 4);
-    int result = tri_output_clear(output, (uint64_t)from, half);
-    result = result ? result : tri_output_write_at(output, (uint64_t)to, buffer, bytes);
+    int result = tri_output_write_at(output, (uint64_t)to, buffer, bytes);
+    memset(buffer, 0, half);
+    result = result ? result : tri_output_write_at(output, (uint64_t)from, buffer, half);
     return tri_output_conclude(output, result, error);
 }
 

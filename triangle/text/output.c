@@ -457,29 +457,6 @@ enum tri_status tri_output_write(struct tri_output *output, const char *data, si
     return tri_output_conclude(output, tri_output_write_at(output, place, data, size), error);
 }
 
-static bool punch_hole(const struct tri_output *output, uint64_t place, uint64_t size)
-{
-#ifdef FALLOC_FL_PUNCH_HOLE
-    return fallocate(output->file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, (off_t)place, (off_t)size) == 0;
-#else
-    (void)output, (void)place, (void)size;
-    return false;
-#endif
-}
-
-int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t size)
-{
-    static const char zeros[1 << 16];
-    int result = 0;
-    if (size == 0 || punch_hole(output, place, size))
-        return 0;
-    for (uint64_t done = 0; done < size && !result; done += sizeof zeros) {
-        const uint64_t left = size - done;
-        result = tri_output_write_at(output, place + done, zeros, left < sizeof zeros ? (size_t)left : sizeof zeros);
-    }
-    return result;
-}
-
 enum { SHIFT_BYTES = 1 << 20 };
 
 /* Forwards from the end, so that nothing is overwritten before it has been moved; backwards from the begin. */

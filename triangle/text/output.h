@@ -83,9 +83,6 @@ enum { TRI_OUTPUT_STOPPED = -1 };
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
 enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
 
-/* Zeros in a place that has been written, on the disk nothing where that can be. Returns the same. */
-int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t size);
-
 /* A descriptor of a file that has places, past the system's cache where that can be: then memory, sizes and places must
  * be aligned for it. Stays open until the output is closed. */
 int tri_output_direct(struct tri_output *output);
