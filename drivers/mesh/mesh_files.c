@@ -36,7 +36,7 @@ static enum plan asked(bool by_switch, bool suppressed)
 static enum plan plan_of(const struct mesh_files *f, int kind)
 {
     const struct tri_switches *s = &f->arguments->switches;
-    const bool any = !f->exports_alone;
+    const bool any = !long_options_exports_alone(f->options);
     switch (kind) {
     case NODE: return asked(any, s->no_node || (s->no_iteration && !f->points_in_poly));
     case ELE: return asked(any, s->no_ele);
@@ -72,7 +72,7 @@ static enum tri_status try_file(struct tri_output_set *set, const char *path, co
 static enum tri_status try_export(struct tri_output_set *set, const struct mesh_files *files, const char *path,
                                   const struct file_names *read, struct tri_error *error)
 {
-    const struct export export = export_of(path, files->n_parts);
+    const struct export export = export_of(path, files->options->n_parts);
     enum tri_status status = TRI_OK;
     for (int i = 0; i < export_files(&export) && !status; i++) {
         char *name = export_name(&export, path, i);
@@ -96,8 +96,8 @@ static enum tri_status try_all(struct tri_output_set *set, const struct mesh_fil
                       : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         free(path);
     }
-    for (int i = 0; i < files->exports->n && !status; i++)
-        status = try_export(set, files, files->exports->name[i], read, error);
+    for (int i = 0; i < files->options->n_exports && !status; i++)
+        status = try_export(set, files, files->options->exports[i], read, error);
     for (int i = 0; i < further->n && !status; i++)
         status = try_file(set, further->name[i], read, error);
     return status;
@@ -140,7 +140,7 @@ static enum tri_status write_file(struct writer *w, const struct kind *kind)
 /* In another program's format, which need not know comments. */
 static enum tri_status write_export(struct writer *w, const char *path)
 {
-    struct export export = export_of(path, w->files->n_parts);
+    struct export export = export_of(path, w->files->options->n_parts);
     char *first = export_name(&export, path, 0), *last = export_name(&export, path, export_files(&export) - 1);
     if (first && last)
         console_say(w->files->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
@@ -162,8 +162,8 @@ static enum tri_status write_all(struct writer *w)
         if (status)
             return status;
     }
-    for (int i = 0; i < w->files->exports->n && !status; i++)
-        status = write_export(w, w->files->exports->name[i]);
+    for (int i = 0; i < w->files->options->n_exports && !status; i++)
+        status = write_export(w, w->files->options->exports[i]);
     return status;
 }
 

@@ -4,6 +4,7 @@
 
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/console.h"
+#include "drivers/mesh/long_options.h"
 #include "triangle/base/executor.h"
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/mesh.h"
@@ -31,9 +32,7 @@ struct mesh_files {
     bool points_in_poly;                 /* the points came from a .poly file */
     int32_t base;                        /* 0 or 1 */
     const struct tri_elements *elements; /* -r: the input's triangles; else n is 0 */
-    const struct file_names *exports;    /* files in the formats that their suffixes name */
-    bool exports_alone;                  /* no others */
-    int n_parts;                         /* into which exports are cut that can be; 0: none */
+    const struct long_options *options;  /* files in other formats, and how */
     const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
                                             NULL: no -r */
 };
@@ -42,7 +41,7 @@ struct mesh_files {
 bool mesh_files_has(const struct mesh_files *files, const char *suffix);
 
 /* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
- * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, exports and
+ * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, options and
  * points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
                                  const struct file_names *read, struct tri_error *error);

@@ -45,8 +45,7 @@ struct program {
     struct progress progress;
     struct restart restart;
     char *scratch;             /* folder for what does not fit in memory */
-    struct file_names h5;      /* HDF5 files that are wanted */
-    char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
+    char *xdmf[STREAMS_MOST];  /* names of the texts beside HDF5 files */
     struct streams streams;
     struct par_park *park;     /* of the mesh, as long as that lives */
     struct joint_files joint;  /* on several ranks */
@@ -58,25 +57,16 @@ struct program {
     struct rank_report ranks;
 };
 
-/* Tests run the schedule on small inputs: a build with tests takes the triangles in a cell from the environment. */
-static double cell_for_tests(void)
+/* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
+ * and a sweep of what would fit in memory. 0: nothing. */
+static double for_tests(const char *name)
 {
 #ifdef PTRIANGLE_TESTS
-    const char *text = getenv("PTRIANGLE_TEST_BLOCK");
-    long triangles = text ? strtol(text, NULL, 10) : 0;
-    return triangles > 0 ? (double)triangles : 0;
+    const char *text = getenv(name);
+    return text ? fmax(strtod(text, NULL), 0) : 0;
 #else
+    (void)name;
     return 0;
-#endif
-}
-
-/* And sweep what would fit in memory. */
-static bool sweep_for_tests(void)
-{
-#ifdef PTRIANGLE_TESTS
-    return getenv("PTRIANGLE_TEST_SWEEP") != NULL;
-#else
-    return false;
 #endif
 }
 
@@ -104,13 +94,13 @@ static struct par_options options_of(struct program *p, const struct run *run)
     struct par_options options = par_defaults();
     options.threads = p->threads;
     options.by_block = p->options.by_block;
-    options.cell_triangles = cell_for_tests();
+    options.cell_triangles = for_tests("PTRIANGLE_TEST_BLOCK");
     options.progress = follow;
     options.progress_user = p;
     options.figure = &run->pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
-    bool bounded = run->hooks->limits.memory > 0 || (run->plan.swept && !p->launch.carrier);
+    bool bounded = run->hooks->options->memory > 0 || (run->plan.swept && !p->launch.carrier);
     if (bounded && run->plan.memory < HUGE_VAL)
         options.memory = (int64_t)run->plan.memory;
     options.count_remaining = !run->arguments->switches.quiet || p->options.report;
@@ -181,8 +171,8 @@ static void show_streams(struct program *p)
 static enum tri_status join_files(struct program *p, const struct run *run, enum tri_status status,
                                   struct tri_error *error)
 {
-    const struct run_limits *limits = &run->hooks->limits;
-    const bool ends_at_once = !limits->write_partial && !limits->checkpoint;
+    const struct long_options *limits = run->hooks->options;
+    const bool ends_at_once = !limits->write_partial && !long_options_state(limits);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
                                     .text_options = {.base = run->base, .figure = &run->pslg,
@@ -210,7 +200,7 @@ static enum tri_status refine_into(struct program *p, struct run *run, const str
 {
     struct par_options options = options_of(p, run);
     struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
-    if (run->hooks->limits.memory > 0)
+    if (run->hooks->options->memory > 0)
         relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
     const struct tri_sink relayed = par_relay_sink(&relay);
     options.carrier = p->launch.carrier;
@@ -274,7 +264,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     const struct tri_sink streams = streams_sink(&p->streams);
     enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
     int64_t unused = mesh->n_vertices - before.vertices;
-    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    status = status ? status : streams_open(&p->streams, run, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
     status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
     if (p->launch.carrier)
@@ -295,7 +285,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
 static enum tri_status report_ranks(struct program *p, const struct run *run, enum tri_status status,
                                     struct tri_error *error)
 {
-    const bool is_kept = status == TRI_STOPPED && run->hooks->limits.write_partial;
+    const bool is_kept = status == TRI_STOPPED && run->hooks->options->write_partial;
     enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
                                                 error);
     return shared ? shared : status;
@@ -366,10 +356,10 @@ static enum tri_status write_streams(struct program *p, struct run *run, struct 
                                      struct tri_error *error)
 {
     const struct tri_sink sink = streams_sink(&p->streams);
-    if (p->h5.n == 0)
+    if (p->options.n_streams == 0)
         return TRI_OK;
-    enum tri_status status = make_room(p, &run->mesh, estimate_streams(p->h5.n, run->mesh.n_triangles), error);
-    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    enum tri_status status = make_room(p, &run->mesh, estimate_streams(run, run->mesh.n_triangles), error);
+    status = status ? status : streams_open(&p->streams, run, set, error);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
     status = status ? status : streams_hand_out(run, n_before, &sink, error);
     streams_close(&p->streams);
@@ -536,17 +526,10 @@ static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, 
         p->xdmf[i] = stream_xdmf(p->options.streams[i]);
         if (!p->xdmf[i])
             return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        add_further(&p->h5, p->options.streams[i]);
         add_further(&hooks->further, p->options.streams[i]);
         add_further(&hooks->further, p->xdmf[i]);
     }
     return TRI_OK;
-}
-
-/* What of the long options asks for the whole mesh at a time. */
-static const char *whole_mesh(const struct long_options *o)
-{
-    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 
 static struct run_hooks hooks_of(struct program *p)
@@ -555,21 +538,12 @@ static struct run_hooks hooks_of(struct program *p)
     bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
                               .write = write_further, .streams = true,
-                              .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
+                              .always_sweep = goes_on || p->launch.carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
                               .written_elsewhere = p->launch.rank > 0,
                               .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
                               .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
-                              .whole_mesh = whole_mesh(o), .threads = p->threads,
-                              .cell_triangles = par_triangles_in_cell, .user = p,
-                              .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
-                                         .dry_run = o->dry_run, .memory = o->memory, .scratch = p->scratch,
-                                         .checkpoint = o->resume ? o->resume : o->checkpoint}};
-    for (int i = 0; i < o->n_exports; i++)
-        add_further(&hooks.exports, o->exports[i]);
-    hooks.n_parts = o->n_parts;
-    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
-    hooks.first_file = o->n_streams > 0 ? o->streams[0] : hooks.exports_alone ? o->exports[0] : NULL;
-    hooks.n_streamed = o->n_streams;
+                              .threads = p->threads, .cell_triangles = par_triangles_in_cell, .options = o,
+                              .user = p};
     add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
     add_further(&hooks.further, o->blocks);
     return hooks;
@@ -581,7 +555,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     p->quiet = arguments->switches.quiet;
     p->progress = progress_start(PROGRAM, p->options.progress, p->quiet);
     const struct tri_executor executor = par_executor(&p->threads);
-    p->scratch = scratch_of(&p->options, arguments);
+    p->options.scratch = p->scratch = scratch_of(&p->options, arguments);
     struct run_hooks hooks = hooks_of(p);
     hooks.executor = &executor;
     if (!p->scratch)

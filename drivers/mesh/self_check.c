@@ -7,39 +7,23 @@
 #include "triangle/check/check.h"
 #include "triangle/refine/generate.h"
 
-static void read_points(const struct tri_mesh *mesh, int64_t first, int64_t n, double (*out)[2])
-{
-    for (int64_t i = 0; i < n; i++) {
-        out[i][0] = mesh->xy[first + i].x;
-        out[i][1] = mesh->xy[first + i].y;
-    }
-}
-
-static void read_corners(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[3])
-{
-    for (int64_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++)
-            out[i][k] = mesh->tri[first + i].v[k];
-}
-
-static void read_ends(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[2])
-{
-    for (int64_t i = 0; i < n; i++)
-        for (int k = 0; k < 2; k++)
-            out[i][k] = mesh->sub[first + i].v[k];
-}
-
 static enum tri_status read_mesh(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                  struct tri_error *error)
 {
     const struct tri_mesh *mesh = user;
+    double(*points)[2] = out;
+    int64_t *number = out;
     (void)error;
-    if (array == TRI_CHECK_POINTS)
-        read_points(mesh, first, n, out);
-    else if (array == TRI_CHECK_CORNERS)
-        read_corners(mesh, first, n, out);
-    else
-        read_ends(mesh, first, n, out);
+    for (int64_t i = first; i < first + n; i++) {
+        if (array == TRI_CHECK_POINTS) {
+            points[i - first][0] = mesh->xy[i].x;
+            points[i - first][1] = mesh->xy[i].y;
+        }
+        for (int k = 0; array == TRI_CHECK_CORNERS && k < 3; k++)
+            *number++ = mesh->tri[i].v[k];
+        for (int k = 0; array == TRI_CHECK_SEGMENT_ENDS && k < 2; k++)
+            *number++ = mesh->sub[i].v[k];
+    }
     return TRI_OK;
 }
 

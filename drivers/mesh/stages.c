@@ -251,7 +251,7 @@ static void follow_stage(void *user, enum tri_stage begins)
 /* A stop that nobody has noticed counts as one up to here, unless the mesh is finished, and not kept elsewhere. */
 static enum tri_status notice_stop(struct runner *r, enum tri_status status)
 {
-    if (r->built && r->run.hooks->limits.checkpoint)
+    if (r->built && long_options_state(r->run.hooks->options))
         return status;
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
@@ -275,7 +275,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
 static void begin_outputs(const struct runner *r)
 {
     interrupt_begin(&outputs);
-    if (r->run.hooks->limits.write_partial || r->run.hooks->limits.checkpoint)
+    if (r->run.hooks->options->write_partial || long_options_state(r->run.hooks->options))
         outputs.stop = interrupt_end();
 }
 
@@ -432,7 +432,7 @@ static void tell_of_stop(struct runner *r, bool partial)
 /* After a stop: is there a mesh, and is it wanted? Then on with it. */
 static enum tri_status keep_partial(struct runner *r, enum tri_status status)
 {
-    if (status != TRI_STOPPED || !r->built || !r->run.hooks->limits.write_partial)
+    if (status != TRI_STOPPED || !r->built || !r->run.hooks->options->write_partial)
         return status;
     tell_of_stop(r, true);
     r->run.stopped = interrupt_cause();
@@ -489,7 +489,7 @@ static enum tri_status check(struct runner *r)
 {
     const double OF_FILES = 0.75;
     const struct run *run = &r->run;
-    const struct run_limits *limits = &run->hooks->limits;
+    const struct long_options *limits = run->hooks->options;
     enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
     const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
     const struct self_check_room room = {limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch};
@@ -596,10 +596,8 @@ static enum tri_status run_stages(struct runner *r)
     struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
                                .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
                                .points_in_poly = run->points_in_poly, .base = run->base,
-                               .elements = &run->elements, .exports = &run->hooks->exports,
-                               .exports_alone = run->hooks->exports_alone,
-                               .n_parts = run->hooks->n_parts};
-    if (run->hooks->limits.dry_run)
+                               .elements = &run->elements, .options = run->hooks->options};
+    if (run->hooks->options->dry_run)
         return print_estimate(r);
     status = run->hooks->written_elsewhere ? TRI_OK : check_files(r, &files);
     status = status ? status : make_mesh(r);
@@ -611,17 +609,17 @@ static enum tri_status run_stages(struct runner *r)
 static double patience_of(const struct run_hooks *hooks)
 {
     static const double KEEPING = 3, KEEPING_ON_RANKS = 25;
-    if (hooks->limits.write_partial || hooks->written_elsewhere) /* the first task says why all end */
+    if (hooks->options->write_partial || hooks->written_elsewhere) /* the first task says why all end */
         return HUGE_VAL;
-    return !hooks->limits.checkpoint ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
+    return !long_options_state(hooks->options) ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
 }
 
 static enum tri_status run_file(struct runner *r)
 {
-    const struct run_limits *limits = &r->run.hooks->limits;
+    const struct long_options *limits = r->run.hooks->options;
     r->begin = r->mark = tri_seconds();
     resources_save_address_space();
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, patience_of(r->run.hooks)))
+    if (!interrupt_start(r->run.hooks->program, limits->time_limit, patience_of(r->run.hooks)))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status)

@@ -33,13 +33,14 @@ static enum tri_status open_stream(struct stream *s, const char *name, bool mark
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
-                             struct tri_output_set *set, struct tri_error *error)
+enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                             struct tri_error *error)
 {
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
     *streams = (struct streams){0};
-    for (int i = 0; !status && i < names->n; i++)
-        status = open_stream(&streams->stream[streams->n++], names->name[i], markers,
+    for (int i = 0; !status && i < o->n_streams; i++)
+        status = open_stream(&streams->stream[streams->n++], o->streams[i], !run->arguments->switches.no_markers,
                              &streams->sink[streams->n_sinks++], set, error);
     return status;
 }
@@ -63,7 +64,7 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
 {
     const struct arguments *a = run->arguments;
     struct mesh_files files = {.arguments = a, .points_in_poly = run->points_in_poly,
-                               .exports_alone = run->hooks->exports_alone};
+                               .options = run->hooks->options};
     struct tri_text_options *o = &streams->text_options;
     *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
                                    .argc = a->argc, .argv = a->argv};
@@ -78,16 +79,16 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
 enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
                                      struct tri_output_set *set, struct tri_error *error)
 {
-    const struct file_names *names = &run->hooks->exports;
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
     streams->markers = !run->arguments->switches.no_markers;
     streams->executor = run->hooks->executor;
-    for (int i = 0; !status && i < names->n; i++) {
-        streams->export[i] = export_of(names->name[i], run->hooks->n_parts);
-        status = export_open(&streams->export[i], names->name[i], set, error);
+    for (int i = 0; !status && i < o->n_exports; i++) {
+        streams->export[i] = export_of(o->exports[i], o->n_parts);
+        status = export_open(&streams->export[i], o->exports[i], set, error);
     }
-    streams->n_exports = names->n;
-    if (status || names->n == 0)
+    streams->n_exports = o->n_exports;
+    if (status || o->n_exports == 0)
         return status;
     return tri_tile_store_new(&streams->store, folder, &streams->sink[streams->n_sinks++], error);
 }

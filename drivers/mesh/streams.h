@@ -47,10 +47,10 @@ static inline bool stream_is_wanted(const char *name)
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
 char *stream_xdmf(const char *name);
 
-/* Opens these HDF5 files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
+/* Opens the HDF5 files of the run in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
  * committed. */
-enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
-                             struct tri_output_set *set, struct tri_error *error);
+enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                             struct tri_error *error);
 
 /* And those of Triangle's files that the run asks for. */
 enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,

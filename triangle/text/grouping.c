@@ -44,13 +44,12 @@ static void make_one(struct tri_grouping *g, int64_t n)
     g->first[1] = n;
 }
 
-/* From numbers of items to the place of the first. */
-static void accumulate(struct tri_grouping *g)
+void tri_accumulate(int64_t *first, int n)
 {
     int64_t before = 0;
-    for (int k = 0; k <= g->n; k++) {
-        int64_t own = k < g->n ? g->first[k] : 0;
-        g->first[k] = before;
+    for (int k = 0; k <= n; k++) {
+        const int64_t own = k < n ? first[k] : 0;
+        first[k] = before;
         before += own;
     }
 }
@@ -69,7 +68,7 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
         make_one(g, n);
         return TRI_OK;
     }
-    accumulate(g);
+    tri_accumulate(g->first, g->n);
     g->storage = grid->storage;
     g->order = tri_room(g->storage, n, sizeof *g->order);
     if (!g->order)

@@ -281,16 +281,6 @@ static enum tri_status assign_segments(struct work *w, struct tri_error *error)
 
 /* --- lists */
 
-static void accumulate(int64_t *first, int n)
-{
-    int64_t before = 0;
-    for (int k = 0; k <= n; k++) {
-        const int64_t own = k < n ? first[k] : 0;
-        first[k] = before;
-        before += own;
-    }
-}
-
 static int32_t part_of_triangle(const struct work *w, int64_t t) { return w->part[t]; }
 static int32_t part_of_segment(const struct work *w, int64_t s) { return w->segment_part[s]; }
 
@@ -311,7 +301,7 @@ static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(con
         if (part > 0)
             first[part - 1]++;
     }
-    accumulate(first, w->parts->n);
+    tri_accumulate(first, w->parts->n);
     memcpy(next, first, sizeof next);
     for (int64_t place = 0; place < n; place++) {
         const int32_t part = part_of(w, tri_grouped(groups, place));
@@ -449,13 +439,8 @@ void tri_parts_free(struct tri_parts *parts)
 bool tri_part_has_interface(const struct tri_parts *p, int part, int64_t interface)
 {
     const struct tri_shared_point *point = &p->shared[p->first_shared[interface]];
-    int32_t low = 0, high = point->n;
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        if (point->part[middle] < part)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < point->n && point->part[low] == part;
+    for (int32_t k = 0; k < point->n; k++)
+        if (point->part[k] == part)
+            return true;
+    return false;
 }
