@@ -49,6 +49,12 @@ static inline bool long_options_exports_alone(const struct long_options *o)
     return o->n_exports + o->n_streams > 0 && !o->output;
 }
 
+/* Does its name, "-", stand for standard output? */
+static inline bool long_options_report_is_printed(const struct long_options *o)
+{
+    return o->report[0] == '-' && o->report[1] == 0;
+}
+
 /* Takes argv[*at], which begins with two dashes, and the next word too where that is its value (--name value; or
  * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches
  * -a and -q, but take exponents. What comes later replaces what came before. TRI_BAD_INPUT: an unknown option, a value

@@ -45,7 +45,6 @@ struct program {
     struct progress progress;
     struct restart restart;
     char *scratch;             /* folder for what does not fit in memory */
-    char *xdmf[STREAMS_MOST];  /* names of the texts beside HDF5 files */
     struct streams streams;
     struct par_park *park;     /* of the mesh, as long as that lives */
     struct joint_files joint;  /* on several ranks */
@@ -488,12 +487,6 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
 
 /* --- all together */
 
-static void add_further(struct file_names *names, const char *name)
-{
-    if (name)
-        names->name[names->n++] = name;
-}
-
 /* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
 static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
 {
@@ -519,34 +512,17 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
     return TRI_OK;
 }
 
-/* HDF5 files, and the texts beside them, are checked as all files are. */
-static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
-{
-    for (int i = 0; i < p->options.n_streams; i++) {
-        p->xdmf[i] = stream_xdmf(p->options.streams[i]);
-        if (!p->xdmf[i])
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        add_further(&hooks->further, p->options.streams[i]);
-        add_further(&hooks->further, p->xdmf[i]);
-    }
-    return TRI_OK;
-}
-
 static struct run_hooks hooks_of(struct program *p)
 {
-    const struct long_options *o = &p->options;
-    bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
-    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
+    const struct par_carrier *carrier = p->launch.carrier;
+    const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
+    return (struct run_hooks){.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
                               .write = write_further, .streams = true,
-                              .always_sweep = goes_on || p->launch.carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
-                              .written_elsewhere = p->launch.rank > 0,
-                              .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
-                              .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
-                              .threads = p->threads, .cell_triangles = par_triangles_in_cell, .options = o,
-                              .user = p};
-    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
-    add_further(&hooks.further, o->blocks);
-    return hooks;
+                              .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
+                              .written_elsewhere = p->launch.rank > 0, .n_ranks = carrier ? carrier->n_ranks : 0,
+                              .share = carrier ? share : NULL, .agree = carrier ? agree : NULL,
+                              .threads = p->threads, .cell_triangles = par_triangles_in_cell,
+                              .options = &p->options, .user = p};
 }
 
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
@@ -558,9 +534,8 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     p->options.scratch = p->scratch = scratch_of(&p->options, arguments);
     struct run_hooks hooks = hooks_of(p);
     hooks.executor = &executor;
-    if (!p->scratch)
+    if (!p->scratch) {
         tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    if (!p->scratch || name_streams(p, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
@@ -581,8 +556,6 @@ static void free_program(struct program *p)
     par_report_free(&p->schedule);
     free(p->scratch);
     free(p->ranks.number);
-    for (int i = 0; i < STREAMS_MOST; i++)
-        free(p->xdmf[i]);
 }
 
 /* One task goes on where several were at work. */

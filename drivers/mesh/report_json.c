@@ -220,7 +220,7 @@ static enum tri_status write_text(const char *path, struct tri_output_set *set, 
                                   struct tri_error *error)
 {
     struct tri_output *output;
-    if (report_is_printed(path)) {
+    if (path[0] == '-' && path[1] == 0) {
         puts(text);
         return TRI_OK; /* the caller looks whether all that was printed is out */
     }

@@ -466,7 +466,7 @@ static double list_bytes(const struct tri_switches *s, const struct tri_mesh *me
     return ((s->second_order ? 18 : edges ? 6 : 0) + (s->jettison ? 4 : 0)) * (double)mesh->n_triangles;
 }
 
-static enum tri_status write_mesh(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_mesh(struct runner *r)
 {
     struct run *run = &r->run;
     if (run->arguments->switches.second_order)
@@ -475,7 +475,7 @@ static enum tri_status write_mesh(struct runner *r, const struct mesh_files *fil
     r->mark = tri_seconds();
     const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)run->mesh.n_triangles);
     enum tri_status status = make_room(r, waiting + list_bytes(&run->arguments->switches, &run->mesh));
-    status = status ? status : mesh_files_write(files, &outputs, r->error);
+    status = status ? status : mesh_files_write(run, &r->console, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
         return status;
@@ -517,10 +517,10 @@ static enum tri_status tell(struct runner *r)
     return s->check ? check(r) : TRI_OK;
 }
 
-static enum tri_status write_all(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_all(struct runner *r)
 {
     const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r, files);
+    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r);
     status = status ? status : tell(r);
     if (!status && hooks->write)
         status = hooks->write(hooks->user, &r->run, &outputs, r->error);
@@ -535,14 +535,14 @@ static enum tri_status agree(struct runner *r, enum tri_status status)
 }
 
 /* Whatever can fail comes before the commit, what is printed included, and what others do. */
-static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_output(struct runner *r)
 {
     if (r->run.hooks->written_elsewhere)
         return agree(r, TRI_OK);
     interrupt_stage("writing");
     if (!r->run.plan.swept)
         begin_outputs(r);
-    enum tri_status status = agree(r, write_all(r, files));
+    enum tri_status status = agree(r, write_all(r));
     if (!status)
         return interrupt_commit(&outputs, r->error);
     interrupt_drop(&outputs);
@@ -552,11 +552,10 @@ static enum tri_status write_output(struct runner *r, const struct mesh_files *f
 /* --- all together */
 
 /* Does each file have a place of its own? */
-static enum tri_status check_files(const struct runner *r, const struct mesh_files *files)
+static enum tri_status check_files(const struct runner *r)
 {
-    const struct run *run = &r->run;
     const struct file_names read = files_read(r);
-    return mesh_files_check(files, &run->hooks->further, &read, r->error);
+    return mesh_files_check(&r->run, &read, r->error);
 }
 
 static enum tri_status make_mesh(struct runner *r)
@@ -593,16 +592,11 @@ static enum tri_status run_stages(struct runner *r)
     status = status ? status : get_input(r);
     if (status)
         return status;
-    struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
-                               .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
-                               .points_in_poly = run->points_in_poly, .base = run->base,
-                               .elements = &run->elements, .options = run->hooks->options};
     if (run->hooks->options->dry_run)
         return print_estimate(r);
-    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r, &files);
+    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r);
     status = status ? status : make_mesh(r);
-    files.is_edge = run->is_edge;
-    return status ? status : write_output(r, &files);
+    return status ? status : write_output(r);
 }
 
 /* Seconds that ending may take. A batch system kills 30 seconds after it has asked. */

@@ -79,8 +79,8 @@ struct run_hooks {
     /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
     double (*cell_triangles)(double triangles);
     const struct long_options *options; /* what the command line says beyond the switches of Triangle; maybe all 0 */
-    struct file_names further;      /* files that are written beside the mesh .. */
-    /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
+    /* Writes what the options want beside the mesh into the guarded set of files (drivers/interrupt.h) that holds those
+     * of the mesh; NULL: nothing. */
     enum tri_status (*write)(void *user, struct run *run, struct tri_output_set *set, struct tri_error *error);
     void *user;
 };

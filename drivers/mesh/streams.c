@@ -10,8 +10,6 @@ static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
 /* --- names */
 
-char *stream_xdmf(const char *name) { return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf"); }
-
 static const char *without_folder(const char *name)
 {
     const char *slash = strrchr(name, '/');
@@ -46,12 +44,12 @@ enum tri_status streams_open(struct streams *streams, const struct run *run, str
 }
 
 /* One of Triangle's files, if it is wanted. */
-static enum tri_status open_text(struct tri_output **output, const struct mesh_files *files, const char *suffix,
+static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix,
                                  struct tri_output_set *set, struct tri_error *error)
 {
-    if (!mesh_files_has(files, suffix))
+    if (!mesh_files_has(run, suffix))
         return TRI_OK;
-    char *path = tri_joined(files->arguments->output, suffix);
+    char *path = tri_joined(run->arguments->output, suffix);
     if (!path)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, path, output, error);
@@ -63,14 +61,12 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
                                   struct tri_error *error)
 {
     const struct arguments *a = run->arguments;
-    struct mesh_files files = {.arguments = a, .points_in_poly = run->points_in_poly,
-                               .options = run->hooks->options};
     struct tri_text_options *o = &streams->text_options;
     *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
                                    .argc = a->argc, .argv = a->argv};
-    enum tri_status status = open_text(&o->node, &files, ".node", set, error);
-    status = status ? status : open_text(&o->ele, &files, ".ele", set, error);
-    status = status ? status : open_text(&o->poly, &files, ".poly", set, error);
+    enum tri_status status = open_text(&o->node, run, ".node", set, error);
+    status = status ? status : open_text(&o->ele, run, ".ele", set, error);
+    status = status ? status : open_text(&o->poly, run, ".poly", set, error);
     if (status || !(o->node || o->ele || o->poly))
         return status;
     return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], error);

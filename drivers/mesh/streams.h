@@ -27,7 +27,7 @@ struct streams {
     struct tri_text_options text_options;
     struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
     int n_exports;
-    struct export export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
+    struct export export[LONG_OPTIONS_MOST_EXPORTS]; /* in other formats, at the end: */
     struct tri_tile_store *store;  /* NULL: none of them */
     bool markers;                  /* are written */
     const struct tri_executor *executor;
@@ -45,7 +45,10 @@ static inline bool stream_is_wanted(const char *name)
 }
 
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
-char *stream_xdmf(const char *name);
+static inline char *stream_xdmf(const char *name)
+{
+    return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf");
+}
 
 /* Opens the HDF5 files of the run in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
  * committed. */
