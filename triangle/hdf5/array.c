@@ -125,8 +125,8 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
 
 /* --- wider numbers */
 
-/* Moves a chunk, by way of the buffer. What lies in a file must not depend on what has lain there before: the place holds
- * zeros afterwards. */
+/* Moves a chunk, by way of the buffer. What lies in a file must not depend on what has lain there before: the place
+ * holds zeros afterwards. */
 static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from, int64_t to, char *buffer,
                                   struct tri_error *error)
 {
