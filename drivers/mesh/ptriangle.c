@@ -181,44 +181,37 @@ static enum tri_status join_files(struct program *p, const struct run *run, enum
     return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, error);
 }
 
-/* Refines into files, on a rank that is one of several. */
-static enum tri_status refine_jointly(struct program *p, struct run *run, struct tri_mesh *mesh,
-                                      const struct tri_refine_options *quality, struct tri_error *error)
-{
-    struct par_options options = options_of(p, run);
-    const struct tri_sink sink = joint_files_sink(&p->joint);
-    options.carrier = p->launch.carrier;
-    options.sink = &sink;
-    return refine_with(p, run, &options, mesh, quality, error);
-}
-
-/* Refines into a sink; on several ranks into that of the first. */
 static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
                                    struct tri_mesh *mesh, const struct tri_refine_options *quality,
                                    struct tri_error *error)
 {
     struct par_options options = options_of(p, run);
-    struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
+    options.carrier = p->launch.carrier;
+    options.sink = sink;
+    return refine_with(p, run, &options, mesh, quality, error);
+}
+
+/* On several ranks into the sink of the first, behind a queue: who receives tiles of others does not wait for the disk.
+ * to: on that rank. */
+static enum tri_status refine_through_first(struct program *p, struct run *run, const struct tri_sink *to,
+                                            struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                            struct tri_error *error)
+{
+    struct par_queue queue;
+    struct tri_sink queued;
+    struct par_relay relay = {.carrier = p->launch.carrier};
+    if (to && !par_queue_begin(&queue, to, waiting_bytes(&run->plan)))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    if (to)
+        queued = par_queue_sink(&queue);
+    relay.to = to ? &queued : NULL;
     if (run->hooks->options->memory > 0)
         relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
     const struct tri_sink relayed = par_relay_sink(&relay);
-    options.carrier = p->launch.carrier;
-    options.sink = options.carrier ? &relayed : sink;
-    enum tri_status status = refine_with(p, run, &options, mesh, quality, error);
-    return options.carrier ? par_relay_finish(&relay, status, error) : status;
-}
-
-/* The same where tiles come from other ranks, too: who receives them does not wait for the disk. */
-static enum tri_status refine_behind_queue(struct program *p, struct run *run, const struct tri_sink *sink,
-                                           struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                                           struct tri_error *error)
-{
-    struct par_queue queue;
-    if (!par_queue_begin(&queue, sink, waiting_bytes(&run->plan)))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
-    const struct tri_sink queued = par_queue_sink(&queue);
-    enum tri_status status = refine_into(p, run, &queued, mesh, quality, error);
-    par_queue_free(&queue);
+    enum tri_status status = refine_into(p, run, &relayed, mesh, quality, error);
+    status = par_relay_finish(&relay, status, error);
+    if (to)
+        par_queue_free(&queue);
     return status;
 }
 
@@ -228,11 +221,10 @@ static enum tri_status refine_on_ranks(struct program *p, struct run *run, const
                                        enum tri_status status, struct tri_error *error)
 {
     status = join_files(p, run, status, error);
-    if (!status && p->joint.together)
-        status = refine_jointly(p, run, mesh, quality, error);
-    else if (!status)
-        status = to ? refine_behind_queue(p, run, to, mesh, quality, error)
-                    : refine_into(p, run, NULL, mesh, quality, error);
+    const struct tri_sink joint = joint_files_sink(&p->joint);
+    if (!status)
+        status = p->joint.together ? refine_into(p, run, &joint, mesh, quality, error)
+                                   : refine_through_first(p, run, to, mesh, quality, error);
     return joint_files_close(&p->joint, status, error);
 }
 

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/text/stream.h"
+
 enum { BUFFER_BYTES = 1 << 20, PAGE_BYTES = 4096 }; /* what is a multiple of the latter may pass the system's cache */
 
 /* At most one piece at a time. All 0: nothing is under way. May not move while something is. */
@@ -205,9 +207,8 @@ enum tri_status tri_h5_part_widen(struct tri_h5_part *part, enum tri_h5_kind kin
 enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, bool alone,
                                 const struct tri_stream *stream, struct tri_output *file, struct tri_error *error)
 {
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
     struct tri_h5_part *p = calloc(1, sizeof *p);
-    double *columns = malloc((n + 1) * sizeof *columns);
+    double *columns = tri_copy_columns(stream);
     *part = p;
     if (!p || !columns) {
         free(columns);
@@ -217,8 +218,6 @@ enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_l
                               .rows = {NULL, columns, stream->n_attributes, stream->n_columns}};
     for (int kind = 0; kind < TRI_H5_KINDS; kind++)
         p->strip[kind].laid = &layout->array[kind];
-    if (n > 0)
-        memcpy(columns, stream->regions, n * sizeof *columns);
     return TRI_OK;
 }
 

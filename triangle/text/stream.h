@@ -21,6 +21,9 @@ struct tri_text_options {
     char *const *argv;
 };
 
+/* A copy of the attributes of triangles in each region, malloc'ed; NULL: no memory. */
+double *tri_copy_columns(const struct tri_stream *stream);
+
 struct tri_text_stream;
 
 /* *sink writes the files, anew where it is told of the beginning again. After its end they are complete, and their

@@ -16,6 +16,7 @@
 
 #include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
+#include "triangle/text/stream.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
@@ -119,15 +120,12 @@ static void let_go(const void *user)
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_tile_store *s = user;
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
     for (int k = 0; k < SHEETS; k++)
         empty(&s->sheet[k]);
     free(s->columns);
-    s->columns = malloc((n + 1) * sizeof *s->columns);
+    s->columns = tri_copy_columns(stream);
     if (!s->columns)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
-    if (n > 0)
-        memcpy(s->columns, stream->regions, n * sizeof *s->columns);
     s->n_attributes = stream->n_attributes;
     s->n_columns = stream->n_columns;
     s->n_points = s->n_triangles = s->n_segments = 0;
