@@ -487,10 +487,7 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     const char *slash = output ? strrchr(output, '/') : NULL;
     if (asked && *asked)
         return tri_joined(asked, "");
-    char *folder = tri_joined(slash ? output : ".", "");
-    if (folder && slash)
-        folder[slash - output + 1] = 0;
-    return folder;
+    return slash ? tri_name(output, (size_t)(slash - output) + 1, "") : tri_joined(".", "");
 }
 
 /* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */

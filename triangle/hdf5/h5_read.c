@@ -23,7 +23,7 @@
 static const struct tri_h5_form *const forms = tri_h5_forms;
 
 struct tri_h5 {
-    char *path;
+    const char *path; /* borrowed */
     hid_t file;
     int64_t bytes; /* of the file */
     hid_t datasets[TRI_H5_KINDS]; /* < 0: there is none */
@@ -202,27 +202,15 @@ static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
     return open_arrays(h5, error);
 }
 
-static struct tri_h5 *new_mesh(const char *path)
-{
-    struct tri_h5 *h5 = malloc(sizeof *h5);
-    char *name = malloc(strlen(path) + 1);
-    if (!h5 || !name) {
-        free(h5);
-        free(name);
-        return NULL;
-    }
-    *h5 = (struct tri_h5){.path = strcpy(name, path), .file = -1};
-    for (int k = 0; k < TRI_H5_KINDS; k++)
-        h5->datasets[k] = -1;
-    return h5;
-}
-
 enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    *h5 = new_mesh(path);
+    *h5 = malloc(sizeof **h5);
     if (!*h5)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to read the file");
+    **h5 = (struct tri_h5){.path = path, .file = -1};
+    for (int k = 0; k < TRI_H5_KINDS; k++)
+        (*h5)->datasets[k] = -1;
     (void)H5dont_atexit(); /* before all else: at the end of the process HDF5 would print about what is damaged */
     H5E_BEGIN_TRY
     {
@@ -249,7 +237,6 @@ void tri_h5_free(struct tri_h5 *h5)
             H5Fclose(h5->file);
     }
     H5E_END_TRY
-    free(h5->path);
     free(h5);
 }
 

@@ -19,8 +19,8 @@ struct tri_h5_counts {
     bool point_markers, lists_segments, segment_markers; /* there are any */
 };
 
-/* Opens a file. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build; TRI_BAD_INPUT: it holds no such
- * mesh; TRI_NO_MEMORY. *h5 is NULL then. */
+/* Opens a file; path must live as long. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build;
+ * TRI_BAD_INPUT: it holds no such mesh; TRI_NO_MEMORY. *h5 is NULL then. */
 enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error);
 
 /* NULL is fine. */

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "triangle/base/at_place.h"
+#include "triangle/text/names.h"
 #include "triangle/text/text.h"
 
 #ifndef O_DIRECT
@@ -44,13 +45,7 @@ static size_t directory_length(const char *path)
 /* directory_of's directory followed by name; malloc'ed. */
 static char *beside(const char *directory_of, const char *name)
 {
-    const size_t directory = directory_length(directory_of), length = strlen(name);
-    char *const path = malloc(directory + length + 1);
-    if (path) {
-        memcpy(path, directory_of, directory);
-        memcpy(path + directory, name, length + 1);
-    }
-    return path;
+    return tri_name(directory_of, directory_length(directory_of), name);
 }
 
 static bool stat_directory(const char *path, struct stat *status)

@@ -28,6 +28,8 @@ static const struct kind {
     {"Cells", "offsets", 1},       {"Cells", "types", 1},
 };
 
+static const char *name_of(int k) { return kinds[k].name ? kinds[k].name : "of points"; }
+
 static const struct type {
     const char *name;
     int bytes;
@@ -233,8 +235,7 @@ static enum tri_status read_head(struct reading *r)
         return fail(r, "not a VTK file of an unstructured grid (.vtu)");
     for (int k = PLACES; k < ARRAYS && !status; k++)
         if (!r->array[k].there)
-            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s is missing",
-                              kinds[k].name ? kinds[k].name : "of points");
+            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s is missing", name_of(k));
     return status;
 }
 
@@ -309,7 +310,7 @@ static enum tri_status take_array(const struct reading *r, enum which k, int64_t
     *out = NULL;
     if (n > (uint64_t)(r->file.end - r->file.data))
         return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the file is too small for its array %s",
-                        kinds[k].name ? kinds[k].name : "of points");
+                        name_of(k));
     *out = malloc((n + 1) * sizeof **out);
     if (!*out)
         return tri_reading_no_memory(&r->to);
@@ -318,7 +319,7 @@ static enum tri_status take_array(const struct reading *r, enum which k, int64_t
     free(*out);
     *out = NULL;
     return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s has not %" PRIu64 " finite numbers",
-                    kinds[k].name ? kinds[k].name : "of points", n);
+                    name_of(k), n);
 }
 
 /* --- points */
