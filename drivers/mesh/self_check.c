@@ -70,19 +70,19 @@ static void tell(const struct console *console, const struct tri_check_report *r
     console_say(console, "  Delaunay property: %s.\n", conforming ? "conforming Delaunay" : "constrained Delaunay");
 }
 
-enum tri_status self_check(const struct console *console, const struct tri_switches *switches,
-                           const struct tri_mesh *mesh, int32_t base, const struct self_check_room *room,
-                           struct tri_error *error)
+enum tri_status self_check(const struct console *console, bool conforming, const struct tri_mesh *mesh, int32_t base,
+                           double memory, const char *scratch, struct tri_error *error)
 {
     struct tri_check_report report;
-    struct tri_check_options options = {.max_bad = INT64_MAX, .ignore_lost = true, .base = base};
-    options.delaunay = switches->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
+    const struct tri_check_options options = {
+        .max_bad = INT64_MAX, .ignore_lost = true, .base = base,
+        .delaunay = conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED};
     struct tri_check_source source = source_of(mesh);
-    source.memory = room->memory > 0 ? fmax(room->memory, least_bytes(&source)) : 0;
-    source.scratch = room->scratch;
+    source.memory = memory > 0 ? fmax(memory, least_bytes(&source)) : 0;
+    source.scratch = scratch;
     console_say(console, "Checking the mesh.\n");
     enum tri_status status = tri_check_from(&source, NULL, &options, &report, error);
     if (!status)
-        tell(console, &report, switches->conforming);
+        tell(console, &report, conforming);
     return status;
 }

@@ -25,7 +25,7 @@ struct runner {
     struct run run;
     struct console console;
     struct tri_names names; /* of what is read */
-    struct console_series input_warnings;
+    int64_t input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
     int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
@@ -75,7 +75,7 @@ static enum tri_status check_switches(struct runner *r)
 static void warn_of_input(void *user, const char *file, long line, const char *text)
 {
     struct runner *r = user;
-    if (console_series_add(&r->input_warnings))
+    if (r->input_warnings++ < CONSOLE_SERIES_LINES)
         console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
 }
 
@@ -154,7 +154,7 @@ static enum tri_status read_input(struct runner *r)
     status = status ? status : read_pslg(r, &r->names, &options);
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
-    console_series_end(&r->console, &r->input_warnings, "of this kind");
+    console_series_end(&r->console, r->input_warnings, "of this kind");
     if (status)
         add_hint(r);
     return status;
@@ -492,8 +492,9 @@ static enum tri_status check(struct runner *r)
     const struct long_options *limits = run->hooks->options;
     enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
     const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
-    const struct self_check_room room = {limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch};
-    return status ? status : self_check(&r->console, &run->arguments->switches, &run->mesh, run->base, &room, r->error);
+    return status ? status
+                  : self_check(&r->console, run->arguments->switches.conforming, &run->mesh, run->base,
+                               limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch, r->error);
 }
 
 static enum tri_status tell(struct runner *r)

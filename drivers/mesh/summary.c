@@ -33,12 +33,12 @@ void summary_notes(const struct console *console, const struct tri_notes *notes)
 
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)
 {
-    struct console_series series = {0};
+    int64_t n = 0;
     for (int32_t v = 0; twin && v < pslg->n_points; v++)
-        if (twin[v] != v && console_series_add(&series))
+        if (twin[v] != v && n++ < CONSOLE_SERIES_LINES)
             console_warn(console, "duplicate vertex at (%.12g, %.12g) ignored.\n", pslg->points[2 * (size_t)v],
                          pslg->points[2 * (size_t)v + 1]);
-    console_series_end(console, &series, "duplicate vertices ignored");
+    console_series_end(console, n, "duplicate vertices ignored");
 }
 
 static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_options *options,

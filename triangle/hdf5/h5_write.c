@@ -234,14 +234,14 @@ static enum tri_status write_about(struct tri_h5_writer *w, struct tri_error *er
     const char *about = "/" TRI_H5_ABOUT;
     const double none[4] = {0};
     struct tri_h5_file *f = &w->file;
-    bool done = tri_h5_add_group(f, about) && tri_h5_add_text(f, about, TRI_H5_ABOUT_FORMAT, TRI_H5_FORMAT) &&
+    bool done = tri_h5_add_group(f, about) && tri_h5_add_text(f, about, "format", "ptriangle mesh") &&
                 tri_h5_add_integers(f, about, TRI_H5_ABOUT_VERSION, 0, &(int64_t){TRI_H5_VERSION}) &&
-                tri_h5_add_text(f, about, TRI_H5_ABOUT_PROGRAM, w->options.program) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_POINTS, 0, &w->n_points) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_TRIANGLES, 0, &w->n_triangles) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_SEGMENTS, 0, &w->segments.n) &&
+                tri_h5_add_text(f, about, "program", w->options.program) &&
+                tri_h5_add_integers(f, about, "points", 0, &w->n_points) &&
+                tri_h5_add_integers(f, about, "triangles", 0, &w->n_triangles) &&
+                tri_h5_add_integers(f, about, "segments", 0, &w->segments.n) &&
                 tri_h5_add_integers(f, about, TRI_H5_ABOUT_INPUT_POINTS, 0, &w->n_input) &&
-                tri_h5_add_reals(f, about, TRI_H5_ABOUT_BOUNDS, 4, w->n_points > 0 ? w->bounds : none);
+                tri_h5_add_reals(f, about, "bounds", 4, w->n_points > 0 ? w->bounds : none);
     return done ? TRI_OK : tri_h5_fail(f, about, error);
 }
 
