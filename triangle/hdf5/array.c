@@ -125,23 +125,34 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
 
 /* --- wider numbers */
 
-/* Moves a chunk, by way of the buffer. What lies in a file must not depend on what has lain there before: the place
- * holds zeros afterwards. */
+/* n integers of 32 bits, little-endian, as 64 bits; in place, from the last to the first. */
+static void widen_numbers(char *data, size_t n)
+{
+    for (size_t i = n; i-- > 0;) {
+        memmove(data + 8 * i, data + 4 * i, 4);
+        memset(data + 8 * i + 4, data[8 * i + 3] < 0 ? -1 : 0, 4);
+    }
+}
+
+/* Moves a chunk, as far as it is there, by way of the buffer. What lies in a file must not depend on what has lain
+ * there before: the place holds zeros afterwards. */
 static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from, int64_t to, char *buffer,
                                   struct tri_error *error)
 {
     struct tri_output *output = array->file->output;
     const size_t bytes = chunk_bytes(array->laid), half = bytes / 2;
-    if (!tri_read_again(output->file, buffer, half, (uint64_t)from))
+    const ssize_t got = tri_read_at(output->file, buffer, half, (uint64_t)from);
+    if (got < 0)
         return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot read again", errno);
-    tri_h5_widen_numbers(buffer, half / 4);
+    memset(buffer + got, 0, half - (size_t)got);
+    widen_numbers(buffer, half / 4);
     int result = tri_output_write_at(output, (uint64_t)to, buffer, bytes);
     memset(buffer, 0, half);
     result = result ? result : tri_output_write_at(output, (uint64_t)from, buffer, half);
     return tri_output_conclude(output, result, error);
 }
 
-static enum tri_status replace_dataset(struct tri_h5_array *array, const struct tri_h5_laid *old, int64_t rows,
+static enum tri_status replace_dataset(struct tri_h5_array *array, const struct tri_h5_laid *old,
                                        struct tri_error *error)
 {
     hid_t dataset = array->dataset;
@@ -151,18 +162,18 @@ static enum tri_status replace_dataset(struct tri_h5_array *array, const struct 
     if (!status && H5Ldelete(array->file->id, array->name, H5P_DEFAULT) < 0)
         status = tri_h5_fail(array->file, array->name, error);
     status = status ? status : tri_h5_array_allocate(array, old->n, error);
-    for (int64_t k = 0; k * old->chunk_rows < rows && !status; k++)
+    for (int64_t k = 0; k < old->n && !status; k++)
         status = move_chunk(array, old->place[k], array->laid->place[k], buffer, error);
     H5Dclose(dataset); /* and its space is free */
     free(buffer);
     return status;
 }
 
-enum tri_status tri_h5_array_widen(struct tri_h5_array *array, int64_t rows, struct tri_error *error)
+enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error)
 {
     const struct tri_h5_laid old = *array->laid;
     *array->laid = (struct tri_h5_laid){.type = TRI_H5_INT64, .width = old.width, .chunk_rows = old.chunk_rows};
-    const enum tri_status status = array->dataset >= 0 ? replace_dataset(array, &old, rows, error) : TRI_OK;
+    const enum tri_status status = replace_dataset(array, &old, error);
     free(old.place);
     return status;
 }

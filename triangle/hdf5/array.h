@@ -26,9 +26,9 @@ void tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, co
 /* Gives the array so many chunks in all, if it has fewer. TRI_NO_MEMORY, and errors of writing, as of all. */
 enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chunks, struct tri_error *error);
 
-/* From now on the integers have 64 bits; those of so many rows, a whole number of chunks, are in the file already, and
- * are rewritten. The space in the file is used again. */
-enum tri_status tri_h5_array_widen(struct tri_h5_array *array, int64_t rows, struct tri_error *error);
+/* From now on the integers have 64 bits; those that are in the file already are rewritten, with the chunks that have
+ * been allocated. The space in the file is used again. */
+enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error);
 
 /* The array has n rows: chunks that are not needed are given back, what has none gets its place, and the dataset is
  * closed. Rows may be put there afterwards. */

@@ -168,37 +168,16 @@ static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind,
     return status;
 }
 
-int64_t tri_h5_part_written(const struct tri_h5_part *part, enum tri_h5_kind kind)
-{
-    return part->strip[kind].next - part->strip[kind].n;
-}
-
-/* From the last to the first. */
-void tri_h5_widen_numbers(char *data, size_t n)
-{
-    for (size_t i = n; i-- > 0;) {
-        memmove(data + 8 * i, data + 4 * i, 4);
-        memset(data + 8 * i + 4, data[8 * i + 3] < 0 ? -1 : 0, 4);
-    }
-}
-
-enum tri_status tri_h5_part_widen(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
+enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
 {
     struct strip *s = &part->strip[kind];
-    const size_t bytes = (size_t)s->n * tri_h5_row_bytes(s->laid), room = (size_t)s->room * tri_h5_row_bytes(s->laid);
-    void *wide = NULL;
-    assert(s->laid->type == TRI_H5_INT32);
-    const int result = behind_wait(&s->behind, part->file);
-    free(s->other); /* too small from now on */
-    s->other = NULL;
-    if (!s->buffer || result)
-        return tri_output_conclude(part->file, result, error);
-    if (posix_memalign(&wide, PAGE_BYTES, 2 * room) != 0)
-        return no_memory(part, error);
-    memcpy(wide, s->buffer, bytes);
-    tri_h5_widen_numbers(wide, bytes / 4);
+    enum tri_status status = flush(part, s, error);
+    status = status ? status : tri_output_conclude(part->file, behind_wait(&s->behind, part->file), error);
+    if (status)
+        return status;
     free(s->buffer);
-    s->buffer = wide;
+    free(s->other);
+    s->buffer = s->other = NULL;
     return TRI_OK;
 }
 
@@ -239,11 +218,8 @@ enum tri_status tri_h5_part_take(struct tri_h5_part *part, const struct tri_tile
 enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int kind = 0; !status && kind < TRI_H5_KINDS; kind++) {
-        struct strip *s = &part->strip[kind];
-        status = flush(part, s, error);
-        status = status ? status : tri_output_conclude(part->file, behind_wait(&s->behind, part->file), error);
-    }
+    for (enum tri_h5_kind kind = 0; !status && kind < TRI_H5_KINDS; kind++)
+        status = tri_h5_part_pause(part, kind, error);
     return status;
 }
 

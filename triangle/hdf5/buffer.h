@@ -35,16 +35,10 @@ enum tri_status tri_h5_part_take(struct tri_h5_part *part, const struct tri_tile
 /* All that has come is in the file afterwards. */
 enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *error);
 
-/* Of the rows of an array that have come the last ones are still here: how many are in the file. */
-int64_t tri_h5_part_written(const struct tri_h5_part *part, enum tri_h5_kind kind);
-
-/* The integers that are here get 64 bits, as the array is going to have; nothing is on its way then. */
-enum tri_status tri_h5_part_widen(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error);
+/* All rows of an array that have come are in the file afterwards; those to come may be wider. */
+enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error);
 
 /* NULL is fine. */
 void tri_h5_part_free(struct tri_h5_part *part);
-
-/* n integers of 32 bits as 64 bits, in place. */
-void tri_h5_widen_numbers(char *data, size_t n);
 
 #endif

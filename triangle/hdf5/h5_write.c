@@ -79,23 +79,22 @@ static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, 
     const enum tri_h5_kind kind = TRI_H5_OF_TRIANGLES;
     if (n_points <= w->most_narrow || w->layout.array[kind].type == TRI_H5_INT64)
         return TRI_OK;
-    const enum tri_status status = w->part ? tri_h5_part_widen(w->part, kind, error) : TRI_OK;
-    const int64_t written = w->part ? tri_h5_part_written(w->part, kind) : 0;
-    return status ? status : tri_h5_array_widen(&w->arrays[kind], written, error);
+    const enum tri_status status = w->part ? tri_h5_part_pause(w->part, kind, error) : TRI_OK;
+    return status ? status : tri_h5_array_widen(&w->arrays[kind], error);
 }
 
 /* Chunks for so many points and their triangles, in the order of the arrays; see above. */
 static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (n_points <= CHUNK_POINTS)
-        return widen_in_time(w, n_points, error);
+    if (n_points <= CHUNK_POINTS && n_points <= w->most_narrow)
+        return TRI_OK;
     while (w->n_chunks * CHUNK_POINTS < n_points && !status) {
         w->n_chunks++;
-        status = widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
         for (enum tri_h5_kind kind = 0; kind < TRI_H5_OF_SEGMENTS && !status; kind++)
             if (w->arrays[kind].file)
                 status = tri_h5_array_allocate(&w->arrays[kind], w->n_chunks, error);
+        status = status ? status : widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
     }
     return status;
 }
