@@ -101,7 +101,6 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/output.c
     triangle/text/parts.c
     triangle/text/joined.c
-    triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
     triangle/text/text_stream.c
@@ -112,7 +111,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/gmsh.c
     triangle/text/hydro.c
     triangle/text/bytes.c
-    triangle/text/tags.c
+    triangle/text/reading.c
     triangle/text/read_vtu.c
     triangle/text/read_gmsh.c
     triangle/text/read_hydro.c
@@ -122,7 +121,6 @@ set(PTRIANGLE_TEXT_SOURCES
 # Folder triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
 set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
-    triangle/hdf5/items.c
     triangle/hdf5/rows.c
     triangle/hdf5/array.c
     triangle/hdf5/segment_spool.c
@@ -246,14 +244,12 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/self_check.c
     drivers/resources.c
     drivers/mesh/needs.c
-    drivers/mesh/disk_needs.c
     drivers/mesh/plan.c
     drivers/mesh/stages.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
-    drivers/mesh/blocks_file.c
     drivers/mesh/joint_files.c
     drivers/mesh/launch.c
     drivers/mesh/long_options.c

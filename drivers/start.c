@@ -17,7 +17,6 @@ int main(int argc, char **argv)
 #include <stdio.h>
 #include <string.h>
 
-#include "drivers/own_path.h"
 #include "triangle/text/names.h"
 
 static bool needs_module(int argc, char **argv)

@@ -1,8 +1,14 @@
-/* What launchers (mpirun, srun) tell their tasks by the environment. */
+/* What the system tells a program of itself: its own path, and by launchers (mpirun, srun) which of several tasks it
+ * is. */
 #ifndef DRIVERS_TASKS_H
 #define DRIVERS_TASKS_H
 
 #include <stdbool.h>
+
+enum { OWN_PATH = 4096 };
+
+/* The path of the program's executable, by whatever links it was found. False: the system does not tell. */
+bool own_path(char path[OWN_PATH]);
 
 /* How many tasks have been started, of which this is number *task, from 0; without a launcher 1. */
 int tasks_started(int *task);

@@ -60,7 +60,7 @@ done
 tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
-    triangle/hdf5/* | triangle/text/behind.c) echo hdf5 ;;
+    triangle/hdf5/*) echo hdf5 ;;
     triangle/api/* | sched/schedule/library.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
@@ -69,7 +69,7 @@ tested_by() {
     triangle/text/joined.c) echo joint_files ;;
     triangle/text/text_stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
-    triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
+    triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/cdt/rotation.c | triangle/cdt/laying_order.c) echo constrain ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;

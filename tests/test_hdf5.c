@@ -52,9 +52,9 @@ static void compare_points(struct tri_h5 *h5, const struct lattice *l, bool mark
 {
     double(*at)[2] = malloc((size_t)n * sizeof *at), *attributes = malloc((size_t)n * 16), place[2];
     int32_t *marker = malloc((size_t)n * sizeof *marker);
-    assert_int_equal(tri_h5_points(h5, first, n, at, NULL), TRI_OK);
-    assert_int_equal(tri_h5_point_markers(h5, first, n, marker, NULL), TRI_OK);
-    assert_int_equal(tri_h5_point_attributes(h5, first, n, attributes, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINTS, first, n, at, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINT_MARKERS, first, n, marker, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINT_ATTRIBUTES, first, n, attributes, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_point(l, first + i, place);
         assert_memory_equal(at[i], place, sizeof place);
@@ -71,8 +71,8 @@ static void compare_triangles(struct tri_h5 *h5, const struct lattice *l, int64_
 {
     int64_t(*corners)[3] = malloc((size_t)n * sizeof *corners), wanted[3];
     double *columns = malloc((size_t)n * 16);
-    assert_int_equal(tri_h5_triangles(h5, first, n, corners, NULL), TRI_OK);
-    assert_int_equal(tri_h5_triangle_attributes(h5, first, n, columns, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_TRIANGLES, first, n, corners, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, columns, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_corners(l, first + i, wanted);
         assert_memory_equal(corners[i], wanted, sizeof wanted);
@@ -88,8 +88,8 @@ static void compare_segments(struct tri_h5 *h5, const struct lattice *l, bool ma
     const int64_t n = lattice_segments(l);
     int64_t(*ends)[2] = malloc((size_t)n * sizeof *ends), wanted[2];
     int32_t *marker = malloc((size_t)n * sizeof *marker);
-    assert_int_equal(tri_h5_segments(h5, 0, n, ends, NULL), TRI_OK);
-    assert_int_equal(tri_h5_segment_markers(h5, 0, n, marker, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_SEGMENTS, 0, n, ends, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_SEGMENT_MARKERS, 0, n, marker, NULL), TRI_OK);
     for (int64_t i = 0; i < n; i++) {
         lattice_ends(l, i, wanted);
         assert_memory_equal(ends[i], wanted, sizeof wanted);
@@ -124,7 +124,7 @@ static void compare(const struct lattice *l, bool markers)
     for (int64_t first = 0; first < lattice_triangles(l); first += slice)
         compare_triangles(h5, l, first, lattice_triangles(l) - first < slice ? lattice_triangles(l) - first : slice);
     compare_segments(h5, l, markers);
-    assert_int_equal(tri_h5_points(h5, lattice_points(l), 0, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_h5_read(h5, TRI_H5_OF_POINTS, lattice_points(l), 0, NULL, NULL), TRI_OK);
     tri_h5_free(h5);
 }
 
@@ -236,15 +236,14 @@ static enum tri_status begin_parts(void *user, const struct tri_stream *stream, 
                   triangles[] = {0, 0, 7, lattice_triangles(p->lattice)},
                   segments[] = {0, 0, 1, lattice_segments(p->lattice)};
     struct tri_stream on_ranks = *stream;
-    int64_t *place;
     on_ranks.n_ranks = PARTS;
     on_ranks.first_vertex = points;
     on_ranks.first_triangle = triangles;
     on_ranks.first_segment = segments;
     enum tri_status status = p->whole.begin(p->whole.user, &on_ranks, error);
     for (int i = 0; i < PARTS && !status; i++) {
-        const struct tri_h5_layout *layout = tri_h5_writer_layout(p->writer, &place);
-        status = tri_h5_part_new(&p->part[i], layout, place, &on_ranks, p->options.file, error);
+        const struct tri_h5_layout *layout = tri_h5_writer_layout(p->writer);
+        status = tri_h5_part_new(&p->part[i], layout, false, &on_ranks, p->options.file, error);
     }
     return status;
 }
@@ -408,38 +407,6 @@ static void test_full_disk(void **state)
         assert_non_null(strstr(error.text, "File too large"));
         assert_int_equal(files_here(), 0);
     }
-}
-
-/* Pieces that the system writes while the caller goes on: past its cache or, at an odd place, through it. */
-static void test_behind(void **state)
-{
-    (void)state;
-    enum { LARGE_PIECE = 5 * TRI_BEHIND_BYTES, SMALL_PIECE = 100 };
-    struct tri_output_set set;
-    struct tri_output *output;
-    struct tri_error error;
-    struct tri_behind behind[2] = {{0}, {0}};
-    char *data, found[LARGE_PIECE + SMALL_PIECE + 1];
-    assert_int_equal(posix_memalign((void **)&data, TRI_BEHIND_BYTES, LARGE_PIECE), 0);
-    for (int i = 0; i < LARGE_PIECE; i++)
-        data[i] = (char)(i * 7 + i / 256);
-    tri_outputs_begin(&set);
-    assert_int_equal(tri_output_open(&set, "x.bytes", &output, &error), TRI_OK);
-    assert_int_equal(tri_behind_start(&behind[1], output, LARGE_PIECE, data, SMALL_PIECE), 0);
-    assert_int_equal(tri_behind_start(&behind[0], output, 0, data, LARGE_PIECE), 0);
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(tri_behind_wait(&behind[i], output), 0);
-    assert_int_equal(tri_behind_wait(&behind[0], output), 0);
-    assert_int_equal(tri_output_sync(output, &error), TRI_OK);
-    assert_int_equal(tri_outputs_commit(&set, &error), TRI_OK);
-    FILE *file = fopen("x.bytes", "rb");
-    assert_non_null(file);
-    assert_int_equal(fread(found, 1, sizeof found, file), LARGE_PIECE + SMALL_PIECE);
-    fclose(file);
-    assert_memory_equal(found, data, LARGE_PIECE);
-    assert_memory_equal(found + LARGE_PIECE, data, SMALL_PIECE);
-    remove("x.bytes");
-    free(data);
 }
 
 /* Our own allocations, one after the other. */
@@ -655,7 +622,6 @@ int main(void)
         cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
-        cmocka_unit_test_teardown(test_behind, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),
         cmocka_unit_test_teardown(test_no_memory, remove_files),
         cmocka_unit_test_teardown(test_stop, remove_files),

@@ -69,15 +69,20 @@ struct mesh {
     struct tri_elements elements;
 };
 
-static enum tri_status read_mesh(const char *name, struct mesh *mesh, struct tri_error *error)
-{
-    return tri_format_of(name)->read(name, &mesh->pslg, &mesh->elements, NULL, error);
-}
-
 static void free_mesh(struct mesh *mesh)
 {
     tri_pslg_free(&mesh->pslg);
     tri_elements_free(&mesh->elements);
+}
+
+/* Empty where it fails. */
+static enum tri_status read_mesh(const char *name, struct mesh *mesh, struct tri_error *error)
+{
+    *mesh = (struct mesh){0};
+    const enum tri_status status = tri_format_of(name)->read(name, &mesh->pslg, &mesh->elements, NULL, error);
+    if (status)
+        free_mesh(mesh);
+    return status;
 }
 
 /* --- the same, in whatever order */

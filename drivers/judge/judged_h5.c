@@ -36,7 +36,7 @@ static enum tri_status read_attributes(struct judged_h5 *h5, int64_t first, int6
 {
     int64_t width = h5->columns;
     double *rows = malloc(((size_t)n * (size_t)width + 1) * sizeof *rows);
-    enum tri_status status = rows ? tri_h5_triangle_attributes(h5->file, first, n, rows, error)
+    enum tri_status status = rows ? tri_h5_read(h5->file, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, rows, error)
                                   : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     for (int64_t i = 0; i < n && !status; i++)
         out[i] = rows[width * (i + 1) - 1];
@@ -47,20 +47,17 @@ static enum tri_status read_attributes(struct judged_h5 *h5, int64_t first, int6
 static enum tri_status read_slice(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                   struct tri_error *error)
 {
+    static const enum tri_h5_kind kinds[TRI_CHECK_N_ARRAYS] = {
+        [TRI_CHECK_POINTS] = TRI_H5_OF_POINTS,
+        [TRI_CHECK_CORNERS] = TRI_H5_OF_TRIANGLES,
+        [TRI_CHECK_POINT_MARKERS] = TRI_H5_OF_POINT_MARKERS,
+        [TRI_CHECK_SEGMENT_ENDS] = TRI_H5_OF_SEGMENTS,
+        [TRI_CHECK_SEGMENT_MARKERS] = TRI_H5_OF_SEGMENT_MARKERS,
+        [TRI_CHECK_POINT_ATTRIBUTES] = TRI_H5_OF_POINT_ATTRIBUTES,
+    }; /* of others there are none */
     struct judged_h5 *h5 = user;
-    switch (array) {
-    case TRI_CHECK_POINTS: return tri_h5_points(h5->file, first, n, out, error);
-    case TRI_CHECK_CORNERS: return tri_h5_triangles(h5->file, first, n, out, error);
-    case TRI_CHECK_ATTRIBUTES: return read_attributes(h5, first, n, out, error);
-    case TRI_CHECK_POINT_MARKERS: return tri_h5_point_markers(h5->file, first, n, out, error);
-    case TRI_CHECK_SEGMENT_ENDS: return tri_h5_segments(h5->file, first, n, out, error);
-    case TRI_CHECK_SEGMENT_MARKERS: return tri_h5_segment_markers(h5->file, first, n, out, error);
-    case TRI_CHECK_POINT_ATTRIBUTES: return tri_h5_point_attributes(h5->file, first, n, out, error);
-    case TRI_CHECK_NEIGHBORS_GIVEN:
-    case TRI_CHECK_MIDDLES:
-    case TRI_CHECK_N_ARRAYS: break; /* there are none */
-    }
-    return TRI_INTERNAL;
+    return array == TRI_CHECK_ATTRIBUTES ? read_attributes(h5, first, n, out, error)
+                                         : tri_h5_read(h5->file, kinds[array], first, n, out, error);
 }
 
 struct tri_check_source judged_h5_source(struct judged_h5 *h5)

@@ -6,36 +6,26 @@
 
 #include "triangle/text/names.h"
 
-/* Adds 1 to the decimal number in text[0 .. n), n > 0, which has no leading zeros; text has room for one more digit. */
-static void increment(char *text, size_t n)
-{
-    size_t i = n;
-    while (i > 0 && text[i - 1] == '9')
-        text[--i] = '0';
-    if (i > 0) {
-        text[i - 1]++;
-        return;
-    }
-    memmove(text + 1, text, n + 1);
-    text[0] = '1';
-}
-
 char *next_iteration(const char *name)
 {
-    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
-    size_t digits = dot ? strspn(dot + 1, "0123456789") : 0;
-    if (digits == 0 || dot[1 + digits] != 0)
+    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.'), *digits = dot ? dot + 1 : name;
+    size_t n = dot ? strspn(digits, "0123456789") : 0;
+    if (n == 0 || digits[n] != 0)
         return tri_joined(name, ".1");
-    char *next = tri_joined(name, "0"); /* one digit more than there was */
+    for (; n > 1 && *digits == '0'; n--)
+        digits++;
+    size_t kept = n; /* but for nines at the end, which become zeros */
+    while (kept > 0 && digits[kept - 1] == '9')
+        kept--;
+    char *next = malloc(strlen(name) + 2), *at = next;
     if (!next)
         return NULL;
-    char *number = next + (dot + 1 - name);
-    while (digits > 1 && *number == '0') {
-        memmove(number, number + 1, digits + 1);
-        digits--;
-    }
-    number[digits] = 0;
-    increment(number, digits);
+    at = (char *)memcpy(at, name, (size_t)(dot + 1 - name)) + (dot + 1 - name);
+    memcpy(at, kept > 0 ? digits : "0", kept > 0 ? kept : 1);
+    at += kept > 0 ? kept : 1;
+    at[-1]++;
+    memset(at, '0', n - kept);
+    at[n - kept] = 0;
     return next;
 }
 

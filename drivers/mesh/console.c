@@ -30,16 +30,6 @@ void console_say(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
-void console_detail(const struct console *console, int verbosity, const char *format, ...)
-{
-    if (console->verbosity < verbosity)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    one_line_print(stdout, format, arguments);
-    va_end(arguments);
-}
-
 void console_warn(const struct console *console, const char *format, ...)
 {
     if (console->quiet)
@@ -51,12 +41,10 @@ void console_warn(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
-bool console_series_add(struct console_series *series) { return series->n++ < CONSOLE_SERIES_LINES; }
-
-void console_series_end(const struct console *console, const struct console_series *series, const char *what)
+void console_series_end(const struct console *console, int64_t n, const char *what)
 {
-    if (series->n > CONSOLE_SERIES_LINES)
-        console_warn(console, "and %" PRId64 " more %s.\n", series->n - CONSOLE_SERIES_LINES, what);
+    if (n > CONSOLE_SERIES_LINES)
+        console_warn(console, "and %" PRId64 " more %s.\n", n - CONSOLE_SERIES_LINES, what);
 }
 
 void console_remark(const struct console *console, const char *format, ...)

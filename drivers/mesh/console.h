@@ -14,12 +14,7 @@ struct console {
     int verbosity;
 };
 
-/* Warnings of one kind, of which only the first few are worth a line. */
-struct console_series {
-    int64_t n;
-};
-
-enum { CONSOLE_SERIES_LINES = 10 };
+enum { CONSOLE_SERIES_LINES = 10 }; /* of the warnings of one kind only the first few are worth a line */
 
 #if defined(__GNUC__)
 #define CONSOLE_FORMAT(text, first) __attribute__((format(printf, text, first)))
@@ -34,17 +29,11 @@ void console_open(void);
 /* A line or a part of one, unless quiet. */
 void console_say(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 
-/* A line of the given verbosity (number of V), also if quiet. */
-void console_detail(const struct console *console, int verbosity, const char *format, ...) CONSOLE_FORMAT(3, 4);
-
 /* "Warning:  " and the text; the caller ends the line. */
 void console_warn(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 
-/* Counts one more warning of its kind. True: say it. */
-bool console_series_add(struct console_series *series);
-
-/* A last line that tells how many were not said. */
-void console_series_end(const struct console *console, const struct console_series *series, const char *what);
+/* Of n warnings of a kind: a last line that tells how many were not said. */
+void console_series_end(const struct console *console, int64_t n, const char *what);
 
 /* A remark on standard error, also if quiet. */
 void console_remark(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);

@@ -124,7 +124,7 @@ static enum tri_status begin_first(struct joint_files *j, const struct tri_strea
         if (h->writer)
             status = h->sink.begin(h->sink.user, stream, error);
         if (h->writer && !status)
-            h->layout = *tri_h5_writer_layout(h->writer, &h->place);
+            h->layout = *tri_h5_writer_layout(h->writer);
     }
     return status;
 }
@@ -135,15 +135,17 @@ static enum tri_status share_layout(struct joint_files *j, int i, const struct t
 {
     struct joint_h5 *h = &j->h5[i];
     status = par_spread(j->carrier, PAR_MOVE_TILES, &h->layout, sizeof h->layout, status, error);
-    const size_t bytes = status ? 0 : (size_t)h->layout.n * sizeof *h->place;
-    if (!status && !is_first(j)) {
-        h->place = malloc(bytes + 1);
-        status = h->place ? TRI_OK : no_memory(error);
+    for (int kind = 0; kind < TRI_H5_KINDS; kind++) {
+        struct tri_h5_laid *laid = &h->layout.array[kind];
+        const size_t bytes = (size_t)laid->n * sizeof *laid->place;
+        if (!is_first(j)) /* it is the first rank's that has come */
+            laid->place = status ? NULL : malloc(bytes + 1);
+        status = !status && !laid->place && bytes > 0 ? no_memory(error) : status;
+        status = par_spread(j->carrier, PAR_MOVE_TILES, laid->place, bytes, status, error);
     }
-    status = par_spread(j->carrier, PAR_MOVE_TILES, h->place, bytes, status, error);
     if (status)
         return status;
-    return tri_h5_part_new(&h->part, &h->layout, h->place, stream, output_of(j, JOINT_TEXTS + i), error);
+    return tri_h5_part_new(&h->part, &h->layout, false, stream, output_of(j, JOINT_TEXTS + i), error);
 }
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -285,8 +287,8 @@ enum tri_status joint_files_close(struct joint_files *joint, enum tri_status sta
         (void)tri_output_leave(&joint->spool[i], false, NULL);
     for (int i = 0; i < JOINT_H5; i++) {
         tri_h5_part_free(joint->h5[i].part);
-        if (!is_first(joint))
-            free(joint->h5[i].place);
+        for (int kind = 0; kind < TRI_H5_KINDS && !is_first(joint); kind++)
+            free(joint->h5[i].layout.array[kind].place);
     }
     tri_text_stream_free(joint->stream);
     free(joint->ticket);

@@ -32,7 +32,6 @@ struct joint_files {
         struct tri_sink sink;
         struct tri_output *output;
         struct tri_h5_layout layout;      /* the rest is ours, on all ranks */
-        int64_t *place;
         struct tri_h5_part *part;
     } h5[JOINT_H5];
     bool together;                        /* all ranks write */

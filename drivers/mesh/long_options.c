@@ -1,6 +1,8 @@
 /* One table of names; a value is read by the option that asks for it. */
 #include "drivers/mesh/long_options.h"
 
+#include <float.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,23 +55,40 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, PARTS, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, CHECKPOINT, EVERY,
-    RESUME, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS, NO_PROGRESS, VERSION, HELP
+    FLAG, NAME, THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, PARTS, NUMBERING, MEMORY, EVERY, TIME_LIMIT, PROGRESS,
+    NO_PROGRESS
 };
 
 static const struct kind {
     const char *name;
     enum id id;
-    bool has_value;
+    const char *wanted; /* what a value must be, for errors; NULL: there is none */
+    size_t at;          /* of a flag or a name: where it goes */
 } kinds[] = {
-    {"threads", THREADS, true},     {"max-area", MAX_AREA, true},  {"min-angle", MIN_ANGLE, true},
-    {"output", OUTPUT, true},       {"report", REPORT, true},      {"blocks", BLOCKS, true},
-    {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
-    {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
-    {"version", VERSION, false},    {"help", HELP, false},         {"holes", HOLES, true},
-    {"memory", MEMORY, true},       {"scratch", SCRATCH, true},    {"checkpoint", CHECKPOINT, true},
-    {"every", EVERY, true},         {"resume", RESUME, true},      {"parts", PARTS, true},
+    {"threads", THREADS, "not a whole number from 1 to 1024", 0},
+    {"max-area", MAX_AREA, "not a number > 0", 0},
+    {"min-angle", MIN_ANGLE, "not a number from 0 to 60", 0}, /* no triangle has three angles above 60 degrees */
+    {"holes", HOLES, "neither auto nor points", 0},
+    {"output", OUTPUT, "", 0},
+    {"parts", PARTS, "not a whole number from 1 to 512", 0},
+    {"report", NAME, "", offsetof(struct long_options, report)},
+    {"blocks", NAME, "", offsetof(struct long_options, blocks)},
+    {"numbering", NUMBERING, "neither curve nor blocks", 0},
+    {"memory", MEMORY, "not a size such as 500M, 4G or 60%, from 1M on", 0},
+    {"scratch", NAME, "", offsetof(struct long_options, scratch)},
+    {"checkpoint", NAME, "", offsetof(struct long_options, checkpoint)},
+    {"every", EVERY, "not a number of minutes", 0},
+    {"resume", NAME, "", offsetof(struct long_options, resume)},
+    {"dry-run", FLAG, NULL, offsetof(struct long_options, dry_run)},
+    {"time-limit", TIME_LIMIT, "not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", 0},
+    {"write-partial", FLAG, NULL, offsetof(struct long_options, write_partial)},
+    {"progress", PROGRESS, NULL, 0},
+    {"no-progress", NO_PROGRESS, NULL, 0},
+    {"version", FLAG, NULL, offsetof(struct long_options, version)},
+    {"help", FLAG, NULL, offsetof(struct long_options, help)},
 };
+
+_Static_assert((int)LONG_OPTIONS_MAX_THREADS == 1024 && (int)TRI_MOST_PARTS == 512, "as the errors say");
 
 static const struct kind *find_kind(const char *name, size_t length)
 {
@@ -79,145 +98,84 @@ static const struct kind *find_kind(const char *name, size_t length)
     return NULL;
 }
 
-/* The whole text is a number. */
-static bool is_real(const char *text, double *value)
-{
-    const char *end = text + strlen(text);
-    return end > text && tri_scan_real(text, end, value) == end;
-}
+/* --- values; false: the text is none, and nothing has changed */
 
-/* The whole text is a number from 1 to most; 0: it is not. */
-static int number_up_to(int most, const char *text)
+/* A whole number from 1 to most. */
+static bool take_whole(const char *text, int most, int *value)
 {
     int64_t number;
     const char *end = text + strlen(text);
-    if (end == text || tri_scan_integer(text, end, &number) != end || number < 1)
-        return 0;
-    return number <= most ? (int)number : 0;
+    if (end == text || tri_scan_integer(text, end, &number) != end || number < 1 || number > most)
+        return false;
+    *value = (int)number;
+    return true;
 }
 
-static int number_of_threads(const char *text) { return number_up_to(LONG_OPTIONS_MAX_THREADS, text); }
+/* A number, and maybe a letter that stands for a factor; the product is from low to high. */
+static bool take_real(const char *text, const char *letters, const double *factor, double low, double high,
+                      double *value)
+{
+    double number;
+    const char *end = tri_scan_real(text, text + strlen(text), &number);
+    const char *letter = *end ? strchr(letters, *end) : NULL;
+    if (end == text || (*end && (!letter || end[1])))
+        return false;
+    number *= letter ? factor[letter - letters] : 1;
+    if (!(number >= low && number <= high))
+        return false;
+    *value = number;
+    return true;
+}
+
+static bool take_word(const char *text, const char *off, const char *on, bool *value)
+{
+    const bool is_on = strcmp(text, on) == 0, known = is_on || strcmp(text, off) == 0;
+    *value = known ? is_on : *value;
+    return known;
+}
+
+/* Bytes, or a share of what the machine has. */
+static bool take_memory(struct long_options *options, const char *text)
+{
+    static const double binary[] = {0x1p10, 0x1p20, 0x1p30, 0x1p40}, per_cent[] = {1};
+    double bytes = 0, share = 0;
+    const bool is_share = strchr(text, '%') != NULL;
+    if (is_share ? !take_real(text, "%", per_cent, DBL_TRUE_MIN, 100, &share)
+                 : !take_real(text, "KMGT", binary, 0x1p20, 0x1p60, &bytes))
+        return false;
+    options->memory = bytes;
+    options->memory_share = share / 100;
+    return true;
+}
+
+static bool take_value(struct long_options *options, struct tri_switches *switches, enum id id, const char *text)
+{
+    static const double seconds[] = {1, 60, 3600};
+    switch (id) {
+    case THREADS: return take_whole(text, LONG_OPTIONS_MAX_THREADS, &options->threads);
+    case PARTS: return take_whole(text, TRI_MOST_PARTS, &options->n_parts);
+    case MAX_AREA:
+        return take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) && (switches->area = true);
+    case MIN_ANGLE: return take_real(text, "", NULL, 0, 60, &switches->min_angle) && (switches->angle = true);
+    case EVERY: return take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
+    case TIME_LIMIT: return take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
+    case MEMORY: return take_memory(options, text);
+    case HOLES: return take_word(text, "points", "auto", &switches->even_odd);
+    case NUMBERING: return take_word(text, "curve", "blocks", &options->by_block);
+    default: return false;
+    }
+}
 
 int long_options_threads(const struct long_options *options)
 {
     const char *openmp = getenv("OMP_NUM_THREADS"), *slurm = getenv("SLURM_CPUS_PER_TASK");
-    if (options->threads || !slurm || (openmp && *openmp))
-        return options->threads;
-    return number_of_threads(slurm);
+    int threads = options->threads;
+    if (threads == 0 && slurm && !(openmp && *openmp))
+        (void)take_whole(slurm, LONG_OPTIONS_MAX_THREADS, &threads);
+    return threads;
 }
 
-static enum tri_status take_threads(struct long_options *options, const char *value, struct tri_error *error)
-{
-    int threads = number_of_threads(value);
-    if (!threads)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--threads: \"%.40s\" is not a whole number from 1 to %d", value,
-                        LONG_OPTIONS_MAX_THREADS);
-    options->threads = threads;
-    return TRI_OK;
-}
-
-static enum tri_status take_area(struct tri_switches *switches, const char *value, struct tri_error *error)
-{
-    double area;
-    if (!is_real(value, &area) || !(area > 0 && area <= 1.7976931348623157e308))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--max-area: \"%.40s\" is not a number > 0", value);
-    switches->area = true;
-    switches->max_area = area;
-    return TRI_OK;
-}
-
-/* No triangle has three angles above 60 degrees. */
-static enum tri_status take_angle(struct tri_switches *switches, const char *value, struct tri_error *error)
-{
-    double angle;
-    if (!is_real(value, &angle) || !(angle >= 0 && angle <= 60))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-angle: \"%.40s\" is not a number from 0 to 60", value);
-    switches->angle = true;
-    switches->min_angle = angle;
-    return TRI_OK;
-}
-
-static enum tri_status take_holes(struct tri_switches *switches, const char *value, struct tri_error *error)
-{
-    switches->even_odd = strcmp(value, "auto") == 0;
-    if (switches->even_odd || strcmp(value, "points") == 0)
-        return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--holes: \"%.40s\" is neither auto nor points", value);
-}
-
-static enum tri_status take_numbering(struct long_options *options, const char *value, struct tri_error *error)
-{
-    options->by_block = strcmp(value, "blocks") == 0;
-    if (options->by_block || strcmp(value, "curve") == 0)
-        return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--numbering: \"%.40s\" is neither curve nor blocks", value);
-}
-
-/* Seconds, or a number with s, m or h behind it. */
-static enum tri_status take_time(struct long_options *options, const char *value, struct tri_error *error)
-{
-    static const struct {
-        char letter;
-        double seconds;
-    } units[] = {{0, 1}, {'s', 1}, {'m', 60}, {'h', 3600}};
-    double number = 0;
-    const char *end = tri_scan_real(value, value + strlen(value), &number);
-    for (size_t i = 0; end > value && i < sizeof units / sizeof *units; i++) {
-        double seconds = number * units[i].seconds;
-        if (end[0] != units[i].letter || (end[0] && end[1]) || !(seconds >= 1e-3 && seconds <= 1e9))
-            continue;
-        options->time_limit = seconds;
-        return TRI_OK;
-    }
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
-                    "--time-limit: \"%.40s\" is not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", value);
-}
-
-static enum tri_status take_every(struct long_options *options, const char *value, struct tri_error *error)
-{
-    double minutes;
-    if (!is_real(value, &minutes) || !(minutes >= 0 && minutes <= 1e6))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--every: \"%.40s\" is not a number of minutes", value);
-    options->every = minutes;
-    options->has_every = true;
-    return TRI_OK;
-}
-
-static bool ends_with(const char *end, char letter) { return end[0] == letter && (letter == 0 || end[1] == 0); }
-
-/* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
-static enum tri_status take_memory(struct long_options *options, const char *value, struct tri_error *error)
-{
-    static const struct {
-        char letter;
-        double bytes;
-    } units[] = {{0, 1}, {'K', 0x1p10}, {'M', 0x1p20}, {'G', 0x1p30}, {'T', 0x1p40}};
-    double number = 0;
-    const char *end = tri_scan_real(value, value + strlen(value), &number);
-    if (end > value && ends_with(end, '%') && number > 0 && number <= 100) {
-        options->memory_share = number / 100;
-        options->memory = 0;
-        return TRI_OK;
-    }
-    for (size_t i = 0; end > value && i < sizeof units / sizeof *units; i++) {
-        double bytes = number * units[i].bytes;
-        if (!ends_with(end, units[i].letter) || !(bytes >= 0x1p20 && bytes <= 0x1p60))
-            continue;
-        options->memory = bytes;
-        options->memory_share = 0;
-        return TRI_OK;
-    }
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
-                    "--memory: \"%.40s\" is not a size such as 500M, 4G or 60%%, from 1M on", value);
-}
-
-static enum tri_status take_name(const char **name, const struct kind *kind, const char *value, struct tri_error *error)
-{
-    if (!*value)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s: the name is empty", kind->name);
-    *name = value;
-    return TRI_OK;
-}
+/* --- output */
 
 /* One more file of some kind. */
 static enum tri_status add_file(const char **names, int *n, const char *value, struct tri_error *error)
@@ -236,8 +194,7 @@ static bool is_base(const char *value)
     return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, STREAM_SUFFIX);
 }
 
-static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
-                                   struct tri_error *error)
+static enum tri_status take_output(struct long_options *options, const char *value, struct tri_error *error)
 {
     if (stream_is_wanted(value))
         return add_file(options->streams, &options->n_streams, value, error);
@@ -247,19 +204,11 @@ static enum tri_status take_output(struct long_options *options, const struct ki
     if (missing)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX
                         ", " TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
-    if (*value && !is_base(value))
+    if (!is_base(value))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
                         "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);
-    return take_name(&options->output, kind, value, error);
-}
-
-static enum tri_status take_parts(struct long_options *options, const char *value, struct tri_error *error)
-{
-    options->n_parts = number_up_to(TRI_MOST_PARTS, value);
-    if (options->n_parts)
-        return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts: \"%.40s\" is not a whole number from 1 to %d", value,
-                    TRI_MOST_PARTS);
+    options->output = value;
+    return TRI_OK;
 }
 
 enum tri_status long_options_check(const struct long_options *options, struct tri_error *error)
@@ -278,30 +227,20 @@ enum tri_status long_options_check(const struct long_options *options, struct tr
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
                              const char *value, struct tri_error *error)
 {
+    void *at = (char *)options + kind->at;
+    if ((kind->id == NAME || kind->id == OUTPUT) && !*value)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s: the name is empty", kind->name);
     switch (kind->id) {
-    case THREADS: return take_threads(options, value, error);
-    case MAX_AREA: return take_area(switches, value, error);
-    case MIN_ANGLE: return take_angle(switches, value, error);
-    case HOLES: return take_holes(switches, value, error);
-    case OUTPUT: return take_output(options, kind, value, error);
-    case PARTS: return take_parts(options, value, error);
-    case REPORT: return take_name(&options->report, kind, value, error);
-    case BLOCKS: return take_name(&options->blocks, kind, value, error);
-    case NUMBERING: return take_numbering(options, value, error);
-    case TIME_LIMIT: return take_time(options, value, error);
-    case MEMORY: return take_memory(options, value, error);
-    case SCRATCH: return take_name(&options->scratch, kind, value, error);
-    case CHECKPOINT: return take_name(&options->checkpoint, kind, value, error);
-    case RESUME: return take_name(&options->resume, kind, value, error);
-    case EVERY: return take_every(options, value, error);
-    case DRY_RUN: options->dry_run = true; break;
-    case WRITE_PARTIAL: options->write_partial = true; break;
-    case PROGRESS: options->progress = PROGRESS_YES; break;
-    case NO_PROGRESS: options->progress = PROGRESS_NO; break;
-    case VERSION: options->version = true; break;
-    case HELP: options->help = true; break;
+    case FLAG: *(bool *)at = true; return TRI_OK;
+    case NAME: *(const char **)at = value; return TRI_OK;
+    case PROGRESS: options->progress = PROGRESS_YES; return TRI_OK;
+    case NO_PROGRESS: options->progress = PROGRESS_NO; return TRI_OK;
+    case OUTPUT: return take_output(options, value, error);
+    default: break;
     }
-    return TRI_OK;
+    if (take_value(options, switches, kind->id, value))
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s: \"%.40s\" is %s", kind->name, value, kind->wanted);
 }
 
 enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
@@ -314,9 +253,9 @@ enum tri_status long_options_take(struct long_options *options, struct tri_switc
     if (!kind)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "there is no option --%.*s (see --help)",
                         (int)(length < 40 ? length : 40), name);
-    if (value && !kind->has_value)
+    if (value && !kind->wanted)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s takes no value", kind->name);
-    if (!value && kind->has_value) {
+    if (!value && kind->wanted) {
         if (*at + 1 >= argc)
             return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s needs a value", kind->name);
         value = argv[++*at];

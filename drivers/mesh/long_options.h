@@ -29,13 +29,31 @@ struct long_options {
     double time_limit;  /* seconds; 0: none */
     double memory;      /* bytes that the process may take; 0: not given, or .. */
     double memory_share; /* .. this share of what the machine has, to 1; 0: not given */
-    const char *scratch; /* directory; NULL: not given */
+    const char *scratch; /* directory for what does not fit in memory; NULL: not given */
     const char *checkpoint, *resume; /* directories; NULL: not given */
     bool has_every;
     double every;       /* minutes between checkpoints, if given */
     bool write_partial, dry_run;
     bool version, help;
 };
+
+/* Where a run that is stopped takes the time to keep its state; NULL: nowhere. */
+static inline const char *long_options_state(const struct long_options *o)
+{
+    return o->resume ? o->resume : o->checkpoint;
+}
+
+/* Are there files of other formats, and none of Triangle's? */
+static inline bool long_options_exports_alone(const struct long_options *o)
+{
+    return o->n_exports + o->n_streams > 0 && !o->output;
+}
+
+/* Does its name, "-", stand for standard output? */
+static inline bool long_options_report_is_printed(const struct long_options *o)
+{
+    return o->report[0] == '-' && o->report[1] == 0;
+}
 
 /* Takes argv[*at], which begins with two dashes, and the next word too where that is its value (--name value; or
  * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/export.h"
+#include "drivers/mesh/stages.h"
+#include "drivers/mesh/streams.h"
 #include "triangle/mesh/grid.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
@@ -14,58 +15,45 @@ enum plan { NOT_ASKED, SUPPRESSED, WRITTEN };
 
 /* --- the table of files, in the order in which they are written */
 
-static enum plan asked(bool by_switch) { return by_switch ? WRITTEN : NOT_ASKED; }
-
-static enum plan plan_node(const struct mesh_files *f)
-{
-    const struct tri_switches *s = &f->arguments->switches;
-    return s->no_node || (s->no_iteration && !f->points_in_poly) ? SUPPRESSED : WRITTEN;
-}
-
-static enum plan plan_ele(const struct mesh_files *f) { return f->arguments->switches.no_ele ? SUPPRESSED : WRITTEN; }
-
-static enum plan plan_poly(const struct mesh_files *f)
-{
-    const struct tri_switches *s = &f->arguments->switches;
-    if (!tri_switches_show_segments(s))
-        return NOT_ASKED;
-    return s->no_poly || s->no_iteration ? SUPPRESSED : WRITTEN;
-}
-
-static enum plan plan_off(const struct mesh_files *f) { return asked(f->arguments->switches.off); }
-static enum plan plan_edge(const struct mesh_files *f) { return asked(f->arguments->switches.edges); }
-static enum plan plan_voronoi(const struct mesh_files *f) { return asked(f->arguments->switches.voronoi); }
-static enum plan plan_neigh(const struct mesh_files *f) { return asked(f->arguments->switches.neighbors); }
-
-/* Not a word about what nobody wants. */
-static enum plan plan_of(const struct mesh_files *files, enum plan (*plan)(const struct mesh_files *files))
-{
-    return files->exports_alone ? NOT_ASKED : plan(files);
-}
+enum { NODE, ELE, POLY, OFF, EDGE, V_NODE, V_EDGE, NEIGH, N_KINDS };
 
 static const struct kind {
     const char *suffix, *article;
-    enum plan (*plan)(const struct mesh_files *files);
     tri_write_call *write;
     bool of_voronoi; /* it shows the Voronoi diagram */
-} kinds[] = {
-    {".node", "a", plan_node, tri_write_node, false},
-    {".ele", "an", plan_ele, tri_write_ele, false},
-    {".poly", "a", plan_poly, tri_write_poly, false},
-    {".off", "an", plan_off, tri_write_off, false},
-    {".edge", "an", plan_edge, tri_write_edge, false},
-    {".v.node", "a", plan_voronoi, tri_write_node, true},
-    {".v.edge", "a", plan_voronoi, tri_write_v_edge, true},
-    {".neigh", "a", plan_neigh, tri_write_neigh, false},
+} kinds[N_KINDS] = {
+    {".node", "a", tri_write_node, false},   {".ele", "an", tri_write_ele, false},
+    {".poly", "a", tri_write_poly, false},   {".off", "an", tri_write_off, false},
+    {".edge", "an", tri_write_edge, false},  {".v.node", "a", tri_write_node, true},
+    {".v.edge", "a", tri_write_v_edge, true}, {".neigh", "a", tri_write_neigh, false},
 };
 
-enum { N_KINDS = sizeof kinds / sizeof *kinds };
+static enum plan asked(bool by_switch, bool suppressed)
+{
+    return !by_switch ? NOT_ASKED : suppressed ? SUPPRESSED : WRITTEN;
+}
 
-bool mesh_files_has(const struct mesh_files *files, const char *suffix)
+/* Where other formats stand alone, not a word about what nobody wants. */
+static enum plan plan_of(const struct run *run, int kind)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    const bool any = !long_options_exports_alone(run->hooks->options);
+    switch (kind) {
+    case NODE: return asked(any, s->no_node || (s->no_iteration && !run->points_in_poly));
+    case ELE: return asked(any, s->no_ele);
+    case POLY: return asked(any && tri_switches_show_segments(s), s->no_poly || s->no_iteration);
+    case OFF: return asked(any && s->off, false);
+    case EDGE: return asked(any && s->edges, false);
+    case NEIGH: return asked(any && s->neighbors, false);
+    default: return asked(any && s->voronoi, false);
+    }
+}
+
+bool mesh_files_has(const struct run *run, const char *suffix)
 {
     for (int k = 0; k < N_KINDS; k++)
         if (strcmp(kinds[k].suffix, suffix) == 0)
-            return plan_of(files, kinds[k].plan) == WRITTEN;
+            return plan_of(run, k) == WRITTEN;
     return false;
 }
 
@@ -82,54 +70,59 @@ static enum tri_status try_file(struct tri_output_set *set, const char *path, co
     return interrupt_open(set, path, &output, error);
 }
 
-static enum tri_status try_export(struct tri_output_set *set, const struct mesh_files *files, const char *path,
+/* name: malloc'ed, and freed here; NULL: no memory. */
+static enum tri_status try_name(struct tri_output_set *set, char *name, const struct file_names *read,
+                                struct tri_error *error)
+{
+    enum tri_status status = name ? try_file(set, name, read, error)
+                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    free(name);
+    return status;
+}
+
+static enum tri_status try_export(struct tri_output_set *set, const struct long_options *o, const char *path,
                                   const struct file_names *read, struct tri_error *error)
 {
-    const struct export export = export_of(path, files->n_parts);
+    const struct export export = export_of(path, o->n_parts);
     enum tri_status status = TRI_OK;
-    for (int i = 0; i < export_files(&export) && !status; i++) {
-        char *name = export_name(&export, path, i);
-        status = name ? try_file(set, name, read, error)
-                      : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        free(name);
-    }
+    for (int i = 0; i < export_files(&export) && !status; i++)
+        status = try_name(set, export_name(&export, path, i), read, error);
     return status;
 }
 
-static enum tri_status try_all(struct tri_output_set *set, const struct mesh_files *files,
-                               const struct file_names *further, const struct file_names *read,
+static enum tri_status try_all(struct tri_output_set *set, const struct run *run, const struct file_names *read,
                                struct tri_error *error)
 {
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    for (int k = 0; k < N_KINDS && !status; k++) {
-        if (plan_of(files, kinds[k].plan) != WRITTEN)
-            continue;
-        char *path = tri_joined(files->arguments->output, kinds[k].suffix);
-        status = path ? try_file(set, path, read, error)
-                      : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        free(path);
+    for (int k = 0; k < N_KINDS && !status; k++)
+        if (plan_of(run, k) == WRITTEN)
+            status = try_name(set, tri_joined(run->arguments->output, kinds[k].suffix), read, error);
+    for (int i = 0; i < o->n_exports && !status; i++)
+        status = try_export(set, o, o->exports[i], read, error);
+    for (int i = 0; i < o->n_streams && !status; i++) {
+        status = try_file(set, o->streams[i], read, error);
+        status = status ? status : try_name(set, stream_xdmf(o->streams[i]), read, error);
     }
-    for (int i = 0; i < files->exports->n && !status; i++)
-        status = try_export(set, files, files->exports->name[i], read, error);
-    for (int i = 0; i < further->n && !status; i++)
-        status = try_file(set, further->name[i], read, error);
-    return status;
+    if (!status && o->report && !long_options_report_is_printed(o))
+        status = try_file(set, o->report, read, error);
+    return status || !o->blocks ? status : try_file(set, o->blocks, read, error);
 }
 
-enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
-                                 const struct file_names *read, struct tri_error *error)
+enum tri_status mesh_files_check(const struct run *run, const struct file_names *read, struct tri_error *error)
 {
     static struct tri_output_set set; /* large; handlers know its names until interrupt_drop */
     interrupt_begin(&set);
     set.trial = true;
-    enum tri_status status = try_all(&set, files, further, read, error);
+    enum tri_status status = try_all(&set, run, read, error);
     interrupt_drop(&set);
     return status;
 }
 
 /* What is written to one file after the other. */
 struct writer {
-    const struct mesh_files *files;
+    const struct run *run;
+    const struct console *console;
     struct tri_grid grid;
     struct tri_output_set *set;
     struct tri_error *error;
@@ -137,56 +130,59 @@ struct writer {
 
 static enum tri_status write_file(struct writer *w, const struct kind *kind)
 {
-    const struct mesh_files *files = w->files;
-    char *path = tri_joined(files->arguments->output, kind->suffix);
+    const struct arguments *arguments = w->run->arguments;
+    const struct tri_executor *executor = w->run->hooks->executor;
+    char *path = tri_joined(arguments->output, kind->suffix);
     if (!path)
         return tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    console_say(files->console, "Writing %s.\n", path);
+    console_say(w->console, "Writing %s.\n", path);
     struct tri_output *output;
     const struct tri_grid voronoi = tri_grid_voronoi(&w->grid);
     enum tri_status status = interrupt_open(w->set, path, &output, w->error);
     free(path);
-    status = status ? status : kind->write(output, kind->of_voronoi ? &voronoi : &w->grid, files->executor, w->error);
-    return status ? status : tri_write_comment(output, files->arguments->argc, files->arguments->argv, w->error);
+    status = status ? status : kind->write(output, kind->of_voronoi ? &voronoi : &w->grid, executor, w->error);
+    return status ? status : tri_write_comment(output, arguments->argc, arguments->argv, w->error);
 }
 
 /* In another program's format, which need not know comments. */
 static enum tri_status write_export(struct writer *w, const char *path)
 {
-    struct export export = export_of(path, w->files->n_parts);
+    struct export export = export_of(path, w->run->hooks->options->n_parts);
     char *first = export_name(&export, path, 0), *last = export_name(&export, path, export_files(&export) - 1);
     if (first && last)
-        console_say(w->files->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
+        console_say(w->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
                     export.n_parts > 1 ? last : "");
     free(first);
     free(last);
     enum tri_status status = export_open(&export, path, w->set, w->error);
-    return status ? status : export_write(&export, &w->grid, w->files->executor, w->error);
+    return status ? status : export_write(&export, &w->grid, w->run->hooks->executor, w->error);
 }
 
 static enum tri_status write_all(struct writer *w)
 {
+    const struct long_options *o = w->run->hooks->options;
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS; k++) {
-        enum plan plan = plan_of(w->files, kinds[k].plan);
+        enum plan plan = plan_of(w->run, k);
         if (plan == SUPPRESSED)
-            console_say(w->files->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
+            console_say(w->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
         status = plan == WRITTEN ? write_file(w, &kinds[k]) : TRI_OK;
         if (status)
             return status;
     }
-    for (int i = 0; i < w->files->exports->n && !status; i++)
-        status = write_export(w, w->files->exports->name[i]);
+    for (int i = 0; i < o->n_exports && !status; i++)
+        status = write_export(w, o->exports[i]);
     return status;
 }
 
-enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error)
+enum tri_status mesh_files_write(const struct run *run, const struct console *console, struct tri_output_set *set,
+                                 struct tri_error *error)
 {
-    const struct tri_switches *s = &files->arguments->switches;
-    struct writer w = {.files = files, .set = set, .error = error};
-    struct tri_grid_options options = tri_switches_grid(s, files->mesh, files->pslg, files->elements);
-    options.is_edge = s->segments ? files->is_edge : NULL;
-    options.base = files->base;
+    const struct tri_switches *s = &run->arguments->switches;
+    struct writer w = {.run = run, .console = console, .set = set, .error = error};
+    struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
+    options.is_edge = s->segments ? run->is_edge : NULL;
+    options.base = run->base;
     enum tri_status status = tri_grid_make(&w.grid, &options, error);
     status = status ? status : write_all(&w);
     tri_grid_free(&w.grid);

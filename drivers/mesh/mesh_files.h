@@ -2,15 +2,14 @@
 #ifndef DRIVERS_MESH_MESH_FILES_H
 #define DRIVERS_MESH_MESH_FILES_H
 
-#include "drivers/mesh/arguments.h"
+#include <stdbool.h>
+
 #include "drivers/mesh/console.h"
-#include "triangle/base/executor.h"
-#include "triangle/cdt/reconstruct.h"
-#include "triangle/mesh/mesh.h"
-#include "triangle/mesh/pslg.h"
 #include "triangle/text/output.h"
 
-enum { MESH_FILES_MOST_NAMES = 16 };
+struct run; /* drivers/mesh/stages.h */
+
+enum { MESH_FILES_MOST_NAMES = 4 };
 
 /* Bytes of memory for rows on their way to a file: a triangle, and at the most. */
 enum { MESH_FILES_ROW_BYTES = 64, MESH_FILES_BYTES = 20 << 20 };
@@ -21,34 +20,18 @@ struct file_names {
     const char *name[MESH_FILES_MOST_NAMES];
 };
 
-/* What is written, and how. All borrowed. */
-struct mesh_files {
-    const struct arguments *arguments;
-    const struct console *console;
-    const struct tri_executor *executor; /* NULL: one task after another */
-    const struct tri_mesh *mesh;         /* without free numbers */
-    const struct tri_pslg *pslg;         /* the input: its points are written bit by bit as they were read */
-    bool points_in_poly;                 /* the points came from a .poly file */
-    int32_t base;                        /* 0 or 1 */
-    const struct tri_elements *elements; /* -r: the input's triangles; else n is 0 */
-    const struct file_names *exports;    /* files in the formats that their suffixes name */
-    bool exports_alone;                  /* no others */
-    int n_parts;                         /* into which exports are cut that can be; 0: none */
-    const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
-                                            NULL: no -r */
-};
-
 /* Is the file with this suffix, ".node", among those that are written? */
-bool mesh_files_has(const struct mesh_files *files, const char *suffix);
+bool mesh_files_has(const struct run *run, const char *suffix);
 
-/* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
- * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, exports and
- * points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
-                                 const struct file_names *read, struct tri_error *error);
+/* Looks whether all files of the run could be created, so that nobody waits for a mesh that cannot be kept, and whether
+ * each is a file of its own that nobody has read. Leaves nothing behind. After the input has been read.
+ * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status mesh_files_check(const struct run *run, const struct file_names *read, struct tri_error *error);
 
-/* Writes all of them into the guarded set (drivers/interrupt.h), whoever fails: its caller commits or aborts. Says a
- * line for each, and one for all parts of a mesh. */
-enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error);
+/* Writes the mesh, which has no free numbers, into the guarded set (drivers/interrupt.h), whoever fails: its caller
+ * commits or aborts. Input points are written bit by bit as they were read. Says a line for each file, and one for all
+ * parts of a mesh. */
+enum tri_status mesh_files_write(const struct run *run, const struct console *console, struct tri_output_set *set,
+                                 struct tri_error *error);
 
 #endif

@@ -88,12 +88,12 @@ static double exports_of(const struct run *run, double vertices, double triangle
     double row = vertices * (28 + 8 * run->mesh.n_attributes) + triangles * (nodes * index + 4);
     double marker = s->no_markers ? 0 : 4;
     double h5 = vertices * (16 + marker + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* the rest deflates */
-    return run->hooks->exports.n * row + run->hooks->n_streamed * h5;
+    return run->hooks->options->n_exports * row + run->hooks->options->n_streams * h5;
 }
 
 static double disk_of(const struct run *run, double vertices, double triangles)
 {
-    double text = run->hooks->exports_alone ? 0 : text_of(run, vertices, triangles);
+    double text = long_options_exports_alone(run->hooks->options) ? 0 : text_of(run, vertices, triangles);
     return text + exports_of(run, vertices, triangles);
 }
 
@@ -111,20 +111,20 @@ static double bytes_of_check(const struct run *run, double grown)
 {
     if (!run->arguments->switches.check)
         return 0;
-    if (run->hooks->limits.memory > 0)
+    if (run->hooks->options->memory > 0)
         return grown + self_check_least_bytes(&run->mesh);
     return SELF_CHECK_BYTES * (grown + run->mesh.n_triangles) + SELF_CHECK_SUB_BYTES * (double)run->mesh.n_subs;
 }
 
-double estimate_streams(int n_files, double triangles)
+double estimate_streams(const struct run *run, double triangles)
 {
-    return n_files * fmin(LEAST_STREAMED + STREAM_BYTES * triangles, MOST_STREAMED);
+    return run->hooks->options->n_streams * fmin(LEAST_STREAMED + STREAM_BYTES * triangles, MOST_STREAMED);
 }
 
 /* What is done with a mesh that is finished, one after the other. */
 static double bytes_beside(const struct run *run, double grown)
 {
-    return fmax(bytes_of_check(run, grown), estimate_streams(run->hooks->n_streamed, run->mesh.n_triangles + grown));
+    return fmax(bytes_of_check(run, grown), estimate_streams(run, run->mesh.n_triangles + grown));
 }
 
 /* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
@@ -200,7 +200,7 @@ static bool is_swept(const struct run *run)
 
 bool estimate_can_park(const struct run *run, double held)
 {
-    const bool bounded = run->hooks->limits.memory > 0;
+    const bool bounded = run->hooks->options->memory > 0;
     return resources_memory_end() != RESOURCES_ADDRESS_SPACE || (bounded && held <= resources_memory());
 }
 
@@ -228,6 +228,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
 {
     if (run->hooks->n_ranks > 0 && sweeps)
         return needs_of_rank(run, grown);
+    const struct long_options *o = run->hooks->options;
     const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = whole};
@@ -236,7 +237,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
     n.filed = floor_of(run, whole, PARKED_WORK * grown + pages + bytes_beside(run, grown));
     n.filed_away = (PARKED_BYTES + LISTS_BYTES) * grown;
-    n.kept = run->hooks->exports.n > 0 ? (KEPT_BYTES + (run->hooks->n_parts > 0 ? PART_BYTES : 0)) * grown : 0;
+    n.kept = o->n_exports > 0 ? (KEPT_BYTES + (o->n_parts > 0 ? PART_BYTES : 0)) * grown : 0;
     n.states = WHOLE_STATES * grown;
     n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;
     return n;

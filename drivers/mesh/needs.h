@@ -31,8 +31,8 @@ struct estimate {
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */
 struct estimate estimate_make(const struct run *run, bool with_seconds);
 
-/* Bytes of memory that handing out a mesh of so many triangles takes beside it, to so many HDF5 files. */
-double estimate_streams(int n_files, double triangles);
+/* Bytes of memory that handing out a mesh of so many triangles takes beside it, to the HDF5 files of the run. */
+double estimate_streams(const struct run *run, double triangles);
 
 /* Could so much be moved to files that are mapped? Not where the address space ends before what --memory allows. */
 bool estimate_can_park(const struct run *run, double held);

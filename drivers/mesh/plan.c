@@ -15,7 +15,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "drivers/mesh/disk_needs.h"
 #include "drivers/resources.h"
 #include "triangle/base/size_text.h"
 
@@ -40,7 +39,7 @@ static const double BUFFER_BYTES = 3e7;
 /* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
 static bool is_strict(const struct run *run)
 {
-    return run->hooks->limits.memory > 0 || resources_memory_end() != RESOURCES_SYSTEM;
+    return run->hooks->options->memory > 0 || resources_memory_end() != RESOURCES_SYSTEM;
 }
 
 /* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
@@ -53,7 +52,7 @@ static double system_memory_left(const struct run *run)
 
 double plan_memory_left(const struct run *run)
 {
-    double allowed = run->hooks->limits.memory, left = system_memory_left(run);
+    double allowed = run->hooks->options->memory, left = system_memory_left(run);
     return allowed > 0 ? fmin(left, fmax(allowed - resources_memory_used(), 0)) : left;
 }
 
@@ -85,7 +84,7 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
 static double unrefined_streams(const struct run *run)
 {
     const double triangles = run->elements.n > 0 ? run->elements.n : 2.0 * run->pslg.n_points;
-    return run->options.refine ? 0 : estimate_streams(run->hooks->n_streamed, triangles);
+    return run->options.refine ? 0 : estimate_streams(run, triangles);
 }
 
 /* At its peak, what has been read included. */
@@ -135,6 +134,11 @@ static const char *by_switches(const struct tri_switches *s)
     return NULL;
 }
 
+static const char *by_options(const struct long_options *o)
+{
+    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
+}
+
 const char *plan_obstacle(const struct run *run)
 {
     const struct run_hooks *hooks = run->hooks;
@@ -144,9 +148,8 @@ const char *plan_obstacle(const struct run *run)
         return "no bounds";
     if (run->report.loose > 0)
         return "segments that are no edges of the mesh";
-    if (hooks->whole_mesh)
-        return hooks->whole_mesh;
-    return by_switches(&run->arguments->switches);
+    const char *by_option = by_options(hooks->options);
+    return by_option ? by_option : by_switches(&run->arguments->switches);
 }
 
 /* --- refusals and warnings */
@@ -179,7 +182,7 @@ static enum tri_status check_number(const struct estimate *e, const char *why, c
 static void suggest(const struct run *run, double needed, char *text, size_t size)
 {
     *text = 0;
-    if (run->hooks->limits.memory > 0 && needed <= system_memory_left(run))
+    if (run->hooks->options->memory > 0 && needed <= system_memory_left(run))
         snprintf(text, size, "; --memory %.0fM would do", ceil((resources_memory_used() + needed) / 0x1p20) + 1);
 }
 
@@ -233,18 +236,63 @@ static enum tri_status check_stream(const struct run *run, const struct estimate
     return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
 }
 
+/* --- disks */
+
+enum { DISK_PLACES = 3 };
+
 /* What a run puts on disk. */
+struct disk_place {
+    const char *what; /* "its files" */
+    const char *path; /* a folder, or a file that is there or will be */
+    double bytes;     /* that will be needed there */
+};
+
+/* Bytes left where the place is; HUGE_VAL: not known. */
+static double disk_left(const struct disk_place *place) { return resources_disk(place->path); }
+
+static bool device_of(const struct disk_place *place, dev_t *device)
+{
+    char folder[RESOURCES_PATH];
+    struct stat info;
+    resources_folder(place->path, folder);
+    bool known = stat(folder, &info) == 0;
+    *device = known ? info.st_dev : 0;
+    return known;
+}
+
+static bool are_on_one_disk(const struct disk_place *a, const struct disk_place *b)
+{
+    dev_t one, other;
+    return a == b || (device_of(a, &one) && device_of(b, &other) && one == other);
+}
+
+/* The first place on a disk that has less left than all places on it need; NULL: none. *needed receives that. */
+static const struct disk_place *too_small(const struct disk_place places[DISK_PLACES], double *needed)
+{
+    for (int i = 0; i < DISK_PLACES; i++) {
+        *needed = 0;
+        for (int k = 0; places[i].bytes > 0 && k < DISK_PLACES; k++)
+            *needed += places[k].bytes > 0 && are_on_one_disk(&places[i], &places[k]) ? places[k].bytes : 0;
+        if (*needed > 0 && *needed > disk_left(&places[i]))
+            return &places[i];
+    }
+    return NULL;
+}
+
 static void list_places(struct disk_place places[DISK_PLACES], const struct run *run, const struct needs *n,
                         double left)
 {
-    const struct run_limits *limits = &run->hooks->limits;
-    places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
-                                                                       : run->arguments->output, n->files};
+    const struct long_options *limits = run->hooks->options;
+    const char *first = limits->n_streams > 0                 ? limits->streams[0]
+                        : long_options_exports_alone(limits) ? limits->exports[0]
+                                                             : run->arguments->output;
+    places[0] = (struct disk_place){"the files", first, n->files};
     const double whole = run->plan.filed && n->whole > left ? n->filed_away : 0;
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
                                     run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : whole};
     const double states = run->plan.swept ? n->checkpoint : n->states;
-    places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
+    const char *state = long_options_state(limits);
+    places[2] = (struct disk_place){"the checkpoint", state, state ? states : 0};
 }
 
 static double sum_of(const struct disk_place places[DISK_PLACES])
@@ -259,13 +307,13 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     double needed;
     list_places(sure, run, &e->least, memory);
     list_places(likely, run, &e->likely, memory);
-    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
+    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? too_small(sure, &needed) : NULL;
     if (place)
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
                         tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
-    place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
+    place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;
     if (place)
         console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
                      place->path, place->what, tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
@@ -301,7 +349,7 @@ static bool fits(const struct run *run, const struct estimate *e, double left)
 
 static void say_parking(const struct console *console, const struct run *run, double bytes)
 {
-    console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n", run->hooks->limits.scratch,
+    console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n", run->hooks->options->scratch,
                 tri_size_text(bytes).text);
 }
 
@@ -329,7 +377,7 @@ static void say_way(const struct console *console, const struct run *run, const 
 static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
     const struct run_hooks *hooks = run->hooks;
-    return hooks->streams && hooks->n_ranks == 0 && hooks->limits.memory > 0 && run->options.refine &&
+    return hooks->streams && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
            estimate_can_park(run, e->likely.whole);
 }
 
@@ -352,7 +400,7 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     enum tri_status status = plan->swept ? check_stream(run, e, left, console, error)
                                          : check_whole(run, e, left, obstacle ? obstacle : "", console, error);
     if (!status && (plan->swept || (plan->filed && (stream || e->likely.whole > left))))
-        status = check_scratch(run->hooks->limits.scratch, error);
+        status = check_scratch(run->hooks->options->scratch, error);
     status = status ? status : check_disk(run, e, left, console, error);
     if (!status && plan->swept)
         say_way(console, run, e, left);

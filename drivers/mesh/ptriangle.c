@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/blocks_file.h"
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/help.h"
 #include "drivers/mesh/joint_files.h"
@@ -32,6 +31,7 @@
 #include "triangle/refine/census.h"
 #include "triangle/size/crowd.h"
 #include "triangle/size/estimate.h"
+#include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/write.h"
@@ -45,8 +45,6 @@ struct program {
     struct progress progress;
     struct restart restart;
     char *scratch;             /* folder for what does not fit in memory */
-    struct file_names h5;      /* HDF5 files that are wanted */
-    char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
     struct par_park *park;     /* of the mesh, as long as that lives */
     struct joint_files joint;  /* on several ranks */
@@ -58,25 +56,16 @@ struct program {
     struct rank_report ranks;
 };
 
-/* Tests run the schedule on small inputs: a build with tests takes the triangles in a cell from the environment. */
-static double cell_for_tests(void)
+/* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
+ * and a sweep of what would fit in memory. 0: nothing. */
+static double for_tests(const char *name)
 {
 #ifdef PTRIANGLE_TESTS
-    const char *text = getenv("PTRIANGLE_TEST_BLOCK");
-    long triangles = text ? strtol(text, NULL, 10) : 0;
-    return triangles > 0 ? (double)triangles : 0;
+    const char *text = getenv(name);
+    return text ? fmax(strtod(text, NULL), 0) : 0;
 #else
+    (void)name;
     return 0;
-#endif
-}
-
-/* And sweep what would fit in memory. */
-static bool sweep_for_tests(void)
-{
-#ifdef PTRIANGLE_TESTS
-    return getenv("PTRIANGLE_TEST_SWEEP") != NULL;
-#else
-    return false;
 #endif
 }
 
@@ -104,13 +93,13 @@ static struct par_options options_of(struct program *p, const struct run *run)
     struct par_options options = par_defaults();
     options.threads = p->threads;
     options.by_block = p->options.by_block;
-    options.cell_triangles = cell_for_tests();
+    options.cell_triangles = for_tests("PTRIANGLE_TEST_BLOCK");
     options.progress = follow;
     options.progress_user = p;
     options.figure = &run->pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
-    bool bounded = run->hooks->limits.memory > 0 || (run->plan.swept && !p->launch.carrier);
+    bool bounded = run->hooks->options->memory > 0 || (run->plan.swept && !p->launch.carrier);
     if (bounded && run->plan.memory < HUGE_VAL)
         options.memory = (int64_t)run->plan.memory;
     options.count_remaining = !run->arguments->switches.quiet || p->options.report;
@@ -170,10 +159,10 @@ static void show_streams(struct program *p)
 {
     struct joint_files *joint = &p->joint;
     joint->text_options = p->streams.text_options;
-    joint->text = p->streams.text_sink;
+    joint->text = p->streams.text ? p->streams.sink[p->streams.n] : joint->text;
     for (int i = 0; i < p->streams.n; i++) {
         const struct stream *s = &p->streams.stream[i];
-        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = s->sink, .output = s->options.file};
+        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = p->streams.sink[i], .output = s->options.file};
     }
 }
 
@@ -181,8 +170,8 @@ static void show_streams(struct program *p)
 static enum tri_status join_files(struct program *p, const struct run *run, enum tri_status status,
                                   struct tri_error *error)
 {
-    const struct run_limits *limits = &run->hooks->limits;
-    const bool ends_at_once = !limits->write_partial && !limits->checkpoint;
+    const struct long_options *limits = run->hooks->options;
+    const bool ends_at_once = !limits->write_partial && !long_options_state(limits);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
                                     .text_options = {.base = run->base, .figure = &run->pslg,
@@ -192,44 +181,37 @@ static enum tri_status join_files(struct program *p, const struct run *run, enum
     return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, error);
 }
 
-/* Refines into files, on a rank that is one of several. */
-static enum tri_status refine_jointly(struct program *p, struct run *run, struct tri_mesh *mesh,
-                                      const struct tri_refine_options *quality, struct tri_error *error)
-{
-    struct par_options options = options_of(p, run);
-    const struct tri_sink sink = joint_files_sink(&p->joint);
-    options.carrier = p->launch.carrier;
-    options.sink = &sink;
-    return refine_with(p, run, &options, mesh, quality, error);
-}
-
-/* Refines into a sink; on several ranks into that of the first. */
 static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
                                    struct tri_mesh *mesh, const struct tri_refine_options *quality,
                                    struct tri_error *error)
 {
     struct par_options options = options_of(p, run);
-    struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
-    if (run->hooks->limits.memory > 0)
-        relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
-    const struct tri_sink relayed = par_relay_sink(&relay);
     options.carrier = p->launch.carrier;
-    options.sink = options.carrier ? &relayed : sink;
-    enum tri_status status = refine_with(p, run, &options, mesh, quality, error);
-    return options.carrier ? par_relay_finish(&relay, status, error) : status;
+    options.sink = sink;
+    return refine_with(p, run, &options, mesh, quality, error);
 }
 
-/* The same where tiles come from other ranks, too: who receives them does not wait for the disk. */
-static enum tri_status refine_behind_queue(struct program *p, struct run *run, const struct tri_sink *sink,
-                                           struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                                           struct tri_error *error)
+/* On several ranks into the sink of the first, behind a queue: who receives tiles of others does not wait for the disk.
+ * to: on that rank. */
+static enum tri_status refine_through_first(struct program *p, struct run *run, const struct tri_sink *to,
+                                            struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                            struct tri_error *error)
 {
     struct par_queue queue;
-    if (!par_queue_begin(&queue, sink, waiting_bytes(&run->plan)))
+    struct tri_sink queued;
+    struct par_relay relay = {.carrier = p->launch.carrier};
+    if (to && !par_queue_begin(&queue, to, waiting_bytes(&run->plan)))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
-    const struct tri_sink queued = par_queue_sink(&queue);
-    enum tri_status status = refine_into(p, run, &queued, mesh, quality, error);
-    par_queue_free(&queue);
+    if (to)
+        queued = par_queue_sink(&queue);
+    relay.to = to ? &queued : NULL;
+    if (run->hooks->options->memory > 0)
+        relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
+    const struct tri_sink relayed = par_relay_sink(&relay);
+    enum tri_status status = refine_into(p, run, &relayed, mesh, quality, error);
+    status = par_relay_finish(&relay, status, error);
+    if (to)
+        par_queue_free(&queue);
     return status;
 }
 
@@ -239,11 +221,10 @@ static enum tri_status refine_on_ranks(struct program *p, struct run *run, const
                                        enum tri_status status, struct tri_error *error)
 {
     status = join_files(p, run, status, error);
-    if (!status && p->joint.together)
-        status = refine_jointly(p, run, mesh, quality, error);
-    else if (!status)
-        status = to ? refine_behind_queue(p, run, to, mesh, quality, error)
-                    : refine_into(p, run, NULL, mesh, quality, error);
+    const struct tri_sink joint = joint_files_sink(&p->joint);
+    if (!status)
+        status = p->joint.together ? refine_into(p, run, &joint, mesh, quality, error)
+                                   : refine_through_first(p, run, to, mesh, quality, error);
     return joint_files_close(&p->joint, status, error);
 }
 
@@ -274,7 +255,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     const struct tri_sink streams = streams_sink(&p->streams);
     enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
     int64_t unused = mesh->n_vertices - before.vertices;
-    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    status = status ? status : streams_open(&p->streams, run, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
     status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
     if (p->launch.carrier)
@@ -295,7 +276,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
 static enum tri_status report_ranks(struct program *p, const struct run *run, enum tri_status status,
                                     struct tri_error *error)
 {
-    const bool is_kept = status == TRI_STOPPED && run->hooks->limits.write_partial;
+    const bool is_kept = status == TRI_STOPPED && run->hooks->options->write_partial;
     enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
                                                 error);
     return shared ? shared : status;
@@ -366,14 +347,46 @@ static enum tri_status write_streams(struct program *p, struct run *run, struct 
                                      struct tri_error *error)
 {
     const struct tri_sink sink = streams_sink(&p->streams);
-    if (p->h5.n == 0)
+    if (p->options.n_streams == 0)
         return TRI_OK;
-    enum tri_status status = make_room(p, &run->mesh, estimate_streams(p->h5.n, run->mesh.n_triangles), error);
-    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    enum tri_status status = make_room(p, &run->mesh, estimate_streams(run, run->mesh.n_triangles), error);
+    status = status ? status : streams_open(&p->streams, run, set, error);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
     status = status ? status : streams_hand_out(run, n_before, &sink, error);
     streams_close(&p->streams);
     return status;
+}
+
+/* --- blocks and report */
+
+enum { BLOCK_ROW_BYTES = 48 };
+
+struct blocks {
+    const struct par_report *report;
+    const struct tri_mesh *mesh;
+};
+
+static char *block_row(void *user, size_t i, char *at)
+{
+    const struct blocks *blocks = user;
+    int phase;
+    int32_t block = par_block_of(blocks->report, blocks->mesh, (int32_t)i, &phase);
+    at = tri_print_integer(at, block, 0);
+    *at++ = ' ';
+    at = tri_print_integer(at, phase, 0);
+    *at++ = '\n';
+    return at;
+}
+
+/* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
+static enum tri_status write_blocks(const char *path, struct tri_output_set *set, const struct par_report *report,
+                             const struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct blocks blocks = {report, mesh};
+    const size_t n = (size_t)mesh->n_triangles;
+    struct tri_output *output;
+    enum tri_status status = interrupt_open(set, path, &output, error);
+    return status ? status : tri_write_table(output, n, BLOCK_ROW_BYTES, block_row, &blocks, NULL, error);
 }
 
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
@@ -398,7 +411,7 @@ static enum tri_status write_further(void *user, struct run *run, struct tri_out
     progress_stage(&p->progress, text);
     enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
     if (!status && p->options.blocks)
-        status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
+        status = write_blocks(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
     count_remaining(p, run);
@@ -466,12 +479,6 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
 
 /* --- all together */
 
-static void add_further(struct file_names *names, const char *name)
-{
-    if (name)
-        names->name[names->n++] = name;
-}
-
 /* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
 static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
 {
@@ -480,10 +487,7 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     const char *slash = output ? strrchr(output, '/') : NULL;
     if (asked && *asked)
         return tri_joined(asked, "");
-    char *folder = tri_joined(slash ? output : ".", "");
-    if (folder && slash)
-        folder[slash - output + 1] = 0;
-    return folder;
+    return slash ? tri_name(output, (size_t)(slash - output) + 1, "") : tri_joined(".", "");
 }
 
 /* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */
@@ -497,50 +501,17 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
     return TRI_OK;
 }
 
-/* HDF5 files, and the texts beside them, are checked as all files are. */
-static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
-{
-    for (int i = 0; i < p->options.n_streams; i++) {
-        p->xdmf[i] = stream_xdmf(p->options.streams[i]);
-        if (!p->xdmf[i])
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        add_further(&p->h5, p->options.streams[i]);
-        add_further(&hooks->further, p->options.streams[i]);
-        add_further(&hooks->further, p->xdmf[i]);
-    }
-    return TRI_OK;
-}
-
-/* What of the long options asks for the whole mesh at a time. */
-static const char *whole_mesh(const struct long_options *o)
-{
-    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
-}
-
 static struct run_hooks hooks_of(struct program *p)
 {
-    const struct long_options *o = &p->options;
-    bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
-    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
+    const struct par_carrier *carrier = p->launch.carrier;
+    const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
+    return (struct run_hooks){.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
                               .write = write_further, .streams = true,
-                              .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
-                              .written_elsewhere = p->launch.rank > 0,
-                              .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
-                              .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
-                              .whole_mesh = whole_mesh(o), .threads = p->threads,
-                              .cell_triangles = par_triangles_in_cell, .user = p,
-                              .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
-                                         .dry_run = o->dry_run, .memory = o->memory, .scratch = p->scratch,
-                                         .checkpoint = o->resume ? o->resume : o->checkpoint}};
-    for (int i = 0; i < o->n_exports; i++)
-        add_further(&hooks.exports, o->exports[i]);
-    hooks.n_parts = o->n_parts;
-    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
-    hooks.first_file = o->n_streams > 0 ? o->streams[0] : hooks.exports_alone ? o->exports[0] : NULL;
-    hooks.n_streamed = o->n_streams;
-    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
-    add_further(&hooks.further, o->blocks);
-    return hooks;
+                              .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
+                              .written_elsewhere = p->launch.rank > 0, .n_ranks = carrier ? carrier->n_ranks : 0,
+                              .share = carrier ? share : NULL, .agree = carrier ? agree : NULL,
+                              .threads = p->threads, .cell_triangles = par_triangles_in_cell,
+                              .options = &p->options, .user = p};
 }
 
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
@@ -549,12 +520,11 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     p->quiet = arguments->switches.quiet;
     p->progress = progress_start(PROGRAM, p->options.progress, p->quiet);
     const struct tri_executor executor = par_executor(&p->threads);
-    p->scratch = scratch_of(&p->options, arguments);
+    p->options.scratch = p->scratch = scratch_of(&p->options, arguments);
     struct run_hooks hooks = hooks_of(p);
     hooks.executor = &executor;
-    if (!p->scratch)
+    if (!p->scratch) {
         tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    if (!p->scratch || name_streams(p, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
@@ -575,8 +545,6 @@ static void free_program(struct program *p)
     par_report_free(&p->schedule);
     free(p->scratch);
     free(p->ranks.number);
-    for (int i = 0; i < STREAMS_MOST; i++)
-        free(p->xdmf[i]);
 }
 
 /* One task goes on where several were at work. */

@@ -19,6 +19,15 @@ static json_t *real(double value) { return isfinite(value) ? json_real(value) : 
 
 static json_t *whole(int64_t value) { return json_integer((json_int_t)value); }
 
+/* The list with one more item; NULL: no memory. */
+static json_t *appended(json_t *list, json_t *item)
+{
+    if (json_array_append_new(list, item) == 0)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
 /* --- stages */
 
 /* Quality here ends with the merged mesh; numbering comes after it. */
@@ -42,19 +51,22 @@ static json_t *command_of(const struct arguments *arguments)
 
 /* --- the schedule */
 
+static json_t *reals_of(const double *values, int n)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < n; i++)
+        list = appended(list, real(values[i]));
+    return list;
+}
+
 static json_t *parts_of(const struct par_report *r)
 {
-    json_t *phases = json_array();
-    for (int phase = 0; phase < 4; phase++)
-        json_array_append_new(phases, real(r->phase_seconds[phase]));
-    json_t *shared = json_array();
-    for (int k = 0; k < PAR_SHARINGS; k++)
-        json_array_append_new(shared, real(r->seconds_shared[k]));
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
                      "prerefine", real(r->seconds_prerefine), "partition", real(r->seconds_partition), "find",
                      real(r->seconds_find), "worklist", real(r->seconds_deal), "room", real(r->seconds_room), "refine",
                      real(r->seconds_refine), "merge", real(r->seconds_merge), "last", real(r->seconds_last), "number",
-                     real(r->seconds_number), "phases", phases, "shared", shared);
+                     real(r->seconds_number), "phases", reals_of(r->phase_seconds, PAR_PHASES), "shared",
+                     reals_of(r->seconds_shared, PAR_SHARINGS));
 }
 
 static json_t *blocks_of(const struct par_report *r)
@@ -62,14 +74,10 @@ static json_t *blocks_of(const struct par_report *r)
     json_t *blocks = json_array();
     for (int32_t i = 0; i < r->n_blocks; i++) {
         const struct par_block_report *b = &r->blocks[i];
-        json_t *block = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "schedule", (int)b->schedule,
-                                  "round", (int)b->round, "phase", (int)b->phase, "block", (int)b->block,
-                                  "worklist", whole(b->worklist), "inserted", whole(b->inserted),
-                                  "deferred", whole(b->deferred), "seconds", real(b->seconds));
-        if (json_array_append_new(blocks, block)) {
-            json_decref(blocks);
-            return NULL;
-        }
+        blocks = appended(blocks, json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "schedule", (int)b->schedule,
+                                            "round", (int)b->round, "phase", (int)b->phase, "block", (int)b->block,
+                                            "worklist", whole(b->worklist), "inserted", whole(b->inserted),
+                                            "deferred", whole(b->deferred), "seconds", real(b->seconds)));
     }
     return blocks;
 }
@@ -93,33 +101,21 @@ static const char *const way_names[] = {[PAR_IN_MEMORY] = "in memory", [PAR_SWEP
 
 static json_t *schedule_of(const struct par_report *r)
 {
+    const double merged = r->seconds_total - r->seconds_number;
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
-    json_t *counts =
-        json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels, "rounds",
-                  r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined", whole(r->prerefined),
-                  "inserted", inserted, "deferred", whole(r->deferred), "left_over", whole(r->left_over), "refused",
-                  by_reason(r->total.given_up), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
-                  "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
-    json_t *way = json_pack("{s:s, s:i, s:o, s:o, s:o}", "way", way_names[r->way], "schedule", (int)r->schedule,
-                            "most_live_triangles",
-                            whole(r->most_live), "parked_bytes", whole(r->parked), "below_bounds",
-                            r->remain_known ? by_reason(r->remain) : json_null());
-    if (json_object_update(counts, way)) {
-        json_decref(counts);
-        counts = NULL;
-    }
-    json_decref(way);
-    double merged = r->seconds_total - r->seconds_number;
-    json_t *times = json_pack("{s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
-                              percent(r, merged - r->seconds_prerefine - r->seconds_refine), "numbering_percent",
-                              percent(r, r->seconds_number), "blocks", blocks_of(r));
-    if (json_object_update(counts, times)) {
-        json_decref(counts);
-        counts = NULL;
-    }
-    json_decref(times);
-    return counts;
+    return json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o,"
+                     " s:s, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o}",
+                     "levels", r->levels, "rounds", r->rounds, "columns", (int)r->columns, "rows", (int)r->rows,
+                     "prerefined", whole(r->prerefined), "inserted", inserted, "deferred", whole(r->deferred),
+                     "left_over", whole(r->left_over), "refused", by_reason(r->total.given_up), "pauses",
+                     whole(r->pauses), "radius_lemma7", real(r->radius_lemma7), "radius_theory",
+                     real(r->radius_theory), "radius_measured", real(r->radius_measured), "way", way_names[r->way],
+                     "schedule", (int)r->schedule, "most_live_triangles", whole(r->most_live), "parked_bytes",
+                     whole(r->parked), "below_bounds", r->remain_known ? by_reason(r->remain) : json_null(),
+                     "seconds", parts_of(r), "overhead_percent",
+                     percent(r, merged - r->seconds_prerefine - r->seconds_refine), "numbering_percent",
+                     percent(r, r->seconds_number), "blocks", blocks_of(r));
 }
 
 /* --- the mesh */
@@ -128,7 +124,7 @@ static json_t *histogram_of(const int64_t *count, int n)
 {
     json_t *list = json_array();
     for (int i = 0; i < n; i++)
-        json_array_append_new(list, whole(count[i]));
+        list = appended(list, whole(count[i]));
     return list;
 }
 
@@ -194,10 +190,7 @@ static json_t *ranks_of(const struct rank_report *report)
         return json_null();
     json_t *ranks = json_array();
     for (int p = 0; p < report->n_ranks; p++)
-        if (json_array_append_new(ranks, rank_of(report->number[p]))) {
-            json_decref(ranks);
-            return NULL;
-        }
+        ranks = appended(ranks, rank_of(report->number[p]));
     return ranks;
 }
 
@@ -227,7 +220,7 @@ static enum tri_status write_text(const char *path, struct tri_output_set *set, 
                                   struct tri_error *error)
 {
     struct tri_output *output;
-    if (report_is_printed(path)) {
+    if (path[0] == '-' && path[1] == 0) {
         puts(text);
         return TRI_OK; /* the caller looks whether all that was printed is out */
     }

@@ -7,9 +7,6 @@
 #include "sched/schedule/schedule.h"
 #include "triangle/text/output.h"
 
-/* Does this name, "-", stand for standard output? */
-static inline bool report_is_printed(const char *path) { return path[0] == '-' && path[1] == 0; }
-
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);
 

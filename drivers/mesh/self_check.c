@@ -7,39 +7,23 @@
 #include "triangle/check/check.h"
 #include "triangle/refine/generate.h"
 
-static void read_points(const struct tri_mesh *mesh, int64_t first, int64_t n, double (*out)[2])
-{
-    for (int64_t i = 0; i < n; i++) {
-        out[i][0] = mesh->xy[first + i].x;
-        out[i][1] = mesh->xy[first + i].y;
-    }
-}
-
-static void read_corners(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[3])
-{
-    for (int64_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++)
-            out[i][k] = mesh->tri[first + i].v[k];
-}
-
-static void read_ends(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[2])
-{
-    for (int64_t i = 0; i < n; i++)
-        for (int k = 0; k < 2; k++)
-            out[i][k] = mesh->sub[first + i].v[k];
-}
-
 static enum tri_status read_mesh(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                  struct tri_error *error)
 {
     const struct tri_mesh *mesh = user;
+    double(*points)[2] = out;
+    int64_t *number = out;
     (void)error;
-    if (array == TRI_CHECK_POINTS)
-        read_points(mesh, first, n, out);
-    else if (array == TRI_CHECK_CORNERS)
-        read_corners(mesh, first, n, out);
-    else
-        read_ends(mesh, first, n, out);
+    for (int64_t i = first; i < first + n; i++) {
+        if (array == TRI_CHECK_POINTS) {
+            points[i - first][0] = mesh->xy[i].x;
+            points[i - first][1] = mesh->xy[i].y;
+        }
+        for (int k = 0; array == TRI_CHECK_CORNERS && k < 3; k++)
+            *number++ = mesh->tri[i].v[k];
+        for (int k = 0; array == TRI_CHECK_SEGMENT_ENDS && k < 2; k++)
+            *number++ = mesh->sub[i].v[k];
+    }
     return TRI_OK;
 }
 
@@ -86,19 +70,19 @@ static void tell(const struct console *console, const struct tri_check_report *r
     console_say(console, "  Delaunay property: %s.\n", conforming ? "conforming Delaunay" : "constrained Delaunay");
 }
 
-enum tri_status self_check(const struct console *console, const struct tri_switches *switches,
-                           const struct tri_mesh *mesh, int32_t base, const struct self_check_room *room,
-                           struct tri_error *error)
+enum tri_status self_check(const struct console *console, bool conforming, const struct tri_mesh *mesh, int32_t base,
+                           double memory, const char *scratch, struct tri_error *error)
 {
     struct tri_check_report report;
-    struct tri_check_options options = {.max_bad = INT64_MAX, .ignore_lost = true, .base = base};
-    options.delaunay = switches->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
+    const struct tri_check_options options = {
+        .max_bad = INT64_MAX, .ignore_lost = true, .base = base,
+        .delaunay = conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED};
     struct tri_check_source source = source_of(mesh);
-    source.memory = room->memory > 0 ? fmax(room->memory, least_bytes(&source)) : 0;
-    source.scratch = room->scratch;
+    source.memory = memory > 0 ? fmax(memory, least_bytes(&source)) : 0;
+    source.scratch = scratch;
     console_say(console, "Checking the mesh.\n");
     enum tri_status status = tri_check_from(&source, NULL, &options, &report, error);
     if (!status)
-        tell(console, &report, switches->conforming);
+        tell(console, &report, conforming);
     return status;
 }

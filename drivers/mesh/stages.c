@@ -25,7 +25,7 @@ struct runner {
     struct run run;
     struct console console;
     struct tri_names names; /* of what is read */
-    struct console_series input_warnings;
+    int64_t input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
     int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
@@ -75,7 +75,7 @@ static enum tri_status check_switches(struct runner *r)
 static void warn_of_input(void *user, const char *file, long line, const char *text)
 {
     struct runner *r = user;
-    if (console_series_add(&r->input_warnings))
+    if (r->input_warnings++ < CONSOLE_SERIES_LINES)
         console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
 }
 
@@ -154,7 +154,7 @@ static enum tri_status read_input(struct runner *r)
     status = status ? status : read_pslg(r, &r->names, &options);
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
-    console_series_end(&r->console, &r->input_warnings, "of this kind");
+    console_series_end(&r->console, r->input_warnings, "of this kind");
     if (status)
         add_hint(r);
     return status;
@@ -251,7 +251,7 @@ static void follow_stage(void *user, enum tri_stage begins)
 /* A stop that nobody has noticed counts as one up to here, unless the mesh is finished, and not kept elsewhere. */
 static enum tri_status notice_stop(struct runner *r, enum tri_status status)
 {
-    if (r->built && r->run.hooks->limits.checkpoint)
+    if (r->built && long_options_state(r->run.hooks->options))
         return status;
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
@@ -275,7 +275,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
 static void begin_outputs(const struct runner *r)
 {
     interrupt_begin(&outputs);
-    if (r->run.hooks->limits.write_partial || r->run.hooks->limits.checkpoint)
+    if (r->run.hooks->options->write_partial || long_options_state(r->run.hooks->options))
         outputs.stop = interrupt_end();
 }
 
@@ -432,7 +432,7 @@ static void tell_of_stop(struct runner *r, bool partial)
 /* After a stop: is there a mesh, and is it wanted? Then on with it. */
 static enum tri_status keep_partial(struct runner *r, enum tri_status status)
 {
-    if (status != TRI_STOPPED || !r->built || !r->run.hooks->limits.write_partial)
+    if (status != TRI_STOPPED || !r->built || !r->run.hooks->options->write_partial)
         return status;
     tell_of_stop(r, true);
     r->run.stopped = interrupt_cause();
@@ -466,7 +466,7 @@ static double list_bytes(const struct tri_switches *s, const struct tri_mesh *me
     return ((s->second_order ? 18 : edges ? 6 : 0) + (s->jettison ? 4 : 0)) * (double)mesh->n_triangles;
 }
 
-static enum tri_status write_mesh(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_mesh(struct runner *r)
 {
     struct run *run = &r->run;
     if (run->arguments->switches.second_order)
@@ -475,7 +475,7 @@ static enum tri_status write_mesh(struct runner *r, const struct mesh_files *fil
     r->mark = tri_seconds();
     const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)run->mesh.n_triangles);
     enum tri_status status = make_room(r, waiting + list_bytes(&run->arguments->switches, &run->mesh));
-    status = status ? status : mesh_files_write(files, &outputs, r->error);
+    status = status ? status : mesh_files_write(run, &r->console, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
         return status;
@@ -489,11 +489,12 @@ static enum tri_status check(struct runner *r)
 {
     const double OF_FILES = 0.75;
     const struct run *run = &r->run;
-    const struct run_limits *limits = &run->hooks->limits;
+    const struct long_options *limits = run->hooks->options;
     enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
     const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
-    const struct self_check_room room = {limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch};
-    return status ? status : self_check(&r->console, &run->arguments->switches, &run->mesh, run->base, &room, r->error);
+    return status ? status
+                  : self_check(&r->console, run->arguments->switches.conforming, &run->mesh, run->base,
+                               limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch, r->error);
 }
 
 static enum tri_status tell(struct runner *r)
@@ -513,14 +514,14 @@ static enum tri_status tell(struct runner *r)
     run->counts.subsegments += run->report.loose;
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
-        summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);
+        summary_shapes(&run->mesh, &run->report, run->hooks->executor);
     return s->check ? check(r) : TRI_OK;
 }
 
-static enum tri_status write_all(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_all(struct runner *r)
 {
     const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r, files);
+    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r);
     status = status ? status : tell(r);
     if (!status && hooks->write)
         status = hooks->write(hooks->user, &r->run, &outputs, r->error);
@@ -535,14 +536,14 @@ static enum tri_status agree(struct runner *r, enum tri_status status)
 }
 
 /* Whatever can fail comes before the commit, what is printed included, and what others do. */
-static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_output(struct runner *r)
 {
     if (r->run.hooks->written_elsewhere)
         return agree(r, TRI_OK);
     interrupt_stage("writing");
     if (!r->run.plan.swept)
         begin_outputs(r);
-    enum tri_status status = agree(r, write_all(r, files));
+    enum tri_status status = agree(r, write_all(r));
     if (!status)
         return interrupt_commit(&outputs, r->error);
     interrupt_drop(&outputs);
@@ -552,11 +553,10 @@ static enum tri_status write_output(struct runner *r, const struct mesh_files *f
 /* --- all together */
 
 /* Does each file have a place of its own? */
-static enum tri_status check_files(const struct runner *r, const struct mesh_files *files)
+static enum tri_status check_files(const struct runner *r)
 {
-    const struct run *run = &r->run;
     const struct file_names read = files_read(r);
-    return mesh_files_check(files, &run->hooks->further, &read, r->error);
+    return mesh_files_check(&r->run, &read, r->error);
 }
 
 static enum tri_status make_mesh(struct runner *r)
@@ -593,35 +593,28 @@ static enum tri_status run_stages(struct runner *r)
     status = status ? status : get_input(r);
     if (status)
         return status;
-    struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
-                               .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
-                               .points_in_poly = run->points_in_poly, .base = run->base,
-                               .elements = &run->elements, .exports = &run->hooks->exports,
-                               .exports_alone = run->hooks->exports_alone,
-                               .n_parts = run->hooks->n_parts};
-    if (run->hooks->limits.dry_run)
+    if (run->hooks->options->dry_run)
         return print_estimate(r);
-    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r, &files);
+    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r);
     status = status ? status : make_mesh(r);
-    files.is_edge = run->is_edge;
-    return status ? status : write_output(r, &files);
+    return status ? status : write_output(r);
 }
 
 /* Seconds that ending may take. A batch system kills 30 seconds after it has asked. */
 static double patience_of(const struct run_hooks *hooks)
 {
     static const double KEEPING = 3, KEEPING_ON_RANKS = 25;
-    if (hooks->limits.write_partial || hooks->written_elsewhere) /* the first task says why all end */
+    if (hooks->options->write_partial || hooks->written_elsewhere) /* the first task says why all end */
         return HUGE_VAL;
-    return !hooks->limits.checkpoint ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
+    return !long_options_state(hooks->options) ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
 }
 
 static enum tri_status run_file(struct runner *r)
 {
-    const struct run_limits *limits = &r->run.hooks->limits;
+    const struct long_options *limits = r->run.hooks->options;
     r->begin = r->mark = tri_seconds();
     resources_save_address_space();
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, patience_of(r->run.hooks)))
+    if (!interrupt_start(r->run.hooks->program, limits->time_limit, patience_of(r->run.hooks)))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status)

@@ -7,6 +7,7 @@
 #define DRIVERS_MESH_STAGES_H
 
 #include "drivers/mesh/arguments.h"
+#include "drivers/mesh/long_options.h"
 #include "drivers/mesh/mesh_files.h"
 #include "triangle/base/executor.h"
 #include "triangle/refine/generate.h"
@@ -52,16 +53,6 @@ struct run {
     const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
 };
 
-/* What the command line says beyond the switches of Triangle. */
-struct run_limits {
-    double seconds;     /* the run ends after so much time; 0: none */
-    bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
-    bool dry_run;       /* nothing is refined or written: an estimate is printed */
-    double memory;      /* bytes that the process may take; 0: what there is */
-    const char *checkpoint; /* directory: a run that is stopped takes the time to keep its state there; NULL: none */
-    const char *scratch; /* directory for what does not fit in memory */
-};
-
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
@@ -84,20 +75,14 @@ struct run_hooks {
      * on all, with the same error. NULL: there is one. */
     enum tri_status (*share)(void *user, struct run *run, enum tri_status status, struct tri_error *error);
     enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
-    const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
     double (*cell_triangles)(double triangles);
-    struct file_names exports;      /* the mesh in other formats .. */
-    bool exports_alone;             /* .. and in no others */
-    int n_parts;                    /* into which those are cut that can be; 0: none */
-    const char *first_file;         /* of those that take most of the disk; NULL: they have the arguments' base name */
-    int n_streamed;                 /* HDF5 files, which refine or write makes */
-    struct file_names further;      /* files that are written beside the mesh .. */
-    /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
+    const struct long_options *options; /* what the command line says beyond the switches of Triangle; maybe all 0 */
+    /* Writes what the options want beside the mesh into the guarded set of files (drivers/interrupt.h) that holds those
+     * of the mesh; NULL: nothing. */
     enum tri_status (*write)(void *user, struct run *run, struct tri_output_set *set, struct tri_error *error);
     void *user;
-    struct run_limits limits;
 };
 
 /* Carries out what the arguments say, after arguments_end. Returns the exit code: 0; 1 after an error, which has been

@@ -10,18 +10,6 @@ static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
 /* --- names */
 
-char *stream_xdmf(const char *name)
-{
-    static const char suffix[] = ".xdmf";
-    size_t n = strlen(name) - strlen(STREAM_SUFFIX);
-    char *path = malloc(n + sizeof suffix);
-    if (path) {
-        memcpy(path, name, n);
-        memcpy(path + n, suffix, sizeof suffix);
-    }
-    return path;
-}
-
 static const char *without_folder(const char *name)
 {
     const char *slash = strrchr(name, '/');
@@ -30,35 +18,38 @@ static const char *without_folder(const char *name)
 
 /* --- opening and closing */
 
-static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_output_set *set,
-                                   struct tri_error *error)
+static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_sink *sink,
+                                   struct tri_output_set *set, struct tri_error *error)
 {
     s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
-    s->xdmf = stream_xdmf(name);
-    if (!s->xdmf)
+    char *xdmf = stream_xdmf(name);
+    if (!xdmf)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, name, &s->options.file, error);
-    status = status ? status : interrupt_open(set, s->xdmf, &s->options.xdmf, error);
-    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
+    status = status ? status : interrupt_open(set, xdmf, &s->options.xdmf, error);
+    free(xdmf);
+    return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
-                             struct tri_output_set *set, struct tri_error *error)
+enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                             struct tri_error *error)
 {
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
     *streams = (struct streams){0};
-    for (int i = 0; !status && i < names->n; i++)
-        status = open_stream(&streams->stream[streams->n++], names->name[i], markers, set, error);
+    for (int i = 0; !status && i < o->n_streams; i++)
+        status = open_stream(&streams->stream[streams->n++], o->streams[i], !run->arguments->switches.no_markers,
+                             &streams->sink[streams->n_sinks++], set, error);
     return status;
 }
 
 /* One of Triangle's files, if it is wanted. */
-static enum tri_status open_text(struct tri_output **output, const struct mesh_files *files, const char *suffix,
+static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix,
                                  struct tri_output_set *set, struct tri_error *error)
 {
-    if (!mesh_files_has(files, suffix))
+    if (!mesh_files_has(run, suffix))
         return TRI_OK;
-    char *path = tri_joined(files->arguments->output, suffix);
+    char *path = tri_joined(run->arguments->output, suffix);
     if (!path)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, path, output, error);
@@ -70,43 +61,38 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
                                   struct tri_error *error)
 {
     const struct arguments *a = run->arguments;
-    struct mesh_files files = {.arguments = a, .points_in_poly = run->points_in_poly,
-                               .exports_alone = run->hooks->exports_alone};
     struct tri_text_options *o = &streams->text_options;
     *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
                                    .argc = a->argc, .argv = a->argv};
-    enum tri_status status = open_text(&o->node, &files, ".node", set, error);
-    status = status ? status : open_text(&o->ele, &files, ".ele", set, error);
-    status = status ? status : open_text(&o->poly, &files, ".poly", set, error);
+    enum tri_status status = open_text(&o->node, run, ".node", set, error);
+    status = status ? status : open_text(&o->ele, run, ".ele", set, error);
+    status = status ? status : open_text(&o->poly, run, ".poly", set, error);
     if (status || !(o->node || o->ele || o->poly))
         return status;
-    return tri_text_stream_new(&streams->text, o, &streams->text_sink, error);
+    return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], error);
 }
 
 enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
                                      struct tri_output_set *set, struct tri_error *error)
 {
-    const struct file_names *names = &run->hooks->exports;
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
     streams->markers = !run->arguments->switches.no_markers;
     streams->executor = run->hooks->executor;
-    for (int i = 0; !status && i < names->n; i++) {
-        streams->export[i] = export_of(names->name[i], run->hooks->n_parts);
-        status = export_open(&streams->export[i], names->name[i], set, error);
+    for (int i = 0; !status && i < o->n_exports; i++) {
+        streams->export[i] = export_of(o->exports[i], o->n_parts);
+        status = export_open(&streams->export[i], o->exports[i], set, error);
     }
-    streams->n_exports = names->n;
-    if (status || names->n == 0)
+    streams->n_exports = o->n_exports;
+    if (status || o->n_exports == 0)
         return status;
-    return tri_tile_store_new(&streams->store, folder, &streams->store_sink, error);
+    return tri_tile_store_new(&streams->store, folder, &streams->sink[streams->n_sinks++], error);
 }
 
 void streams_close(struct streams *streams)
 {
-    for (int i = 0; i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        tri_h5_writer_free(s->writer);
-        free(s->xdmf);
-    }
+    for (int i = 0; i < streams->n; i++)
+        tri_h5_writer_free(streams->stream[i].writer);
     tri_text_stream_free(streams->text);
     tri_tile_store_free(streams->store);
     streams->text = NULL;
@@ -116,47 +102,12 @@ void streams_close(struct streams *streams)
 
 /* --- the sink */
 
-static enum tri_status begin_again(struct stream *s, struct tri_error *error)
-{
-    tri_h5_writer_free(s->writer);
-    s->writer = NULL;
-    enum tri_status status = tri_output_restart(s->options.file, error);
-    return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
-}
-
-static enum tri_status begin_text_again(struct streams *streams, struct tri_error *error)
-{
-    struct tri_output *const outputs[] = {streams->text_options.node, streams->text_options.ele,
-                                          streams->text_options.poly};
-    enum tri_status status = TRI_OK;
-    tri_text_stream_free(streams->text);
-    streams->text = NULL;
-    for (int i = 0; !status && i < 3; i++)
-        status = outputs[i] ? tri_output_restart(outputs[i], error) : TRI_OK;
-    return status ? status : tri_text_stream_new(&streams->text, &streams->text_options, &streams->text_sink, error);
-}
-
-static enum tri_status begin_text(struct streams *streams, const struct tri_stream *stream, struct tri_error *error)
-{
-    if (!streams->text)
-        return TRI_OK;
-    enum tri_status status = streams->begun ? begin_text_again(streams, error) : TRI_OK;
-    return status ? status : streams->text_sink.begin(streams->text_sink.user, stream, error);
-}
-
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = streams->begun ? begin_again(s, error) : TRI_OK;
-        status = status ? status : s->sink.begin(s->sink.user, stream, error);
-    }
-    status = status ? status : begin_text(streams, stream, error);
-    if (!status && streams->store)
-        status = streams->store_sink.begin(streams->store_sink.user, stream, error);
-    streams->begun = true;
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].begin(streams->sink[i].user, stream, error);
     streams->vertices = streams->triangles = streams->segments = 0;
     return status;
 }
@@ -165,14 +116,8 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = s->sink.take(s->sink.user, tile, error);
-    }
-    if (!status && streams->text)
-        status = streams->text_sink.take(streams->text_sink.user, tile, error);
-    if (!status && streams->store)
-        status = streams->store_sink.take(streams->store_sink.user, tile, error);
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].take(streams->sink[i].user, tile, error);
     streams->vertices += tile->n_vertices;
     streams->triangles += tile->n_triangles;
     streams->segments += tile->n_segments;
@@ -192,12 +137,8 @@ static enum tri_status end(void *user, struct tri_error *error)
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n; i++) {
-        struct stream *s = &streams->stream[i];
-        status = s->sink.end(s->sink.user, error);
-    }
-    if (!status && streams->text)
-        status = streams->text_sink.end(streams->text_sink.user, error);
+    for (int i = 0; !status && i < streams->n_sinks; i++)
+        status = streams->sink[i].end ? streams->sink[i].end(streams->sink[i].user, error) : TRI_OK;
     return status || !streams->store ? status : write_exports(streams, error);
 }
 
@@ -213,33 +154,11 @@ struct piece {
     const struct tri_mesh *mesh; /* of the grid */
     const struct tri_sink *sink;
     int64_t n_before;            /* points that there were before refinement */
-    double (*points)[2], *attributes;
-    int32_t *point_markers, *regions, *segment_markers;
-    int64_t (*corners)[3], (*ends)[2];
+    double points[PIECE][2];
+    int32_t point_markers[PIECE], regions[PIECE], segment_markers[PIECE];
+    int64_t corners[PIECE][3], ends[PIECE][2];
+    double attributes[];         /* [PIECE][grid->n_attributes] */
 };
-
-static bool reserve(struct piece *p)
-{
-    p->points = malloc(PIECE * sizeof *p->points);
-    p->attributes = malloc((size_t)PIECE * (size_t)p->grid->n_attributes * sizeof *p->attributes + 1);
-    p->point_markers = malloc(PIECE * sizeof *p->point_markers);
-    p->regions = malloc(PIECE * sizeof *p->regions);
-    p->segment_markers = malloc(PIECE * sizeof *p->segment_markers);
-    p->corners = malloc(PIECE * sizeof *p->corners);
-    p->ends = malloc(PIECE * sizeof *p->ends);
-    return p->points && p->attributes && p->point_markers && p->regions && p->segment_markers && p->corners && p->ends;
-}
-
-static void release(struct piece *p)
-{
-    free(p->points);
-    free(p->attributes);
-    free(p->point_markers);
-    free(p->regions);
-    free(p->segment_markers);
-    free(p->corners);
-    free(p->ends);
-}
 
 static int32_t least(int64_t a, int64_t b) { return (int32_t)(a < b ? a : b); }
 
@@ -247,6 +166,7 @@ static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t e
 {
     const struct tri_grid *g = p->grid;
     int32_t place = first < p->n_before ? -1 : 0;
+    double *attribute = p->attributes;
     struct tri_tile tile = {.column = place, .row = place, .first_vertex = first,
                             .n_vertices = least(end - first, PIECE), .points = (const double(*)[2])p->points,
                             .point_markers = p->point_markers, .attributes = p->attributes};
@@ -256,7 +176,7 @@ static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t e
         memcpy(p->points[i], point.at, sizeof point.at);
         p->point_markers[i] = point.marker;
         for (int32_t k = 0; k < g->n_attributes; k++)
-            p->attributes[(size_t)i * (size_t)g->n_attributes + (size_t)k] = g->attribute(g->user, first + i, k);
+            *attribute++ = g->attribute(g->user, first + i, k);
     }
     return p->sink->take(p->sink->user, &tile, error);
 }
@@ -316,20 +236,13 @@ static double *columns_of(const struct tri_mesh *mesh, int32_t n_columns)
     return columns;
 }
 
-static enum tri_status hand_out(struct piece *p, struct tri_error *error)
+static enum tri_status hand_out(struct piece *p, const double *columns, struct tri_error *error)
 {
-    double *columns = columns_of(p->mesh, p->grid->n_columns);
     struct tri_stream stream = {.n_attributes = p->grid->n_attributes, .n_columns = p->grid->n_columns,
                                 .n_regions = p->mesh->n_regions, .regions = columns,
                                 .estimate = (double)p->grid->n_triangles, .n_ranks = 1};
-    enum tri_status status = TRI_OK;
-    if (!columns || !reserve(p))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
-    status = status ? status : p->sink->begin(p->sink->user, &stream, error);
-    status = status ? status : hand_out_all(p, error);
-    release(p);
-    free(columns);
-    return status;
+    enum tri_status status = p->sink->begin(p->sink->user, &stream, error);
+    return status ? status : hand_out_all(p, error);
 }
 
 enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
@@ -340,9 +253,21 @@ enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const 
     options.is_edge = s->segments ? run->is_edge : NULL;
     struct tri_grid grid;
     enum tri_status status = tri_grid_make(&grid, &options, error);
-    int64_t left_out = status ? 0 : run->mesh.n_vertices - grid.n_points; /* with -j: none of them is new */
-    struct piece piece = {.grid = &grid, .mesh = &run->mesh, .sink = sink, .n_before = n_before - left_out};
-    status = status ? status : hand_out(&piece, error);
+    if (status)
+        return status;
+    struct piece *piece = malloc(sizeof *piece + PIECE * (size_t)grid.n_attributes * sizeof *piece->attributes);
+    double *columns = columns_of(&run->mesh, grid.n_columns);
+    if (piece && columns) {
+        piece->grid = &grid;
+        piece->mesh = &run->mesh;
+        piece->sink = sink;
+        piece->n_before = n_before - (run->mesh.n_vertices - grid.n_points); /* with -j: none of these is new */
+        status = hand_out(piece, columns, error);
+    } else {
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+    }
+    free(piece);
+    free(columns);
     tri_grid_free(&grid);
     return status;
 }

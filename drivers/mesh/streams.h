@@ -17,10 +17,8 @@ enum { STREAMS_MOST = 4 };
 
 /* One HDF5 file and the text beside it. */
 struct stream {
-    char *xdmf; /* name */
     struct tri_h5_options options;
     struct tri_h5_writer *writer;
-    struct tri_sink sink;
 };
 
 struct streams {
@@ -28,14 +26,13 @@ struct streams {
     struct stream stream[STREAMS_MOST];
     struct tri_text_options text_options;
     struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
-    struct tri_sink text_sink;
     int n_exports;
-    struct export export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
+    struct export export[LONG_OPTIONS_MOST_EXPORTS]; /* in other formats, at the end: */
     struct tri_tile_store *store;  /* NULL: none of them */
-    struct tri_sink store_sink;
     bool markers;                  /* are written */
     const struct tri_executor *executor;
-    bool begun;
+    int n_sinks;
+    struct tri_sink sink[STREAMS_MOST + 2]; /* of the HDF5 files, of the texts, of the store */
     int64_t vertices, triangles, segments; /* taken so far */
 };
 
@@ -48,12 +45,15 @@ static inline bool stream_is_wanted(const char *name)
 }
 
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
-char *stream_xdmf(const char *name);
+static inline char *stream_xdmf(const char *name)
+{
+    return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf");
+}
 
-/* Opens these HDF5 files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
+/* Opens the HDF5 files of the run in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
  * committed. */
-enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
-                             struct tri_output_set *set, struct tri_error *error);
+enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                             struct tri_error *error);
 
 /* And those of Triangle's files that the run asks for. */
 enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
@@ -64,7 +64,7 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
                                      struct tri_output_set *set, struct tri_error *error);
 void streams_close(struct streams *streams);
 
-/* Hands everything to all of them. If it is told of the beginning a second time, they begin again. */
+/* Hands everything to all of them. */
 struct tri_sink streams_sink(struct streams *streams);
 
 /* Hands a mesh that is in memory to a sink: n_before vertices were there before refinement. */

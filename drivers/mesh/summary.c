@@ -33,12 +33,12 @@ void summary_notes(const struct console *console, const struct tri_notes *notes)
 
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)
 {
-    struct console_series series = {0};
+    int64_t n = 0;
     for (int32_t v = 0; twin && v < pslg->n_points; v++)
-        if (twin[v] != v && console_series_add(&series))
+        if (twin[v] != v && n++ < CONSOLE_SERIES_LINES)
             console_warn(console, "duplicate vertex at (%.12g, %.12g) ignored.\n", pslg->points[2 * (size_t)v],
                          pslg->points[2 * (size_t)v + 1]);
-    console_series_end(console, &series, "duplicate vertices ignored");
+    console_series_end(console, n, "duplicate vertices ignored");
 }
 
 static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_options *options,
@@ -132,32 +132,32 @@ void summary_counts(const struct console *console, const struct tri_switches *sw
 
 /* --- the blocks of -V */
 
-static void print_aspects(const struct console *console, const struct tri_shapes *shapes)
+static void print_aspects(const struct tri_shapes *shapes)
 {
     enum { ROWS = TRI_ASPECT_BINS / 2 };
-    console_detail(console, 1, "  Triangle aspect ratio histogram:\n");
+    printf("  Triangle aspect ratio histogram:\n");
     for (int k = 0; k < ROWS; k++) {
         char beyond[16] = "";
         if (k + ROWS + 1 < TRI_ASPECT_BINS)
             snprintf(beyond, sizeof beyond, "%.6g", tri_aspect_limits[k + ROWS + 1]);
-        console_detail(console, 1, "  %6.6g - %-10.6g:%10" PRId64 "    | %6.6g - %-11s:%10" PRId64 "\n",
+        printf("  %6.6g - %-10.6g:%10" PRId64 "    | %6.6g - %-11s:%10" PRId64 "\n",
                        tri_aspect_limits[k], tri_aspect_limits[k + 1], shapes->aspects[k], tri_aspect_limits[k + ROWS],
                        beyond, shapes->aspects[k + ROWS]);
     }
-    console_detail(console, 1, "  (Longest edge divided by shortest altitude)\n\n");
+    printf("  (Longest edge divided by shortest altitude)\n\n");
 }
 
-static void print_angles(const struct console *console, const struct tri_shapes *shapes)
+static void print_angles(const struct tri_shapes *shapes)
 {
     enum { ROWS = TRI_ANGLE_BINS / 2 };
-    console_detail(console, 1, "  Smallest angle: %15.5g   |  Largest angle: %15.5g\n\n", shapes->smallest_angle,
+    printf("  Smallest angle: %15.5g   |  Largest angle: %15.5g\n\n", shapes->smallest_angle,
                    shapes->largest_angle);
-    console_detail(console, 1, "  Angle histogram:\n");
+    printf("  Angle histogram:\n");
     for (int k = 0; k < ROWS; k++)
-        console_detail(console, 1, "    %3d - %3d degrees:%10" PRId64 "    |    %3d - %3d degrees:%10" PRId64 "\n",
+        printf("    %3d - %3d degrees:%10" PRId64 "    |    %3d - %3d degrees:%10" PRId64 "\n",
                        10 * k, 10 * k + 10, shapes->angles[k], 10 * (k + ROWS), 10 * (k + ROWS) + 10,
                        shapes->angles[k + ROWS]);
-    console_detail(console, 1, "\n");
+    printf("\n");
 }
 
 static int64_t bytes_of(const struct tri_mesh *mesh)
@@ -168,27 +168,26 @@ static int64_t bytes_of(const struct tri_mesh *mesh)
            (int64_t)mesh->parent_capacity * (int64_t)sizeof *mesh->parents;
 }
 
-void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report,
-                    const struct tri_executor *executor)
+void summary_shapes(const struct tri_mesh *mesh, const struct tri_report *report, const struct tri_executor *executor)
 {
     struct tri_shapes shapes;
     tri_measure_shapes(&shapes, mesh, executor);
-    console_detail(console, 1, "Mesh quality statistics:\n\n");
-    console_detail(console, 1, "  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area,
+    printf("Mesh quality statistics:\n\n");
+    printf("  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area,
                    shapes.largest_area);
-    console_detail(console, 1, "  Shortest edge: %16.5g   |  Longest edge: %16.5g\n", shapes.shortest_edge,
+    printf("  Shortest edge: %16.5g   |  Longest edge: %16.5g\n", shapes.shortest_edge,
                    shapes.longest_edge);
-    console_detail(console, 1, "  Shortest altitude: %12.5g   |  Largest aspect ratio: %8.5g\n\n",
+    printf("  Shortest altitude: %12.5g   |  Largest aspect ratio: %8.5g\n\n",
                    shapes.shortest_altitude, shapes.largest_aspect);
-    print_aspects(console, &shapes);
-    print_angles(console, &shapes);
-    console_detail(console, 1, "Memory allocation statistics:\n\n  Maximum number of vertices: %" PRId32 "\n",
+    print_aspects(&shapes);
+    print_angles(&shapes);
+    printf("Memory allocation statistics:\n\n  Maximum number of vertices: %" PRId32 "\n",
                    mesh->n_vertices);
-    console_detail(console, 1, "  Maximum number of triangles: %" PRId32 "\n", mesh->n_triangles);
-    console_detail(console, 1, "  Maximum number of subsegments: %" PRId32 "\n", mesh->n_subs);
-    console_detail(console, 1, "  Approximate heap memory use (bytes): %" PRId64 "\n\n", bytes_of(mesh));
-    console_detail(console, 1, "Algorithmic statistics:\n\n  Vertices at crossings of segments: %" PRId32 "\n",
+    printf("  Maximum number of triangles: %" PRId32 "\n", mesh->n_triangles);
+    printf("  Maximum number of subsegments: %" PRId32 "\n", mesh->n_subs);
+    printf("  Approximate heap memory use (bytes): %" PRId64 "\n\n", bytes_of(mesh));
+    printf("Algorithmic statistics:\n\n  Vertices at crossings of segments: %" PRId32 "\n",
                    report->constrain.crossings);
-    console_detail(console, 1, "  Vertices put on segments: %" PRId64 "\n", report->quality.inserted_on_segments);
-    console_detail(console, 1, "  Vertices put into triangles: %" PRId64 "\n\n", report->quality.inserted_free);
+    printf("  Vertices put on segments: %" PRId64 "\n", report->quality.inserted_on_segments);
+    printf("  Vertices put into triangles: %" PRId64 "\n\n", report->quality.inserted_free);
 }

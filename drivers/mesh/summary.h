@@ -34,8 +34,7 @@ void summary_remaining(const struct console *console, const int64_t count[TRI_EX
 void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,
                     int32_t n_input_triangles, const struct tri_counts *counts);
 
-/* The blocks of -V: shapes, memory, work done. */
-void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report,
-                    const struct tri_executor *executor);
+/* The blocks of -V: shapes, memory, work done; also if quiet. */
+void summary_shapes(const struct tri_mesh *mesh, const struct tri_report *report, const struct tri_executor *executor);
 
 #endif

@@ -33,7 +33,8 @@ static int take_long(const char *word)
 
 int main(int argc, char **argv)
 {
-    const struct run_hooks hooks = {.program = PROGRAM};
+    static const struct long_options none;
+    const struct run_hooks hooks = {.program = PROGRAM, .options = &none};
     for (int i = 1; i < argc; i++)
         if (is_long(argv[i]))
             return take_long(argv[i]);

@@ -181,26 +181,15 @@ static struct plot_box scale_box(struct plot_box box, int exponent)
                              scale_down(box.y1, exponent)};
 }
 
-static void extend(struct plot_box *box, const double *p)
-{
-    box->x0 = fmin(box->x0, p[0]);
-    box->y0 = fmin(box->y0, p[1]);
-    box->x1 = fmax(box->x1, p[0]);
-    box->y1 = fmax(box->y1, p[1]);
-}
-
-/* The box around all that is drawn, a little wider, and never flat. */
+/* The box around all that is drawn. */
 static struct plot_box whole(const struct plot_mesh *mesh)
 {
-    struct plot_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    struct plot_box box = plot_box_empty;
     for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++)
-        extend(&box, mesh->points + 2 * (size_t)mesh->corners[i]);
+        plot_box_extend(&box, mesh->points + 2 * (size_t)mesh->corners[i]);
     for (int32_t v = 0; mesh->n_triangles == 0 && v < mesh->n_points; v++)
-        extend(&box, mesh->points + 2 * (size_t)v);
-    if (!(box.x0 <= box.x1))
-        box = (struct plot_box){0, 0, 0, 0};
-    const double longer = fmax(box.x1 - box.x0, box.y1 - box.y0), margin = longer > 0 ? 0.01 * longer : 0.5;
-    return (struct plot_box){box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
+        plot_box_extend(&box, mesh->points + 2 * (size_t)v);
+    return plot_box_widened(box);
 }
 
 /* --- meshes of any size */
@@ -412,38 +401,17 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-/* The index of text among the words, up to NULL; -1: none of them. */
-static int find_word(const char *text, const char *const *words)
+/* The index of text among words that are separated by bars. */
+static bool parse_word(const char *text, const char *words, int *value)
 {
-    for (int i = 0; words[i] != NULL; i++) {
-        if (strcmp(text, words[i]) == 0)
-            return i;
+    const size_t n = strlen(text);
+    for (*value = 0; *words != '\0'; ++*value) {
+        const size_t length = strcspn(words, "|");
+        if (length == n && memcmp(words, text, n) == 0)
+            return true;
+        words += words[length] == '|' ? length + 1 : length;
     }
-    return -1;
-}
-
-static bool parse_switch(const char *text, bool *value)
-{
-    static const char *const words[] = {"off", "on", NULL};
-    const int found = find_word(text, words);
-    *value = found == 1;
-    return found >= 0;
-}
-
-static bool parse_edges(const char *text, enum plot_edges *value)
-{
-    static const char *const words[] = {"auto", "on", "off", NULL};
-    const int found = find_word(text, words);
-    *value = found < 0 ? PLOT_EDGES_AUTO : (enum plot_edges)found;
-    return found >= 0;
-}
-
-static bool parse_colouring(const char *text, enum colouring *value)
-{
-    static const char *const words[] = {"quality", "region", "area", "block", "none", "density", NULL};
-    const int found = find_word(text, words);
-    *value = found < 0 ? BY_QUALITY : (enum colouring)found;
-    return found >= 0;
+    return false;
 }
 
 static bool parse_size(const char *text, double *value)
@@ -470,12 +438,16 @@ static bool parse_box(const char *text, struct plot_box *box)
 static bool apply(void *settings, int option)
 {
     struct settings *s = settings;
+    int word = 0;
+    bool known = true;
     switch (option) {
     case 'o':
         s->output = optarg;
         return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
     case 'c':
-        return parse_colouring(optarg, &s->colour);
+        known = parse_word(optarg, "quality|region|area|block|none|density", &word);
+        s->colour = (enum colouring)word;
+        break;
     case 's':
         return parse_size(optarg, &s->style.width);
     case 'w':
@@ -483,20 +455,27 @@ static bool apply(void *settings, int option)
     case 'm':
         return s->style.has_mark = parse_box(optarg, &s->style.mark);
     case 'e':
-        return parse_edges(optarg, &s->style.edges);
+        known = parse_word(optarg, "auto|on|off", &word);
+        s->style.edges = (enum plot_edges)word;
+        break;
     case SEGMENTS:
-        return parse_switch(optarg, &s->style.segments);
+        known = parse_word(optarg, "off|on", &word);
+        s->style.segments = word == 1;
+        break;
     case LEGEND:
-        return parse_switch(optarg, &s->style.legend);
+        known = parse_word(optarg, "off|on", &word);
+        s->style.legend = word == 1;
+        break;
     case 't':
         s->style.title = optarg;
-        return true;
+        break;
     case 'b':
         s->blocks = optarg;
-        return true;
+        break;
     default:
         return false;
     }
+    return known;
 }
 
 /* 0: go on; < 0: done, with success; > 0: exit code. */

@@ -6,6 +6,7 @@
 #define DRIVERS_PLOT_PLOT_H
 
 #include <cairo.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -46,6 +47,35 @@ struct plot_mesh {
 struct plot_box {
     double x0, y0, x1, y1; /* x0 < x1, y0 < y1 */
 };
+
+static const struct plot_box plot_box_empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+
+static inline void plot_box_extend(struct plot_box *box, const double *p)
+{
+    *box = (struct plot_box){fmin(box->x0, p[0]), fmin(box->y0, p[1]), fmax(box->x1, p[0]), fmax(box->y1, p[1])};
+}
+
+/* A little wider, and never flat. */
+static inline struct plot_box plot_box_widened(struct plot_box box)
+{
+    if (!(box.x0 <= box.x1))
+        box = (struct plot_box){0, 0, 0, 0};
+    const double longer = fmax(box.x1 - box.x0, box.y1 - box.y0), margin = longer > 0 ? 0.01 * longer : 0.5;
+    return (struct plot_box){box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
+}
+
+static inline bool plot_boxes_meet(const struct plot_box *a, const struct plot_box *b)
+{
+    return a->x0 <= b->x1 && a->x1 >= b->x0 && a->y0 <= b->y1 && a->y1 >= b->y0;
+}
+
+static inline enum tri_status plot_no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+}
+
+/* Sorts numbers and drops repetitions; returns how many remain. */
+int64_t plot_distinct(int64_t *number, int64_t n);
 
 /* How many triangles there are at each pixel: what is drawn of a mesh with too many for anything else. */
 struct plot_density {

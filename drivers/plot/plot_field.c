@@ -111,14 +111,10 @@ static void add_line(cairo_t *cr, struct pixel p, struct pixel q)
 
 static bool in_field(const struct plot_box *field, const struct pixel *p, int n)
 {
-    double x0 = p[0].x, x1 = p[0].x, y0 = p[0].y, y1 = p[0].y;
-    for (int i = 1; i < n; i++) {
-        x0 = fmin(x0, p[i].x);
-        x1 = fmax(x1, p[i].x);
-        y0 = fmin(y0, p[i].y);
-        y1 = fmax(y1, p[i].y);
-    }
-    return x0 <= field->x1 && x1 >= field->x0 && y0 <= field->y1 && y1 >= field->y0;
+    struct plot_box box = plot_box_empty;
+    for (int i = 0; i < n; i++)
+        plot_box_extend(&box, (double[2]){p[i].x, p[i].y});
+    return plot_boxes_meet(&box, field);
 }
 
 /* Triangles sorted by shade; malloc'ed. */
@@ -208,7 +204,7 @@ static enum tri_status draw_triangles(const struct canvas *c, bool vector, const
     int32_t *order = order_by_shade(c->mesh, shading);
     cairo_status_t status = CAIRO_STATUS_SUCCESS;
     if (order == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+        return plot_no_memory(error);
     if (vector)
         fill_triangles(c, true, shading, order);
     else
@@ -221,53 +217,43 @@ static enum tri_status draw_triangles(const struct canvas *c, bool vector, const
 
 /* --- edges */
 
-/* Edges listed once, at the lower of their ends: far ends of those at v are ends[start[v]] .. ends[stop[v] - 1]. */
+/* Edges at the lower of their ends, once for each triangle: far ends of those at v are ends[start[v]] ..
+ * ends[start[v + 1] - 1]. */
 struct edge_list {
-    size_t *start, *stop; /* [n_points + 1] */
+    size_t *start; /* [n_points + 1] */
     int32_t *ends;
 };
 
-static void edge_list_free(struct edge_list *list)
+static int32_t next_corner(const struct plot_mesh *mesh, size_t i)
 {
-    free(list->start);
-    free(list->stop);
-    free(list->ends);
-}
-
-static void count_edges(struct edge_list *list, const struct plot_mesh *mesh)
-{
-    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++) {
-        const int32_t a = mesh->corners[i], b = mesh->corners[i % 3 == 2 ? i - 2 : i + 1];
-        list->start[(a < b ? a : b) + 1]++;
-    }
-    for (int32_t v = 0; v < mesh->n_points; v++) {
-        list->start[v + 1] += list->start[v];
-        list->stop[v] = list->start[v];
-    }
-}
-
-static void add_edge(struct edge_list *list, int32_t low, int32_t high)
-{
-    for (size_t i = list->start[low]; i < list->stop[low]; i++) {
-        if (list->ends[i] == high)
-            return;
-    }
-    list->ends[list->stop[low]++] = high;
+    return mesh->corners[i % 3 == 2 ? i - 2 : i + 1];
 }
 
 static enum tri_status edge_list_make(struct edge_list *list, const struct plot_mesh *mesh, struct tri_error *error)
 {
+    const size_t n = 3 * (size_t)mesh->n_triangles;
     list->start = calloc((size_t)mesh->n_points + 1, sizeof *list->start);
-    list->stop = calloc((size_t)mesh->n_points + 1, sizeof *list->stop);
-    list->ends = malloc((3 * (size_t)mesh->n_triangles + 1) * sizeof *list->ends);
-    if (list->start == NULL || list->stop == NULL || list->ends == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    count_edges(list, mesh);
-    for (size_t i = 0; i < 3 * (size_t)mesh->n_triangles; i++) {
-        const int32_t a = mesh->corners[i], b = mesh->corners[i % 3 == 2 ? i - 2 : i + 1];
-        add_edge(list, a < b ? a : b, a < b ? b : a);
+    list->ends = malloc((n + 1) * sizeof *list->ends);
+    if (list->start == NULL || list->ends == NULL)
+        return plot_no_memory(error);
+    for (size_t i = 0; i < n; i++)
+        list->start[mesh->corners[i] < next_corner(mesh, i) ? mesh->corners[i] : next_corner(mesh, i)]++;
+    for (int32_t v = 0; v < mesh->n_points; v++)
+        list->start[v + 1] += list->start[v];
+    for (size_t i = n; i-- > 0;) {
+        const int32_t a = mesh->corners[i], b = next_corner(mesh, i);
+        list->ends[--list->start[a < b ? a : b]] = a < b ? b : a;
     }
     return TRI_OK;
+}
+
+/* Has the edge come before, with another triangle? */
+static bool is_again(const struct edge_list *list, int32_t v, size_t i)
+{
+    size_t k = list->start[v];
+    while (k < i && list->ends[k] != list->ends[i])
+        k++;
+    return k < i;
 }
 
 /* How strongly an edge of that many pixels is drawn: 0 (not) .. FADE_STEPS. */
@@ -278,20 +264,24 @@ static int strength(double length, enum plot_edges edges)
     return (int)fmin(fmax((length - 2) / 2, 0), FADE_STEPS);
 }
 
+/* The lines so far are drawn now and then: a path must not become too long. */
+static void draw_line(const struct canvas *c, struct pixel p, struct pixel q, int *in_path)
+{
+    add_line(c->cr, p, q);
+    if (++*in_path % CHUNK == 0)
+        cairo_stroke(c->cr);
+}
+
 static void draw_edges_of(const struct canvas *c, const struct edge_list *list, int wanted, enum plot_edges edges)
 {
     int in_path = 0;
     for (int32_t v = 0; v < c->mesh->n_points; v++) {
         struct pixel end[2] = {place(c, v), {0, 0}};
-        for (size_t i = list->start[v]; i < list->stop[v]; i++) {
+        for (size_t i = list->start[v]; i < list->start[v + 1]; i++) {
             end[1] = place(c, list->ends[i]);
-            if (!in_field(&c->field, end, 2) ||
-                strength(hypot(end[1].x - end[0].x, end[1].y - end[0].y), edges) != wanted) {
-                continue;
-            }
-            add_line(c->cr, end[0], end[1]);
-            if (++in_path % CHUNK == 0)
-                cairo_stroke(c->cr);
+            if (in_field(&c->field, end, 2) &&
+                strength(hypot(end[1].x - end[0].x, end[1].y - end[0].y), edges) == wanted && !is_again(list, v, i))
+                draw_line(c, end[0], end[1], &in_path);
         }
     }
     cairo_stroke(c->cr);
@@ -307,27 +297,30 @@ static enum tri_status draw_edges(const struct canvas *c, const struct plot_styl
         cairo_set_source_rgba(c->cr, 0.05, 0.08, 0.15, 0.15 + 0.45 * share);
         draw_edges_of(c, &list, step, style->edges);
     }
-    edge_list_free(&list);
+    free(list.start);
+    free(list.ends);
     return status;
+}
+
+static void use_pen(const struct canvas *c, double width)
+{
+    cairo_set_line_width(c->cr, width);
+    cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+    cairo_set_source_rgb(c->cr, 0.05, 0.08, 0.15);
 }
 
 static void draw_segments(const struct canvas *c, double width)
 {
     const struct plot_mesh *m = c->mesh;
     int in_path = 0;
-    cairo_set_line_width(c->cr, width);
-    cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
-    cairo_set_source_rgb(c->cr, 0.05, 0.08, 0.15);
+    use_pen(c, width);
     for (int32_t s = 0; s < m->n_segments; s++) {
         const int32_t a = m->segments[2 * (size_t)s], b = m->segments[2 * (size_t)s + 1];
         if (a < 0 || b < 0 || a >= m->n_points || b >= m->n_points)
             continue;
         const struct pixel end[2] = {place(c, a), place(c, b)};
-        if (!in_field(&c->field, end, 2))
-            continue;
-        add_line(c->cr, end[0], end[1]);
-        if (++in_path % CHUNK == 0)
-            cairo_stroke(c->cr);
+        if (in_field(&c->field, end, 2))
+            draw_line(c, end[0], end[1], &in_path);
     }
     cairo_stroke(c->cr);
 }
@@ -335,16 +328,12 @@ static void draw_segments(const struct canvas *c, double width)
 /* Points alone: a line of no length with round ends is a dot. */
 static void draw_points(const struct canvas *c, double width)
 {
-    cairo_set_line_width(c->cr, width);
-    cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
-    cairo_set_source_rgb(c->cr, 0.05, 0.08, 0.15);
+    int in_path = 0;
+    use_pen(c, width);
     for (int32_t v = 0; v < c->mesh->n_points; v++) {
         const struct pixel p = place(c, v);
-        if (!in_field(&c->field, &p, 1))
-            continue;
-        add_line(c->cr, p, p);
-        if (v % CHUNK == 0)
-            cairo_stroke(c->cr);
+        if (in_field(&c->field, &p, 1))
+            draw_line(c, p, p, &in_path);
     }
     cairo_stroke(c->cr);
 }
@@ -378,7 +367,7 @@ static enum tri_status draw_density(const struct canvas *c, const struct plot_sh
     cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, d->width, d->height);
     unsigned char *data = cairo_image_surface_get_data(image);
     if (data == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+        return plot_no_memory(error);
     for (int y = 0; y < d->height; y++) {
         uint32_t *row = (uint32_t *)(void *)(data + (size_t)y * (size_t)cairo_image_surface_get_stride(image));
         for (int x = 0; x < d->width; x++) {

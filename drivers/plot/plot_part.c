@@ -46,11 +46,6 @@ struct part {
     struct plot_density *density;
 };
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-}
-
 /* --- points */
 
 static enum tri_status cache_begin(struct cache *k, const struct tri_check_source *source, struct tri_error *error)
@@ -61,7 +56,7 @@ static enum tri_status cache_begin(struct cache *k, const struct tri_check_sourc
     k->points = malloc((size_t)k->n_slots * sizeof *k->points);
     for (int64_t i = 0; k->block != NULL && i < k->n_slots; i++)
         k->block[i] = -1;
-    return k->block != NULL && k->points != NULL ? TRI_OK : no_memory(error);
+    return k->block != NULL && k->points != NULL ? TRI_OK : plot_no_memory(error);
 }
 
 static void cache_end(struct cache *k)
@@ -86,32 +81,19 @@ static const double *place_of(struct cache *k, int64_t v)
     return k->status == TRI_OK ? k->points[slot][v - first] : nowhere;
 }
 
-static void extend(struct plot_box *box, const double *p)
-{
-    box->x0 = fmin(box->x0, p[0]);
-    box->y0 = fmin(box->y0, p[1]);
-    box->x1 = fmax(box->x1, p[0]);
-    box->y1 = fmax(box->y1, p[1]);
-}
-
-static const struct plot_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-
 enum tri_status plot_part_box(const struct tri_check_source *source, struct plot_box *box, struct tri_error *error)
 {
     double(*points)[2] = malloc(SLICE * sizeof *points);
-    enum tri_status status = points != NULL ? TRI_OK : no_memory(error);
-    *box = empty;
+    enum tri_status status = points != NULL ? TRI_OK : plot_no_memory(error);
+    *box = plot_box_empty;
     for (int64_t i = 0; i < source->n_points && !status; i += SLICE) {
         int64_t n = source->n_points - i < SLICE ? source->n_points - i : SLICE;
         status = source->read(source->user, TRI_CHECK_POINTS, i, n, points, error);
         for (int64_t k = 0; k < n && !status; k++)
-            extend(box, points[k]);
+            plot_box_extend(box, points[k]);
     }
     free(points);
-    if (!(box->x0 <= box->x1))
-        *box = (struct plot_box){0, 0, 0, 0};
-    double longer = fmax(box->x1 - box->x0, box->y1 - box->y0), margin = longer > 0 ? 0.01 * longer : 0.5;
-    *box = (struct plot_box){box->x0 - margin, box->y0 - margin, box->x1 + margin, box->y1 + margin};
+    *box = plot_box_widened(*box);
     return status;
 }
 
@@ -120,16 +102,16 @@ enum tri_status plot_part_box(const struct tri_check_source *source, struct plot
 /* Does the box around n points meet the window? */
 static bool shows(struct part *p, const int64_t *v, int n)
 {
-    struct plot_box box = empty;
+    struct plot_box box = plot_box_empty;
     for (int k = 0; k < n; k++)
-        extend(&box, place_of(&p->cache, v[k]));
-    return box.x0 <= p->window.x1 && box.x1 >= p->window.x0 && box.y0 <= p->window.y1 && box.y1 >= p->window.y0;
+        plot_box_extend(&box, place_of(&p->cache, v[k]));
+    return plot_boxes_meet(&box, &p->window);
 }
 
 static enum tri_status add(struct list *list, const int64_t *v, int n, struct tri_error *error)
 {
     if (!tri_grow_far(&list->at, &list->room, list->n + n, sizeof *list->at))
-        return no_memory(error);
+        return plot_no_memory(error);
     memcpy(list->at + list->n, v, (size_t)n * sizeof *v);
     list->n += n;
     return TRI_OK;
@@ -139,7 +121,7 @@ static enum tri_status add_attribute(struct part *p, double value, struct tri_er
 {
     int64_t n = p->corners.n / 3; /* with this one */
     if (!tri_grow_far(&p->attributes, &p->attribute_room, n, sizeof *p->attributes))
-        return no_memory(error);
+        return plot_no_memory(error);
     p->attributes[n - 1] = value;
     return TRI_OK;
 }
@@ -206,14 +188,13 @@ static int compare_numbers(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Sorts and drops repetitions. */
-static int64_t distinct(int64_t *at, int64_t n)
+int64_t plot_distinct(int64_t *number, int64_t n)
 {
     int64_t kept = 0;
-    qsort(at, (size_t)n, sizeof *at, compare_numbers);
+    qsort(number, (size_t)n, sizeof *number, compare_numbers);
     for (int64_t i = 0; i < n; i++)
-        if (i == 0 || at[i] != at[i - 1])
-            at[kept++] = at[i];
+        if (i == 0 || number[i] != number[i - 1])
+            number[kept++] = number[i];
     return kept;
 }
 
@@ -233,10 +214,10 @@ static enum tri_status number(struct part *p, struct tri_pslg *mesh, struct tri_
     elements->corners = malloc((size_t)(p->corners.n + 1) * sizeof *elements->corners);
     mesh->points = malloc((size_t)(2 * n + 1) * sizeof *mesh->points);
     enum tri_status status =
-        vertex && mesh->segments && elements->corners && mesh->points ? TRI_OK : no_memory(error);
+        vertex && mesh->segments && elements->corners && mesh->points ? TRI_OK : plot_no_memory(error);
     for (int64_t i = 0; i < n && !status; i++)
         vertex[i] = i < p->corners.n ? p->corners.at[i] : p->ends.at[i - p->corners.n];
-    n = status ? 0 : distinct(vertex, n);
+    n = status ? 0 : plot_distinct(vertex, n);
     for (int64_t i = 0; i < n; i++)
         memcpy(mesh->points + 2 * i, place_of(&p->cache, vertex[i]), 2 * sizeof *mesh->points);
     if (!status) {
@@ -254,7 +235,7 @@ static enum tri_status gather(struct part *p, bool attributes, struct tri_error 
 {
     int64_t *corners = malloc(3 * SLICE * sizeof *corners);
     double *values = attributes ? malloc(SLICE * sizeof *values) : NULL;
-    enum tri_status status = corners && (values || !attributes) ? TRI_OK : no_memory(error);
+    enum tri_status status = corners && (values || !attributes) ? TRI_OK : plot_no_memory(error);
     if (!status)
         status = each_triangle(p, corners, values, error);
     if (!status)
@@ -294,7 +275,7 @@ enum tri_status plot_part_count(const struct tri_check_source *source, struct pl
     struct part p = {.window = density->box, .density = density};
     struct tri_elements none = {0};
     density->count = calloc((size_t)density->width * (size_t)density->height, sizeof *density->count);
-    enum tri_status status = density->count != NULL ? run(&p, source, mesh, &none, error) : no_memory(error);
+    enum tri_status status = density->count != NULL ? run(&p, source, mesh, &none, error) : plot_no_memory(error);
     tri_elements_free(&none);
     return status;
 }

@@ -19,11 +19,6 @@ enum {
 
 static const double degrees = 57.29577951308232;
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-}
-
 static enum tri_status begin(struct plot_shading *s, const struct plot_mesh *mesh, int n_shades,
                              struct tri_error *error)
 {
@@ -32,7 +27,7 @@ static enum tri_status begin(struct plot_shading *s, const struct plot_mesh *mes
     s->shades = malloc((size_t)n_shades * sizeof *s->shades);
     s->count = calloc((size_t)n_shades, sizeof *s->count);
     s->keys = calloc(MAX_KEYS + 1, sizeof *s->keys);
-    return s->shade && s->shades && s->count && s->keys ? TRI_OK : no_memory(error);
+    return s->shade && s->shades && s->count && s->keys ? TRI_OK : plot_no_memory(error);
 }
 
 void plot_shading_free(struct plot_shading *s)
@@ -267,7 +262,7 @@ enum tri_status plot_shade_region(struct plot_shading *s, const struct plot_mesh
     double *known = malloc(((size_t)n + 1) * sizeof *known);
     *s = (struct plot_shading){0};
     if (known == NULL)
-        return no_memory(error);
+        return plot_no_memory(error);
     for (int32_t t = 0; t < n; t++)
         known[t] = value[(size_t)t * (size_t)stride];
     const int32_t n_known = distinct_reals(known, n);
@@ -281,17 +276,10 @@ enum tri_status plot_shade_region(struct plot_shading *s, const struct plot_mesh
 
 /* --- blocks and phases */
 
-static int compare_keys(const void *a, const void *b)
-{
-    const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* Distinct (phase, block) with phase >= 0; < 0: out of memory. */
 static int64_t count_blocks(const int32_t *block_phase, int32_t n)
 {
-    int64_t *key = malloc(((size_t)n + 1) * sizeof *key), different = 0;
-    int32_t used = 0;
+    int64_t *key = malloc(((size_t)n + 1) * sizeof *key), used = 0;
     if (key == NULL)
         return -1;
     for (int32_t t = 0; t < n; t++) {
@@ -299,9 +287,7 @@ static int64_t count_blocks(const int32_t *block_phase, int32_t n)
         if (phase >= 0)
             key[used++] = phase * ((int64_t)1 << 32) + block;
     }
-    qsort(key, (size_t)used, sizeof *key, compare_keys);
-    for (int32_t i = 0; i < used; i++)
-        different += i == 0 || key[i] != key[i - 1];
+    const int64_t different = plot_distinct(key, used);
     free(key);
     return different;
 }
@@ -342,7 +328,7 @@ enum tri_status plot_shade_block(struct plot_shading *s, const struct plot_mesh 
         return TRI_NO_MEMORY;
     const int64_t n_blocks = count_blocks(block_phase, mesh->n_triangles);
     if (n_blocks < 0)
-        return no_memory(error);
+        return plot_no_memory(error);
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const int32_t block = block_phase[2 * (size_t)t], phase = block_phase[2 * (size_t)t + 1];
         set(s, t, phase < 0 ? OUTSIDE : phase % MAX_PHASES * TONES + tone_of(block));

@@ -1,105 +1,202 @@
-/* INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
- * not been written; all that have come before have been. */
+/* A large piece is written by POSIX's asynchronous writing, past the system's cache where the file system allows that:
+ * what a mesh of many gigabytes would push out of the cache stays there, processors copy nothing, and little is left to
+ * sync at the end.
+ *
+ * INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
+ * not been written; all that have come before have been, or are on their way from the other buffer. */
 #include "triangle/hdf5/buffer.h"
 
+#include <aio.h>
 #include <assert.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { BUFFER_BYTES = 1 << 20 };
+#include "triangle/text/stream.h"
+
+enum { BUFFER_BYTES = 1 << 20, PAGE_BYTES = 4096 }; /* what is a multiple of the latter may pass the system's cache */
+
+/* At most one piece at a time. All 0: nothing is under way. May not move while something is. */
+struct behind {
+    bool under_way;
+    const char *data; /* lent */
+    struct aiocb control;
+};
 
 struct strip {
-    struct tri_h5_laid laid;
-    const int64_t *place; /* [laid.n] */
-    size_t row_bytes;
+    const struct tri_h5_laid *laid;
     int64_t next;
-    int32_t n, room;      /* rows in the buffer, at most */
-    char *buffer;
+    int32_t n, room; /* rows in the buffer, at most */
+    char *buffer;    /* NULL: nothing has come */
+    char *other;     /* as large: what is on its way into the file; NULL: none was needed */
+    struct behind behind;
 };
 
 struct tri_h5_part {
     struct tri_output *file;
+    bool alone;
     struct tri_h5_rows rows;
     double *columns;
     struct strip strip[TRI_H5_KINDS];
 };
 
+static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, part->file->path, 0, "no memory to write rows of the file");
+}
+
+/* --- writing that goes on while its caller does */
+
+static bool is_aligned(uint64_t place, const char *data, size_t size)
+{
+    return (place | (uint64_t)(uintptr_t)data | size) % PAGE_BYTES == 0;
+}
+
+/* Begins to write to a place; nothing is under way. The data are lent until it is waited for. Returns 0 or what
+ * tri_output_conclude makes an error of. */
+static int behind_start(struct behind *behind, struct tri_output *output, uint64_t place, const char *data,
+                     size_t size)
+{
+    assert(!behind->under_way && tri_output_has_places(output));
+    if (tri_stop_is_asked(output->stop))
+        return TRI_OUTPUT_STOPPED;
+    memset(&behind->control, 0, sizeof behind->control);
+    behind->control.aio_fildes = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
+    behind->control.aio_offset = (off_t)place;
+    behind->data = data;
+    behind->control.aio_buf = (void *)data; /* is read alone */
+    behind->control.aio_nbytes = size;
+    behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
+    behind->under_way = aio_write(&behind->control) == 0;
+    return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
+}
+
+/* Waits for what is under way, if anything is: then it is written. Returns the same. What cannot be asked for, or is
+ * done in part only, is written as everything else is. */
+static int behind_wait(struct behind *behind, const struct tri_output *output)
+{
+    const struct aiocb *const control = &behind->control;
+    if (!behind->under_way)
+        return 0;
+    while (aio_error(control) == EINPROGRESS)
+        (void)aio_suspend(&control, 1, NULL);
+    const int fault = aio_error(control);
+    const ssize_t written = aio_return(&behind->control);
+    const size_t done = fault == 0 && written > 0 ? (size_t)written : 0;
+    behind->under_way = false;
+    return tri_output_write_at(output, (uint64_t)control->aio_offset + done, behind->data + done,
+                               control->aio_nbytes - done);
+}
+
 /* --- one array */
 
-static bool begin_strip(struct strip *s, const struct tri_h5_laid *laid, const int64_t *place)
+/* Where bytes go that may pass the system's cache. */
+static char *new_buffer(const struct strip *s)
 {
-    if (laid->n == 0)
-        return true;
-    *s = (struct strip){.laid = *laid, .place = place + laid->first};
-    s->row_bytes = (laid->type == TRI_H5_INT32 ? 4u : 8u) * (size_t)laid->width;
-    s->room = s->row_bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / s->row_bytes) : 1;
-    s->buffer = malloc((size_t)s->room * s->row_bytes);
+    void *buffer = NULL;
+    const size_t bytes = (size_t)s->room * tri_h5_row_bytes(s->laid);
+    return posix_memalign(&buffer, PAGE_BYTES, bytes) == 0 ? buffer : NULL;
+}
+
+static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
+{
+    const size_t bytes = tri_h5_row_bytes(s->laid);
+    s->room = part->alone ? s->laid->chunk_rows : bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / bytes) : 1;
+    s->buffer = new_buffer(s);
     return s->buffer;
 }
 
-static enum tri_status flush(struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+/* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
+static int send(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
 {
-    const int64_t first = s->next - s->n;
-    const size_t bytes = (size_t)s->n * s->row_bytes;
+    int result = behind_wait(&s->behind, part->file);
+    s->other = part->alone && !s->other ? new_buffer(s) : s->other;
+    if (result || !s->other)
+        return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
+    char *buffer = s->buffer;
+    result = behind_start(&s->behind, part->file, place, buffer, bytes);
+    s->buffer = s->other;
+    s->other = buffer;
+    return result;
+}
+
+static enum tri_status flush(const struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+{
+    const int64_t first = s->next - s->n, chunk_rows = s->laid->chunk_rows;
+    const size_t row_bytes = tri_h5_row_bytes(s->laid), bytes = (size_t)s->n * row_bytes;
     if (s->n == 0)
         return TRI_OK;
-    assert(first / s->laid.chunk_rows < s->laid.n);
-    const uint64_t place = (uint64_t)s->place[first / s->laid.chunk_rows] +
-                           (uint64_t)(first % s->laid.chunk_rows) * s->row_bytes;
+    assert(first / chunk_rows < s->laid->n);
+    const uint64_t place = (uint64_t)s->laid->place[first / chunk_rows] + (uint64_t)(first % chunk_rows) * row_bytes;
     s->n = 0;
-    return tri_output_conclude(part->file, tri_output_write_at(part->file, place, s->buffer, bytes), error);
+    return tri_output_conclude(part->file, send(part, s, place, bytes), error);
 }
 
 /* How many rows may follow, as far as the buffer and the place reach. */
 static int32_t room_of(const struct strip *s)
 {
-    const int64_t here = s->laid.chunk_rows - s->next % s->laid.chunk_rows;
+    const int64_t here = s->laid->chunk_rows - s->next % s->laid->chunk_rows;
     return here < s->room - s->n ? (int32_t)here : s->room - s->n;
 }
 
+static bool is_full(const struct strip *s)
+{
+    return s->n == s->room || (s->n > 0 && s->next % s->laid->chunk_rows == 0);
+}
+
+/* A full buffer is written when more comes: by then it is known where. */
 static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind, int64_t first, int32_t n,
                                 struct tri_error *error)
 {
     struct strip *s = &part->strip[kind];
     enum tri_status status = TRI_OK;
-    if (!s->buffer || n == 0)
+    if (s->laid->width == 0 || n == 0)
         return TRI_OK;
+    if (!s->buffer && !begin_strip(part, s))
+        return no_memory(part, error);
     if (first != s->next)
         status = flush(part, s, error);
     s->next = first;
     for (int32_t i = 0; !status && i < n;) {
+        status = is_full(s) ? flush(part, s, error) : TRI_OK;
         const int32_t room = room_of(s), end = room < n - i ? i + room : n;
-        tri_h5_put_of(kind, s->laid.type)(&part->rows, i, end, s->buffer + (size_t)s->n * s->row_bytes);
+        tri_h5_put_of(kind, s->laid->type)(&part->rows, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
         s->n += end - i;
         s->next += end - i;
         i = end;
-        if (s->n == s->room || s->next % s->laid.chunk_rows == 0)
-            status = flush(part, s, error);
     }
     return status;
 }
 
+enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
+{
+    struct strip *s = &part->strip[kind];
+    enum tri_status status = flush(part, s, error);
+    status = status ? status : tri_output_conclude(part->file, behind_wait(&s->behind, part->file), error);
+    if (status)
+        return status;
+    free(s->buffer);
+    free(s->other);
+    s->buffer = s->other = NULL;
+    return TRI_OK;
+}
+
 /* --- all */
 
-enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, const int64_t *place,
+enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, bool alone,
                                 const struct tri_stream *stream, struct tri_output *file, struct tri_error *error)
 {
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
     struct tri_h5_part *p = calloc(1, sizeof *p);
+    double *columns = tri_copy_columns(stream);
     *part = p;
-    bool memory = p;
-    if (p) {
-        p->file = file;
-        p->columns = malloc((n + 1) * sizeof *p->columns);
-        p->rows = (struct tri_h5_rows){NULL, p->columns, stream->n_attributes, stream->n_columns};
-        memory = p->columns;
+    if (!p || !columns) {
+        free(columns);
+        return tri_fail(error, TRI_NO_MEMORY, file->path, 0, "no memory to write the file");
     }
-    for (int kind = 0; memory && kind < TRI_H5_KINDS; kind++)
-        memory = begin_strip(&p->strip[kind], &layout->array[kind], place);
-    if (!memory)
-        return tri_fail(error, TRI_NO_MEMORY, file->path, 0, "no memory to write a part of the file");
-    if (n > 0)
-        memcpy(p->columns, stream->regions, n * sizeof *p->columns);
+    *p = (struct tri_h5_part){.file = file, .alone = alone, .columns = columns,
+                              .rows = {NULL, columns, stream->n_attributes, stream->n_columns}};
+    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
+        p->strip[kind].laid = &layout->array[kind];
     return TRI_OK;
 }
 
@@ -121,17 +218,20 @@ enum tri_status tri_h5_part_take(struct tri_h5_part *part, const struct tri_tile
 enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int kind = 0; !status && kind < TRI_H5_KINDS; kind++)
-        status = flush(part, &part->strip[kind], error);
+    for (enum tri_h5_kind kind = 0; !status && kind < TRI_H5_KINDS; kind++)
+        status = tri_h5_part_pause(part, kind, error);
     return status;
 }
 
 void tri_h5_part_free(struct tri_h5_part *part)
 {
-    if (!part)
-        return;
-    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
-        free(part->strip[kind].buffer);
-    free(part->columns);
+    for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
+        struct strip *s = &part->strip[kind];
+        (void)behind_wait(&s->behind, part->file);
+        free(s->buffer);
+        free(s->other);
+    }
+    if (part)
+        free(part->columns);
     free(part);
 }

@@ -6,7 +6,7 @@
  * that its planes 0 and 1 are those of every other chunk, and most of the others consist of one value. Deflate streams
  * that have been flushed can be put behind each other, and their checksums combined (RFC 1950, 1951; zlib): so a plane
  * that is the same as in the chunk before is deflated once. Chunks that reach beyond the triangles take HDF5's way. */
-#include "triangle/hdf5/ends.h"
+#include "triangle/hdf5/views.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -128,23 +128,23 @@ static enum tri_status write_numbers(struct ends *e, int64_t first)
 
 static hid_t create(const struct ends *e)
 {
-    const hsize_t chunk = (hsize_t)(e->n < ROWS ? e->n : ROWS);
-    hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE), dataset = -1;
-    if (creation >= 0 && e->space >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 && H5Pset_shuffle(creation) >= 0 &&
-        H5Pset_deflate(creation, LEVEL) >= 0)
-        dataset = H5Dcreate2(e->file->id, e->path, H5T_STD_I64LE, e->space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    if (creation >= 0)
-        H5Pclose(creation);
-    return dataset;
+    const hsize_t n = (hsize_t)e->n, chunk = n < ROWS ? n : ROWS;
+    hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
+    const bool deflated = creation >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 && H5Pset_shuffle(creation) >= 0 &&
+                          H5Pset_deflate(creation, LEVEL) >= 0;
+    hid_t dataset = tri_h5_new_dataset(e->file, e->path, H5T_STD_I64LE, 1, &n, NULL, creation);
+    if (deflated || dataset < 0)
+        return dataset;
+    H5Dclose(dataset);
+    return -1;
 }
 
 static enum tri_status write_all(struct ends *e)
 {
-    const hsize_t n = (hsize_t)e->n;
     enum tri_status status = TRI_OK;
-    e->space = H5Screate_simple(1, &n, NULL);
     e->dataset = create(e);
-    if (e->dataset < 0)
+    e->space = e->dataset >= 0 ? H5Dget_space(e->dataset) : -1;
+    if (e->dataset < 0 || e->space < 0)
         return tri_h5_fail(e->file, e->path, e->error);
     for (int64_t i = 0; i < e->n && !status; i += ROWS)
         status = i + ROWS <= e->triangles ? write_stream(e, i) : write_numbers(e, i);

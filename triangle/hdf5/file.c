@@ -15,6 +15,8 @@
 #include <H5FDdevelop.h>
 #endif
 
+#include "triangle/base/at_place.h"
+
 enum { PAGE_BYTES = 4096, LARGE_BYTES = 1 << 16 }; /* what is large begins at a page */
 
 /* --- the driver */
@@ -80,31 +82,12 @@ static herr_t note(struct tri_h5_file *file, int failure)
 static herr_t read_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, void *data)
 {
     const struct driven *driven = (const struct driven *)head;
-    char *at = data;
+    const ssize_t got = tri_read_at(driven->file->output->file, data, size, place);
     (void)kind, (void)transfer;
-    while (size > 0) {
-        ssize_t n = pread(driven->file->output->file, at, size, (off_t)place);
-        if (n < 0 && errno != EINTR)
-            return note(driven->file, errno);
-        if (n == 0) {
-            memset(at, 0, size);
-            return 0;
-        }
-        if (n > 0) {
-            at += n;
-            place += (haddr_t)n;
-            size -= (size_t)n;
-        }
-    }
+    if (got < 0)
+        return note(driven->file, errno);
+    memset((char *)data + got, 0, size - (size_t)got);
     return 0;
-}
-
-/* A chunk comes through HDF5 as it is. */
-static int write_now_or_behind(struct tri_h5_file *file, haddr_t place, const void *data, size_t size)
-{
-    struct tri_behind *behind = data == file->behind_data ? file->behind : NULL;
-    return behind ? tri_behind_start(behind, file->output, place, data, size)
-                  : tri_output_write_at(file->output, place, data, size);
 }
 
 static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, const void *data)
@@ -117,13 +100,9 @@ static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_
     }
     if (driven->written < place + size)
         driven->written = place + size;
-    return driven->file->failure != 0 ? 0 : note(driven->file, write_now_or_behind(driven->file, place, data, size));
-}
-
-void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind)
-{
-    const int failure = tri_behind_wait(behind, file->output);
-    (void)note(file, failure);
+    if (driven->file->failure != 0)
+        return 0;
+    return note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
 }
 
 /* The file ends where what has been allocated ends. */
@@ -213,6 +192,19 @@ hid_t tri_h5_no_times(hid_t kind)
     return -1;
 }
 
+hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t type, int rank, const hsize_t *size,
+                         const hsize_t *most, hid_t creation)
+{
+    hid_t space = H5Screate_simple(rank, size, most), dataset = -1;
+    if (space >= 0 && creation >= 0)
+        dataset = H5Dcreate2(file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    if (creation >= 0)
+        H5Pclose(creation);
+    if (space >= 0)
+        H5Sclose(space);
+    return dataset;
+}
+
 enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *output, struct tri_error *error)
 {
     *file = (struct tri_h5_file){.id = -1, .driver = -1, .output = output};
@@ -239,4 +231,47 @@ enum tri_status tri_h5_close(struct tri_h5_file *file, struct tri_error *error)
         H5FDunregister(file->driver);
     file->id = file->driver = -1;
     return status;
+}
+
+/* --- groups and attributes */
+
+bool tri_h5_add_group(struct tri_h5_file *file, const char *path)
+{
+    hid_t creation = tri_h5_no_times(H5P_GROUP_CREATE);
+    if (creation < 0)
+        return false;
+    hid_t group = H5Gcreate2(file->id, path, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Pclose(creation);
+    return group >= 0 && H5Gclose(group) >= 0;
+}
+
+/* type: in the file; memory: of the data. */
+static bool add(struct tri_h5_file *file, const char *path, const char *name, hid_t type, hid_t memory, int n,
+                const void *data)
+{
+    const hsize_t size = (hsize_t)n;
+    hid_t space = n > 0 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR), attribute = -1;
+    if (space < 0)
+        return false;
+    attribute = H5Acreate_by_name(file->id, path, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    bool done = attribute >= 0 && H5Awrite(attribute, memory, data) >= 0;
+    H5Sclose(space);
+    return attribute >= 0 && H5Aclose(attribute) >= 0 && done;
+}
+
+bool tri_h5_add_integers(struct tri_h5_file *file, const char *path, const char *name, int n, const int64_t *values)
+{
+    return add(file, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, n, values);
+}
+
+bool tri_h5_add_reals(struct tri_h5_file *file, const char *path, const char *name, int n, const double *values)
+{
+    return add(file, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, n, values);
+}
+
+bool tri_h5_add_text(struct tri_h5_file *file, const char *path, const char *name, const char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    bool done = type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 && add(file, path, name, type, type, 0, text);
+    return type >= 0 && H5Tclose(type) >= 0 && done;
 }

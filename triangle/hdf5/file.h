@@ -9,7 +9,7 @@
 #include <hdf5.h>
 
 #include "triangle/base/status.h"
-#include "triangle/text/behind.h"
+#include "triangle/text/output.h"
 
 struct tri_h5_file {
     hid_t id;       /* of the file; < 0: not open */
@@ -17,9 +17,7 @@ struct tri_h5_file {
     struct tri_output *output; /* borrowed */
     int failure;    /* what writing has met first, as of tri_output_write_at; 0: nothing. From then on nothing is
                        written, and HDF5 is told that all is well, so that it lets go of what it has */
-    struct tri_behind *behind; /* NULL, or by which the next write is to be done if these are its data: */
-    const char *behind_data;
-    const char *sought; /* what is written from there is not: the driver tells where it would have gone; NULL */
+    const void *sought; /* what is written from there is not: the driver tells where it would have gone; NULL */
     int64_t found;      /* there; < 0: nothing has come */
 };
 
@@ -28,9 +26,6 @@ enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *outpu
 
 /* Writes what HDF5 has kept, and closes the file, unless that has been done; the output stays open. */
 enum tri_status tri_h5_close(struct tri_h5_file *file, struct tri_error *error);
-
-/* Waits for a write that has been begun; failures are noted in the file. */
-void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind);
 
 /* What to say after a call of HDF5 has failed: what writing met, or what HDF5 tells. Never TRI_OK. */
 enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct tri_error *error);
@@ -44,5 +39,18 @@ struct tri_h5_reason tri_h5_reason(void);
 
 /* Properties of a new file, group or dataset (H5P_.._CREATE) that keeps no times; to be closed. < 0: an error. */
 hid_t tri_h5_no_times(hid_t kind);
+
+/* A new dataset of that size, which may grow to `most` (NULL: not). Closes the properties, whose failure (< 0) is
+ * passed on. < 0: an error. */
+hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t type, int rank, const hsize_t *size,
+                         const hsize_t *most, hid_t creation);
+
+/* Groups and attributes, by paths that begin at the root. False: HDF5 could not (tri_h5_fail tells). */
+bool tri_h5_add_group(struct tri_h5_file *file, const char *path);
+
+/* An attribute of n numbers, or, where n is 0, of a single one that is no array. */
+bool tri_h5_add_integers(struct tri_h5_file *file, const char *path, const char *name, int n, const int64_t *values);
+bool tri_h5_add_reals(struct tri_h5_file *file, const char *path, const char *name, int n, const double *values);
+bool tri_h5_add_text(struct tri_h5_file *file, const char *path, const char *name, const char *text);
 
 #endif

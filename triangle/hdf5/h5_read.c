@@ -17,39 +17,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "triangle/hdf5/file.h"
+#include "triangle/hdf5/array.h"
 #include "triangle/hdf5/layout.h"
 
-enum which {
-    POINTS, POINT_MARKERS, POINT_ATTRIBUTES, TRIANGLES, TRIANGLE_ATTRIBUTES, SEGMENTS, SEGMENT_MARKERS, ARRAYS
-};
-
-enum { FLOAT64 = 1, INT32 = 2, INT64 = 4 };
-
-/* What an array must look like. */
-static const struct form {
-    const char *name;
-    int64_t width;      /* numbers in a row; 0: a list, -1: a table of any */
-    bool needed;
-    enum which rows_of; /* it has as many rows as this */
-    unsigned types;     /* that it may have */
-} forms[ARRAYS] = {
-    {TRI_H5_POINTS, 2, true, POINTS, FLOAT64},
-    {TRI_H5_POINT_MARKERS, 0, false, POINTS, INT32},
-    {TRI_H5_POINT_ATTRIBUTES, -1, false, POINTS, FLOAT64},
-    {TRI_H5_TRIANGLES, 3, true, TRIANGLES, INT32 | INT64},
-    {TRI_H5_TRIANGLE_ATTRIBUTES, -1, false, TRIANGLES, FLOAT64 | INT32},
-    {TRI_H5_SEGMENTS, 2, false, SEGMENTS, INT32 | INT64},
-    {TRI_H5_SEGMENT_MARKERS, 0, false, SEGMENTS, INT32},
-};
+static const struct tri_h5_form *const forms = tri_h5_forms;
 
 struct tri_h5 {
-    char *path;
+    const char *path; /* borrowed */
     hid_t file;
     int64_t bytes; /* of the file */
-    hid_t datasets[ARRAYS]; /* < 0: there is none */
-    int64_t rows[ARRAYS];
-    int32_t width[ARRAYS];
+    hid_t datasets[TRI_H5_KINDS]; /* < 0: there is none */
+    int64_t rows[TRI_H5_KINDS];
+    int32_t width[TRI_H5_KINDS];
     struct tri_h5_counts counts;
 };
 
@@ -58,16 +37,16 @@ struct tri_h5 {
 static bool has_type(hid_t dataset, unsigned wanted)
 {
     hid_t type = H5Dget_type(dataset);
-    const bool found = type >= 0 && ((wanted & FLOAT64 && H5Tequal(type, H5T_IEEE_F64LE) > 0) ||
-                                     (wanted & INT32 && H5Tequal(type, H5T_STD_I32LE) > 0) ||
-                                     (wanted & INT64 && H5Tequal(type, H5T_STD_I64LE) > 0));
+    bool found = false;
+    for (enum tri_h5_type k = TRI_H5_FLOAT64; type >= 0 && k <= TRI_H5_INT64; k++)
+        found = found || ((wanted >> k & 1) && H5Tequal(type, tri_h5_type_id(k)) > 0);
     if (type >= 0)
         H5Tclose(type);
     return found;
 }
 
 /* Its rows and width, if it has the form. */
-static bool measure(struct tri_h5 *h5, enum which k)
+static bool measure(struct tri_h5 *h5, enum tri_h5_kind k)
 {
     hsize_t size[2] = {0, 1};
     hid_t space = H5Dget_space(h5->datasets[k]);
@@ -85,7 +64,7 @@ static bool measure(struct tri_h5 *h5, enum which k)
 }
 
 /* Numbers that its storage must have room for: whole chunks. */
-static double stored_numbers(const struct tri_h5 *h5, enum which k, hid_t creation)
+static double stored_numbers(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const int64_t size[2] = {h5->rows[k], h5->width[k]};
     const int rank = forms[k].width == 0 ? 1 : 2;
@@ -99,7 +78,7 @@ static double stored_numbers(const struct tri_h5 *h5, enum which k, hid_t creati
 }
 
 /* What is wrong with how the array is kept; NULL: nothing. */
-static const char *wrong_storage(const struct tri_h5 *h5, enum which k, hid_t creation)
+static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const H5D_layout_t layout = H5Pget_layout(creation);
     hid_t type = H5Dget_type(h5->datasets[k]);
@@ -119,12 +98,13 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum which k, hid_t cr
 }
 
 /* Triangles and segments of so many points can be no more than these: twice and three times as many. */
-static bool are_too_many(const struct tri_h5 *h5, enum which k)
+static bool are_too_many(const struct tri_h5 *h5, enum tri_h5_kind k)
 {
-    return h5->rows[k] / 3 > h5->rows[POINTS] || (k == TRIANGLES && h5->rows[k] / 2 > h5->rows[POINTS]);
+    const int64_t points = h5->rows[TRI_H5_OF_POINTS];
+    return h5->rows[k] / 3 > points || (k == TRI_H5_OF_TRIANGLES && h5->rows[k] / 2 > points);
 }
 
-static enum tri_status check_array(struct tri_h5 *h5, enum which k, struct tri_error *error)
+static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct tri_error *error)
 {
     if (!measure(h5, k))
         return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s has not the type and size that it should",
@@ -145,7 +125,7 @@ static bool is_own(const struct tri_h5 *h5, const char *name)
     return H5Lget_info(h5->file, name, &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD;
 }
 
-static enum tri_status open_array(struct tri_h5 *h5, enum which k, struct tri_error *error)
+static enum tri_status open_array(struct tri_h5 *h5, enum tri_h5_kind k, struct tri_error *error)
 {
     const bool there = H5Lexists(h5->file, forms[k].name, H5P_DEFAULT) > 0;
     if (!forms[k].needed && !there)
@@ -179,11 +159,13 @@ static int64_t about(const struct tri_h5 *h5, const char *name)
     return value;
 }
 
+static bool has(const struct tri_h5 *h5, enum tri_h5_kind k) { return h5->datasets[k] >= 0; }
+
 static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int k = 0; k < ARRAYS && !status; k++)
-        status = open_array(h5, (enum which)k, error);
+    for (enum tri_h5_kind k = 0; k < TRI_H5_KINDS && !status; k++)
+        status = open_array(h5, k, error);
     if (status)
         return status;
     if (about(h5, TRI_H5_ABOUT_VERSION) > TRI_H5_VERSION)
@@ -191,11 +173,13 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
                         TRI_H5_VERSION);
     const int64_t input_points = about(h5, TRI_H5_ABOUT_INPUT_POINTS);
     h5->counts = (struct tri_h5_counts){
-        h5->rows[POINTS], h5->rows[TRIANGLES], h5->rows[SEGMENTS],
-        input_points <= h5->rows[POINTS] ? input_points : -1,
-        h5->datasets[POINT_ATTRIBUTES] >= 0 ? h5->width[POINT_ATTRIBUTES] : 0,
-        h5->datasets[TRIANGLE_ATTRIBUTES] >= 0 ? h5->width[TRIANGLE_ATTRIBUTES] : 0,
-        h5->datasets[POINT_MARKERS] >= 0, h5->datasets[SEGMENTS] >= 0, h5->datasets[SEGMENT_MARKERS] >= 0};
+        .points = h5->rows[TRI_H5_OF_POINTS], .triangles = h5->rows[TRI_H5_OF_TRIANGLES],
+        .segments = h5->rows[TRI_H5_OF_SEGMENTS],
+        .input_points = input_points <= h5->rows[TRI_H5_OF_POINTS] ? input_points : -1,
+        .attributes = has(h5, TRI_H5_OF_POINT_ATTRIBUTES) ? h5->width[TRI_H5_OF_POINT_ATTRIBUTES] : 0,
+        .columns = has(h5, TRI_H5_OF_TRIANGLE_ATTRIBUTES) ? h5->width[TRI_H5_OF_TRIANGLE_ATTRIBUTES] : 0,
+        .point_markers = has(h5, TRI_H5_OF_POINT_MARKERS), .lists_segments = has(h5, TRI_H5_OF_SEGMENTS),
+        .segment_markers = has(h5, TRI_H5_OF_SEGMENT_MARKERS)};
     return TRI_OK;
 }
 
@@ -218,27 +202,15 @@ static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
     return open_arrays(h5, error);
 }
 
-static struct tri_h5 *new_mesh(const char *path)
-{
-    struct tri_h5 *h5 = malloc(sizeof *h5);
-    char *name = malloc(strlen(path) + 1);
-    if (!h5 || !name) {
-        free(h5);
-        free(name);
-        return NULL;
-    }
-    *h5 = (struct tri_h5){.path = strcpy(name, path), .file = -1};
-    for (int k = 0; k < ARRAYS; k++)
-        h5->datasets[k] = -1;
-    return h5;
-}
-
 enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    *h5 = new_mesh(path);
+    *h5 = malloc(sizeof **h5);
     if (!*h5)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to read the file");
+    **h5 = (struct tri_h5){.path = path, .file = -1};
+    for (int k = 0; k < TRI_H5_KINDS; k++)
+        (*h5)->datasets[k] = -1;
     (void)H5dont_atexit(); /* before all else: at the end of the process HDF5 would print about what is damaged */
     H5E_BEGIN_TRY
     {
@@ -258,14 +230,13 @@ void tri_h5_free(struct tri_h5 *h5)
         return;
     H5E_BEGIN_TRY
     {
-        for (int k = 0; k < ARRAYS; k++)
+        for (int k = 0; k < TRI_H5_KINDS; k++)
             if (h5->datasets[k] >= 0)
                 H5Dclose(h5->datasets[k]);
         if (h5->file >= 0)
             H5Fclose(h5->file);
     }
     H5E_END_TRY
-    free(h5->path);
     free(h5);
 }
 
@@ -274,7 +245,7 @@ const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5) { return &h5->
 /* --- slices */
 
 /* False: HDF5 could not. */
-static bool read_rows(const struct tri_h5 *h5, enum which k, int64_t first, int64_t n, hid_t type, void *out)
+static bool read_rows(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first, int64_t n, hid_t type, void *out)
 {
     const hsize_t place[2] = {(hsize_t)first, 0}, size[2] = {(hsize_t)n, (hsize_t)h5->width[k]};
     const int rank = forms[k].width == 0 ? 1 : 2;
@@ -289,8 +260,8 @@ static bool read_rows(const struct tri_h5 *h5, enum which k, int64_t first, int6
     return done;
 }
 
-static enum tri_status slice(const struct tri_h5 *h5, enum which k, int64_t first, int64_t n, hid_t type, void *out,
-                             struct tri_error *error)
+static enum tri_status slice(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first, int64_t n, hid_t type,
+                             void *out, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(h5->datasets[k] >= 0 && first >= 0 && n >= 0 && n <= h5->rows[k] - first);
@@ -308,52 +279,16 @@ static enum tri_status slice(const struct tri_h5 *h5, enum which k, int64_t firs
     return status;
 }
 
-enum tri_status tri_h5_points(struct tri_h5 *h5, int64_t first, int64_t n, double (*out)[2], struct tri_error *error)
+enum tri_status tri_h5_read(const struct tri_h5 *h5, enum tri_h5_kind kind, int64_t first, int64_t n, void *out,
+                            struct tri_error *error)
 {
-    return slice(h5, POINTS, first, n, H5T_NATIVE_DOUBLE, out, error);
-}
-
-enum tri_status tri_h5_triangles(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[3],
-                                 struct tri_error *error)
-{
-    return slice(h5, TRIANGLES, first, n, H5T_NATIVE_INT64, out, error);
-}
-
-enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[2],
-                                struct tri_error *error)
-{
-    return h5->datasets[SEGMENTS] < 0 ? TRI_OK : slice(h5, SEGMENTS, first, n, H5T_NATIVE_INT64, out, error);
-}
-
-static enum tri_status markers(const struct tri_h5 *h5, enum which k, int64_t first, int64_t n, int32_t *out,
-                               struct tri_error *error)
-{
-    if (h5->datasets[k] >= 0)
-        return slice(h5, k, first, n, H5T_NATIVE_INT32, out, error);
-    memset(out, 0, (size_t)n * sizeof *out);
+    const unsigned types = forms[kind].types;
+    const hid_t type = types >> TRI_H5_FLOAT64 & 1 ? H5T_NATIVE_DOUBLE
+                       : types >> TRI_H5_INT64 & 1 ? H5T_NATIVE_INT64
+                                                   : H5T_NATIVE_INT32;
+    if (h5->datasets[kind] >= 0)
+        return slice(h5, kind, first, n, type, out, error);
+    if (types == 1u << TRI_H5_INT32)
+        memset(out, 0, (size_t)n * sizeof(int32_t));
     return TRI_OK;
-}
-
-enum tri_status tri_h5_point_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out, struct tri_error *error)
-{
-    return markers(h5, POINT_MARKERS, first, n, out, error);
-}
-
-enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
-                                       struct tri_error *error)
-{
-    return markers(h5, SEGMENT_MARKERS, first, n, out, error);
-}
-
-enum tri_status tri_h5_point_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                        struct tri_error *error)
-{
-    return h5->counts.attributes == 0 ? TRI_OK : slice(h5, POINT_ATTRIBUTES, first, n, H5T_NATIVE_DOUBLE, out, error);
-}
-
-enum tri_status tri_h5_triangle_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                           struct tri_error *error)
-{
-    return h5->counts.columns == 0 ? TRI_OK
-                                   : slice(h5, TRIANGLE_ATTRIBUTES, first, n, H5T_NATIVE_DOUBLE, out, error);
 }

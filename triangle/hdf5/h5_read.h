@@ -7,10 +7,7 @@
 #include <stdint.h>
 
 #include "triangle/base/status.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "triangle/hdf5/rows.h"
 
 struct tri_h5;
 
@@ -22,8 +19,8 @@ struct tri_h5_counts {
     bool point_markers, lists_segments, segment_markers; /* there are any */
 };
 
-/* Opens a file. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build; TRI_BAD_INPUT: it holds no such
- * mesh; TRI_NO_MEMORY. *h5 is NULL then. */
+/* Opens a file; path must live as long. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build;
+ * TRI_BAD_INPUT: it holds no such mesh; TRI_NO_MEMORY. *h5 is NULL then. */
 enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error);
 
 /* NULL is fine. */
@@ -31,24 +28,10 @@ void tri_h5_free(struct tri_h5 *h5);
 
 const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5);
 
-/* Rows first .. first + n - 1, which are there. Of an array that is not there: 0. Values are as the file has them, and
- * not looked at. TRI_CANNOT_READ, TRI_NO_MEMORY. */
-enum tri_status tri_h5_points(struct tri_h5 *h5, int64_t first, int64_t n, double (*out)[2], struct tri_error *error);
-enum tri_status tri_h5_point_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
-                                     struct tri_error *error);
-enum tri_status tri_h5_point_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                        struct tri_error *error); /* [n][attributes] */
-enum tri_status tri_h5_triangles(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[3],
-                                 struct tri_error *error);
-enum tri_status tri_h5_triangle_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                           struct tri_error *error); /* [n][columns] */
-enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[2],
-                                struct tri_error *error);
-enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
-                                       struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
+/* Rows first .. first + n - 1, which are there: reals are doubles, markers int32_t, numbers of points int64_t. Of an
+ * array that is not there: markers 0, nothing else. Values are as the file has them, and not looked at.
+ * TRI_CANNOT_READ, TRI_NO_MEMORY. */
+enum tri_status tri_h5_read(const struct tri_h5 *h5, enum tri_h5_kind kind, int64_t first, int64_t n, void *out,
+                            struct tri_error *error);
 
 #endif

@@ -16,28 +16,23 @@
 #include <string.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 #include "triangle/hdf5/segment_spool.h"
 #include "triangle/hdf5/views.h"
-#include "triangle/hdf5/xdmf.h"
 
 enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENTS = CHUNK_POINTS };
 
 struct tri_h5_writer {
     struct tri_h5_options options;
     struct tri_h5_file file;
-    struct tri_h5_arrays arrays;
+    struct tri_h5_array arrays[TRI_H5_KINDS];
+    struct tri_h5_layout layout; /* of them */
+    struct tri_h5_part *part;    /* what has rows; NULL: others have */
     struct tri_h5_segments segments;
-    int64_t n_chunks;     /* of points, and of triangles, allocated */
+    int64_t n_points, n_triangles, n_chunks; /* so far; the last of points, and of triangles, allocated */
     int64_t most_narrow;
     int64_t n_input;      /* points that there were before refinement */
     double bounds[4];     /* least x, least y, largest x, largest y; none as long as there are no points */
-    int32_t n_columns;
-    double *columns;      /* [n_regions][n_columns] of the stream */
-    bool is_laid_out;     /* all arrays have their places, and have been closed: others write the rows */
-    struct tri_h5_layout layout;
-    int64_t *place;       /* [layout.n] */
 };
 
 bool tri_h5_is_there(void) { return true; }
@@ -54,211 +49,129 @@ static bool are_whole(const double *values, int64_t n)
     return true;
 }
 
-static enum tri_status copy_columns(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
+/* The array of a kind, where it is wanted. width: of a table of any. */
+static void begin_array(struct tri_h5_writer *w, enum tri_h5_kind kind, bool wanted, enum tri_h5_type type,
+                        int32_t width)
 {
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
-    w->n_columns = stream->n_columns;
-    w->columns = malloc((n + 1) * sizeof *w->columns);
-    if (!w->columns)
-        return tri_fail(error, TRI_NO_MEMORY, w->options.file->path, 0, "no memory for %d regions",
-                        (int)stream->n_regions);
-    if (n > 0)
-        memcpy(w->columns, stream->regions, n * sizeof *w->columns);
-    return TRI_OK;
+    const struct tri_h5_form *form = &tri_h5_forms[kind];
+    const int32_t chunk = form->rows_of == TRI_H5_OF_TRIANGLES ? CHUNK_TRIANGLES : CHUNK_POINTS;
+    if (wanted)
+        tri_h5_array_begin(&w->arrays[kind], &w->file, form->name, &w->layout.array[kind], type,
+                           form->width < 0 ? width : form->width, chunk);
 }
 
-/* An array, where it is wanted. */
-static enum tri_status begin_array(struct tri_h5_writer *w, bool wanted, struct tri_h5_array *array, const char *name,
-                                   enum tri_h5_type type, int32_t width, int32_t chunk, struct tri_error *error)
+static void begin_arrays(struct tri_h5_writer *w, const struct tri_stream *stream)
 {
-    return wanted ? tri_h5_array_begin(array, &w->file, name, type, width, chunk, error) : TRI_OK;
-}
-
-static enum tri_status begin_arrays(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
-{
-    struct tri_h5_arrays *a = &w->arrays;
-    const enum tri_h5_type columns =
-        are_whole(w->columns, (int64_t)stream->n_regions * w->n_columns) ? TRI_H5_INT32 : TRI_H5_FLOAT64;
-    enum tri_status s = begin_array(w, true, &a->points, TRI_H5_POINTS, TRI_H5_FLOAT64, 2, CHUNK_POINTS, error);
-    s = s ? s : begin_array(w, w->options.markers, &a->point_markers, TRI_H5_POINT_MARKERS, TRI_H5_INT32, 0,
-                            CHUNK_POINTS, error);
-    s = s ? s : begin_array(w, stream->n_attributes > 0, &a->point_attributes, TRI_H5_POINT_ATTRIBUTES, TRI_H5_FLOAT64,
-                            stream->n_attributes, CHUNK_POINTS, error);
-    s = s ? s : begin_array(w, true, &a->triangles, TRI_H5_TRIANGLES, TRI_H5_INT32, 3, CHUNK_TRIANGLES, error);
-    s = s ? s : begin_array(w, w->n_columns > 0, &a->triangle_attributes, TRI_H5_TRIANGLE_ATTRIBUTES, columns,
-                            w->n_columns, CHUNK_TRIANGLES, error);
-    return s ? s : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
+    const int32_t attributes = stream->n_attributes, columns = stream->n_columns;
+    const bool whole = are_whole(stream->regions, (int64_t)stream->n_regions * columns);
+    begin_array(w, TRI_H5_OF_POINTS, true, TRI_H5_FLOAT64, 0);
+    begin_array(w, TRI_H5_OF_POINT_MARKERS, w->options.markers, TRI_H5_INT32, 0);
+    begin_array(w, TRI_H5_OF_POINT_ATTRIBUTES, attributes > 0, TRI_H5_FLOAT64, attributes);
+    begin_array(w, TRI_H5_OF_TRIANGLES, true, TRI_H5_INT32, 0);
+    begin_array(w, TRI_H5_OF_TRIANGLE_ATTRIBUTES, columns > 0, whole ? TRI_H5_INT32 : TRI_H5_FLOAT64, columns);
 }
 
 /* --- tiles */
 
-static struct tri_h5_array *array_of(struct tri_h5_writer *w, enum tri_h5_kind kind)
-{
-    struct tri_h5_arrays *a = &w->arrays;
-    struct tri_h5_array *const all[TRI_H5_KINDS] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
-                                                    &a->triangle_attributes, &a->segments, &a->segment_markers};
-    return all[kind];
-}
-
-/* The tile's n rows of one array. */
-static enum tri_status add_rows(struct tri_h5_writer *w, enum tri_h5_kind kind, const struct tri_tile *tile, int32_t n,
-                                struct tri_error *error)
-{
-    struct tri_h5_array *array = array_of(w, kind);
-    tri_h5_put_call *put = tri_h5_put_of(kind, array->type);
-    const struct tri_h5_rows rows = {tile, w->columns, w->arrays.point_attributes.width, w->n_columns};
-    for (int32_t i = 0; array->file && i < n;) {
-        int32_t room;
-        char *at;
-        enum tri_status status = tri_h5_array_room(array, &at, &room, error);
-        if (status)
-            return status;
-        const int32_t end = room < n - i ? i + room : n;
-        put(&rows, i, end, at);
-        tri_h5_array_advance(array, end - i);
-        i = end;
-    }
-    return TRI_OK;
-}
-
 /* Corners among so many points have 64 bits from now on, if that is needed. */
 static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
-    struct tri_h5_array *triangles = &w->arrays.triangles;
-    if (n_points <= w->most_narrow || triangles->type == TRI_H5_INT64)
+    const enum tri_h5_kind kind = TRI_H5_OF_TRIANGLES;
+    if (n_points <= w->most_narrow || w->layout.array[kind].type == TRI_H5_INT64)
         return TRI_OK;
-    return tri_h5_array_widen(triangles, error);
+    const enum tri_status status = w->part ? tri_h5_part_pause(w->part, kind, error) : TRI_OK;
+    return status ? status : tri_h5_array_widen(&w->arrays[kind], error);
 }
 
 /* Chunks for so many points and their triangles, in the order of the arrays; see above. */
 static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (n_points <= CHUNK_POINTS)
-        return widen_in_time(w, n_points, error);
+    if (n_points <= CHUNK_POINTS && n_points <= w->most_narrow)
+        return TRI_OK;
     while (w->n_chunks * CHUNK_POINTS < n_points && !status) {
         w->n_chunks++;
-        status = widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
         for (enum tri_h5_kind kind = 0; kind < TRI_H5_OF_SEGMENTS && !status; kind++)
-            if (array_of(w, kind)->file)
-                status = tri_h5_array_allocate(array_of(w, kind), w->n_chunks, error);
+            if (w->arrays[kind].file)
+                status = tri_h5_array_allocate(&w->arrays[kind], w->n_chunks, error);
+        status = status ? status : widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
     }
     return status;
-}
-
-static enum tri_status add_points(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
-{
-    const int32_t n = tile->n_vertices;
-    enum tri_status status = allocate(w, w->arrays.points.n + n, error);
-    for (enum tri_h5_kind kind = TRI_H5_OF_POINTS; !status && kind <= TRI_H5_OF_POINT_ATTRIBUTES; kind++)
-        status = add_rows(w, kind, tile, n, error);
-    tri_h5_extend_bounds(w->bounds, tile);
-    w->n_input += tile->column < 0 ? n : 0;
-    return status;
-}
-
-static enum tri_status add_triangles(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
-{
-    const int32_t n = tile->n_triangles;
-    enum tri_status status = add_rows(w, TRI_H5_OF_TRIANGLES, tile, n, error);
-    return status ? status : add_rows(w, TRI_H5_OF_TRIANGLE_ATTRIBUTES, tile, n, error);
 }
 
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
-    assert(!w->is_laid_out && tile->first_vertex == w->arrays.points.n &&
-           tile->first_triangle == w->arrays.triangles.n && tile->first_segment == w->segments.n);
+    assert(w->part && tile->first_vertex == w->n_points && tile->first_triangle == w->n_triangles &&
+           tile->first_segment == w->segments.n);
+    w->n_points += tile->n_vertices;
+    w->n_triangles += tile->n_triangles;
+    w->n_input += tile->column < 0 ? tile->n_vertices : 0;
+    tri_h5_extend_bounds(w->bounds, tile);
     H5E_BEGIN_TRY
     {
-        status = add_points(w, tile, error);
-        status = status ? status : add_triangles(w, tile, error);
-        status = status ? status : tri_h5_segments_add(&w->segments, tile, error);
+        status = allocate(w, w->n_points, error);
     }
     H5E_END_TRY
-    return status;
+    status = status ? status : tri_h5_part_take(w->part, tile, error); /* there are no arrays of segments yet */
+    return status ? status : tri_h5_segments_add(&w->segments, tile, error);
 }
 
 /* --- ending */
 
 static enum tri_status begin_segments(struct tri_h5_writer *w, struct tri_error *error)
 {
-    struct tri_h5_arrays *a = &w->arrays;
     const int64_t n_chunks = w->segments.n > CHUNK_SEGMENTS ? (w->segments.n - 1) / CHUNK_SEGMENTS + 1 : 0;
-    enum tri_status status = begin_array(w, true, &a->segments, TRI_H5_SEGMENTS,
-                                         a->triangles.type, 2, CHUNK_SEGMENTS, error);
-    status = status ? status : tri_h5_array_allocate(&a->segments, n_chunks, error);
-    status = status ? status : begin_array(w, w->options.markers, &a->segment_markers, TRI_H5_SEGMENT_MARKERS,
-                                           TRI_H5_INT32, 0, CHUNK_SEGMENTS, error);
-    if (!status && w->options.markers)
-        status = tri_h5_array_allocate(&a->segment_markers, n_chunks, error);
+    enum tri_status status = TRI_OK;
+    begin_array(w, TRI_H5_OF_SEGMENTS, true, w->layout.array[TRI_H5_OF_TRIANGLES].type, 0);
+    begin_array(w, TRI_H5_OF_SEGMENT_MARKERS, w->options.markers, TRI_H5_INT32, 0);
+    for (enum tri_h5_kind kind = TRI_H5_OF_SEGMENTS; kind < TRI_H5_KINDS && !status; kind++)
+        if (w->arrays[kind].file)
+            status = tri_h5_array_allocate(&w->arrays[kind], n_chunks, error);
     return status;
 }
 
-static enum tri_status write_segments(struct tri_h5_writer *w, struct tri_error *error)
-{
-    struct tri_tile tile;
-    enum tri_status status = begin_segments(w, error);
-    do {
-        status = status ? status : tri_h5_segments_next(&w->segments, &tile, error);
-        status = status ? status : add_rows(w, TRI_H5_OF_SEGMENTS, &tile, tile.n_segments, error);
-        status = status ? status : add_rows(w, TRI_H5_OF_SEGMENT_MARKERS, &tile, tile.n_segments, error);
-    } while (!status && tile.n_segments > 0);
-    return status;
-}
-
+/* All arrays have their places, and their datasets are closed. */
 static enum tri_status end_arrays(struct tri_h5_writer *w, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS && !status; kind++) {
         if (kind == TRI_H5_OF_SEGMENTS)
-            status = write_segments(w, error);
-        if (!status && array_of(w, kind)->file)
-            status = tri_h5_array_end(array_of(w, kind), error);
+            status = begin_segments(w, error);
+        if (status || !w->arrays[kind].file)
+            continue;
+        const enum tri_h5_kind of = tri_h5_forms[kind].rows_of;
+        status = tri_h5_array_end(&w->arrays[kind], of == TRI_H5_OF_POINTS      ? w->n_points
+                                                    : of == TRI_H5_OF_TRIANGLES ? w->n_triangles
+                                                                                : w->segments.n, error);
     }
     return status;
 }
 
-/* --- laying out: all sizes are known, and others put the rows where they belong */
-
-static enum tri_status lay_out_array(struct tri_h5_writer *w, enum tri_h5_kind kind, int64_t n, struct tri_error *error)
+static enum tri_status write_rest(struct tri_h5_writer *w, struct tri_error *error)
 {
-    struct tri_h5_array *array = array_of(w, kind);
-    struct tri_h5_layout *layout = &w->layout;
-    if (!array->file)
-        return TRI_OK;
-    const int64_t n_places = array->n_chunks > 0 ? (n + array->chunk_rows - 1) / array->chunk_rows : 1;
-    layout->array[kind] = (struct tri_h5_laid){array->type, array->width, array->chunk_rows, layout->n, n_places};
-    if (!tri_resize(&w->place, (size_t)(layout->n + n_places), sizeof *w->place))
-        return tri_fail(error, TRI_NO_MEMORY, w->options.file->path, 0, "no memory to write the file");
-    layout->n += n_places;
-    return tri_h5_array_lay_out(array, n, w->place + layout->n - n_places, error);
+    struct tri_tile tile;
+    enum tri_status status = TRI_OK;
+    do {
+        status = tri_h5_segments_next(&w->segments, &tile, error);
+        status = status ? status : tri_h5_part_take(w->part, &tile, error);
+    } while (!status && tile.n_segments > 0);
+    return status ? status : tri_h5_part_end(w->part, error);
 }
 
-/* The calls of HDF5 that a file of unknown sizes would have taken, in their order, but for those that write rows. */
+/* --- several ranks: all sizes are known, and others put the rows where they belong */
+
 static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
-    const int64_t n_points = stream->first_vertex[stream->n_ranks],
-                  n_triangles = stream->first_triangle[stream->n_ranks],
-                  n_segments = stream->first_segment[stream->n_ranks];
-    const int64_t n[TRI_H5_KINDS] = {n_points, n_points, n_points, n_triangles, n_triangles, n_segments, n_segments};
-    enum tri_status status = allocate(w, n_points, error);
-    w->is_laid_out = true;
-    w->segments.n = n_segments;
-    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS && !status; kind++) {
-        if (kind == TRI_H5_OF_SEGMENTS)
-            status = begin_segments(w, error);
-        status = status ? status : lay_out_array(w, kind, n[kind], error);
-    }
-    return status;
+    w->n_points = stream->first_vertex[stream->n_ranks];
+    w->n_triangles = stream->first_triangle[stream->n_ranks];
+    w->segments.n = stream->first_segment[stream->n_ranks];
+    const enum tri_status status = allocate(w, w->n_points, error);
+    return status ? status : end_arrays(w, error);
 }
 
-const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place)
-{
-    *place = writer->place;
-    return &writer->layout;
-}
+const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer) { return &writer->layout; }
 
 void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
 {
@@ -268,15 +181,47 @@ void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const dou
 
 /* --- all together */
 
+static void empty(struct tri_h5_writer *w)
+{
+    const struct tri_h5_options options = w->options;
+    *w = (struct tri_h5_writer){.options = options, .file = {.id = -1, .driver = -1},
+                                .most_narrow = options.most_narrow > 0 ? options.most_narrow : (int64_t)INT32_MAX + 1,
+                                .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+}
+
+/* What an unfinished file holds is of no use: it is let go of without a write. */
+static void let_go(struct tri_h5_writer *w)
+{
+    if (w->file.id >= 0 && w->file.failure == 0)
+        w->file.failure = -1;
+    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
+        tri_h5_array_free(&w->arrays[kind]);
+    tri_h5_part_free(w->part);
+    tri_h5_segments_free(&w->segments);
+    (void)tri_h5_close(&w->file, NULL);
+}
+
+static enum tri_status begin_again(struct tri_h5_writer *w, struct tri_error *error)
+{
+    let_go(w);
+    empty(w);
+    return tri_output_restart(w->options.file, error);
+}
+
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
-    enum tri_status status = copy_columns(w, stream, error);
+    const bool alone = stream->n_ranks <= 1;
+    enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
+        status = w->segments.ends ? begin_again(w, error) : TRI_OK;
+        begin_arrays(w, stream);
+        status = status ? status : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
+        if (!status && alone)
+            status = tri_h5_part_new(&w->part, &w->layout, true, stream, w->options.file, error);
         status = status ? status : tri_h5_create(&w->file, w->options.file, error);
-        status = status ? status : begin_arrays(w, stream, error);
-        if (!status && stream->n_ranks > 1)
+        if (!status && !alone)
             status = lay_out(w, stream, error);
     }
     H5E_END_TRY
@@ -288,14 +233,14 @@ static enum tri_status write_about(struct tri_h5_writer *w, struct tri_error *er
     const char *about = "/" TRI_H5_ABOUT;
     const double none[4] = {0};
     struct tri_h5_file *f = &w->file;
-    bool done = tri_h5_add_group(f, about) && tri_h5_add_text(f, about, TRI_H5_ABOUT_FORMAT, TRI_H5_FORMAT) &&
+    bool done = tri_h5_add_group(f, about) && tri_h5_add_text(f, about, "format", "ptriangle mesh") &&
                 tri_h5_add_integers(f, about, TRI_H5_ABOUT_VERSION, 0, &(int64_t){TRI_H5_VERSION}) &&
-                tri_h5_add_text(f, about, TRI_H5_ABOUT_PROGRAM, w->options.program) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_POINTS, 0, &w->arrays.points.n) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_TRIANGLES, 0, &w->arrays.triangles.n) &&
-                tri_h5_add_integers(f, about, TRI_H5_ABOUT_SEGMENTS, 0, &w->arrays.segments.n) &&
+                tri_h5_add_text(f, about, "program", w->options.program) &&
+                tri_h5_add_integers(f, about, "points", 0, &w->n_points) &&
+                tri_h5_add_integers(f, about, "triangles", 0, &w->n_triangles) &&
+                tri_h5_add_integers(f, about, "segments", 0, &w->segments.n) &&
                 tri_h5_add_integers(f, about, TRI_H5_ABOUT_INPUT_POINTS, 0, &w->n_input) &&
-                tri_h5_add_reals(f, about, TRI_H5_ABOUT_BOUNDS, 4, w->arrays.points.n > 0 ? w->bounds : none);
+                tri_h5_add_reals(f, about, "bounds", 4, w->n_points > 0 ? w->bounds : none);
     return done ? TRI_OK : tri_h5_fail(f, about, error);
 }
 
@@ -306,15 +251,18 @@ static enum tri_status end(void *user, struct tri_error *error)
     enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
-        status = w->is_laid_out ? TRI_OK : end_arrays(w, error);
+        if (w->part) {
+            status = end_arrays(w, error);
+            status = status ? status : write_rest(w, error);
+        }
         status = status ? status : write_about(w, error);
-        status = status ? status : tri_h5_write_views(&w->file, &w->arrays, error);
+        status = status ? status : tri_h5_write_views(&w->file, w->arrays, error);
         status = status ? status : tri_h5_close(&w->file, error);
     }
     H5E_END_TRY
     if (!status && w->n_chunks > 0) /* worth hours: not lost with the machine a moment after it has its name */
         status = tri_output_sync(o->file, error);
-    return status ? status : tri_h5_write_xdmf(o->xdmf, o->name, &w->arrays, error);
+    return status ? status : tri_h5_write_xdmf(o->xdmf, o->name, w->arrays, error);
 }
 
 /* --- the writer */
@@ -326,23 +274,11 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
     *writer = w;
     if (!w)
         return tri_fail(error, TRI_NO_MEMORY, options->file->path, 0, "no memory to write the file");
-    *w = (struct tri_h5_writer){.options = *options, .file = {.id = -1, .driver = -1},
-                                .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    w->options = *options;
+    empty(w);
     (void)H5dont_atexit(); /* at the end of the process HDF5 would print about files that could not be written */
-    w->most_narrow = options->most_narrow > 0 ? options->most_narrow : (int64_t)INT32_MAX + 1;
     *sink = (struct tri_sink){w, begin, take, end};
     return TRI_OK;
-}
-
-/* What an unfinished file holds is of no use: it is let go of without a write. */
-static void let_go(struct tri_h5_writer *w)
-{
-    if (w->file.id >= 0 && w->file.failure == 0)
-        w->file.failure = -1;
-    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
-        tri_h5_array_free(array_of(w, kind));
-    tri_h5_segments_free(&w->segments);
-    (void)tri_h5_close(&w->file, NULL);
 }
 
 void tri_h5_writer_free(struct tri_h5_writer *writer)
@@ -354,7 +290,5 @@ void tri_h5_writer_free(struct tri_h5_writer *writer)
         let_go(writer);
     }
     H5E_END_TRY
-    free(writer->columns);
-    free(writer->place);
     free(writer);
 }

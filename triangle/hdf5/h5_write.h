@@ -11,10 +11,6 @@
 #include "triangle/hdf5/buffer.h"
 #include "triangle/text/output.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_h5_options {
     const char *program;   /* name and version, for /about */
     const char *name;      /* of the file, as the XDMF text beside it calls it */
@@ -28,26 +24,22 @@ struct tri_h5_writer;
 /* Is there HDF5 in this build? */
 bool tri_h5_is_there(void);
 
-/* *sink writes the file; its calls come from one thread at a time. After its end the outputs are complete, and their
- * owner commits them; after any failure, or where no end comes, he aborts them. Texts and outputs of the options
- * outlive the writer. TRI_NO_MEMORY; TRI_CANNOT_WRITE: this build has no HDF5. Errors of the sink: those of
- * triangle/text/output.h. */
+/* *sink writes the file, anew where it is told of the beginning again; its calls come from one thread at a time. After
+ * its end the outputs are complete, and their owner commits them; after any failure, or where no end comes, he aborts
+ * them. Texts and outputs of the options outlive the writer. TRI_NO_MEMORY; TRI_CANNOT_WRITE: this build has no HDF5.
+ * Errors of the sink: those of triangle/text/output.h. */
 enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
                                   struct tri_sink *sink, struct tri_error *error);
 
 /* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
  * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
- * them there (triangle/hdf5/buffer.h), until before the end. The places are the writer's. */
-const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place);
+ * them there (triangle/hdf5/buffer.h), until before the end. The layout is the writer's. */
+const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer);
 
 /* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */
 void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4]);
 
 /* NULL is fine. */
 void tri_h5_writer_free(struct tri_h5_writer *writer);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

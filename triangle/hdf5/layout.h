@@ -24,16 +24,9 @@
 #define TRI_H5_SEGMENT_MARKERS "segment_markers"
 
 #define TRI_H5_ABOUT "about"
-#define TRI_H5_ABOUT_FORMAT "format"            /* "ptriangle mesh" */
 #define TRI_H5_ABOUT_VERSION "version"          /* int64, of the format */
-#define TRI_H5_ABOUT_PROGRAM "program"          /* text */
-#define TRI_H5_ABOUT_POINTS "points"            /* int64, and so are the next three */
-#define TRI_H5_ABOUT_TRIANGLES "triangles"
-#define TRI_H5_ABOUT_SEGMENTS "segments"
 #define TRI_H5_ABOUT_INPUT_POINTS "input_points" /* the first so many were there before refinement */
-#define TRI_H5_ABOUT_BOUNDS "bounds"            /* [4] float64: least x, least y, largest x, largest y */
 
-#define TRI_H5_FORMAT "ptriangle mesh"
 enum { TRI_H5_VERSION = 1 };
 
 #endif

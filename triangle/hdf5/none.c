@@ -19,10 +19,9 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
 
 void tri_h5_writer_free(struct tri_h5_writer *writer) { (void)writer; }
 
-const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place)
+const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer)
 {
     (void)writer;
-    *place = NULL;
     assert(false);
     return NULL;
 }
@@ -49,48 +48,9 @@ const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5)
     return NULL;
 }
 
-enum tri_status tri_h5_points(struct tri_h5 *h5, int64_t first, int64_t n, double (*out)[2], struct tri_error *error)
+enum tri_status tri_h5_read(const struct tri_h5 *h5, enum tri_h5_kind kind, int64_t first, int64_t n, void *out,
+                            struct tri_error *error)
 {
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_point_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out, struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_point_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                        struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_triangles(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[3],
-                                 struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_triangle_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
-                                           struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[2], struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
-}
-
-enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
-                                       struct tri_error *error)
-{
-    (void)h5, (void)first, (void)n, (void)out;
+    (void)h5, (void)kind, (void)first, (void)n, (void)out;
     return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
 }

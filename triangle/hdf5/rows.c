@@ -1,6 +1,19 @@
 #include "triangle/hdf5/rows.h"
 
+#include "triangle/hdf5/layout.h"
 #include "triangle/text/binary.h"
+
+enum { REALS = 1 << TRI_H5_FLOAT64, NARROW = 1 << TRI_H5_INT32, NUMBERS = NARROW | 1 << TRI_H5_INT64 };
+
+const struct tri_h5_form tri_h5_forms[TRI_H5_KINDS] = {
+    {TRI_H5_POINTS, 2, true, TRI_H5_OF_POINTS, REALS},
+    {TRI_H5_POINT_MARKERS, 0, false, TRI_H5_OF_POINTS, NARROW},
+    {TRI_H5_POINT_ATTRIBUTES, -1, false, TRI_H5_OF_POINTS, REALS},
+    {TRI_H5_TRIANGLES, 3, true, TRI_H5_OF_TRIANGLES, NUMBERS},
+    {TRI_H5_TRIANGLE_ATTRIBUTES, -1, false, TRI_H5_OF_TRIANGLES, REALS | NARROW},
+    {TRI_H5_SEGMENTS, 2, false, TRI_H5_OF_SEGMENTS, NUMBERS},
+    {TRI_H5_SEGMENT_MARKERS, 0, false, TRI_H5_OF_SEGMENTS, NARROW},
+};
 
 static void put_points(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
 {

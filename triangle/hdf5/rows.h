@@ -1,10 +1,10 @@
-/* Rows of a tile as bytes of an HDF5 file. */
+/* The arrays of a mesh in an HDF5 file (triangle/hdf5/layout.h), and rows of a tile as bytes of them. */
 #ifndef TRIANGLE_HDF5_ROWS_H
 #define TRIANGLE_HDF5_ROWS_H
 
 #include "ptriangle/tiles.h"
 
-/* The arrays of triangle/hdf5/layout.h, in the order in which they are laid out. */
+/* In the order in which they are laid out. */
 enum tri_h5_kind {
     TRI_H5_OF_POINTS,
     TRI_H5_OF_POINT_MARKERS,
@@ -17,6 +17,16 @@ enum tri_h5_kind {
 };
 
 enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
+
+/* What an array must look like. */
+struct tri_h5_form {
+    const char *name;
+    int32_t width;            /* numbers in a row; 0: a list, -1: a table of any */
+    bool needed;
+    enum tri_h5_kind rows_of; /* it has as many rows as this */
+    unsigned types;           /* that it may have: bits 1 << enum tri_h5_type */
+};
+extern const struct tri_h5_form tri_h5_forms[TRI_H5_KINDS];
 
 struct tri_h5_rows {
     const struct tri_tile *tile;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/text/text.h"
 
 enum { END_BYTES = TRI_H5_KEPT_SEGMENTS * 16, BATCH_BYTES = TRI_H5_KEPT_SEGMENTS * 20 };
@@ -53,28 +54,11 @@ enum tri_status tri_h5_segments_add(struct tri_h5_segments *s, const struct tri_
     return status;
 }
 
-static bool read_at(int file, char *at, size_t size, uint64_t place)
-{
-    while (size > 0) {
-        ssize_t n = pread(file, at, size, (off_t)place);
-        if (n == 0)
-            errno = EIO; /* it was there when it was written */
-        if (n == 0 || (n < 0 && errno != EINTR))
-            return false;
-        if (n > 0) {
-            at += n;
-            place += (uint64_t)n;
-            size -= (size_t)n;
-        }
-    }
-    return true;
-}
-
 static bool read_batch(struct tri_h5_segments *s)
 {
     const uint64_t place = place_of(s->n_read);
-    return read_at(s->spool->file, (char *)s->ends, END_BYTES, place) &&
-           read_at(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
+    return tri_read_again(s->spool->file, (char *)s->ends, END_BYTES, place) &&
+           tri_read_again(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
 }
 
 enum tri_status tri_h5_segments_next(struct tri_h5_segments *s, struct tri_tile *tile, struct tri_error *error)
@@ -86,7 +70,8 @@ enum tri_status tri_h5_segments_next(struct tri_h5_segments *s, struct tri_tile 
         status = write_batch(s, error);
     if (!status && spooled && !(left > 0 ? read_batch(s) : ftruncate(s->spool->file, 0) == 0))
         status = tri_fail_system(error, TRI_CANNOT_WRITE, s->spool->path, "cannot read segments again", errno);
-    *tile = (struct tri_tile){.ends = (const int64_t(*)[2])s->ends, .segment_markers = s->markers};
+    *tile = (struct tri_tile){.ends = (const int64_t(*)[2])s->ends, .segment_markers = s->markers,
+                              .first_segment = s->n_read};
     tile->n_segments = (int32_t)(left < TRI_H5_KEPT_SEGMENTS ? left : TRI_H5_KEPT_SEGMENTS);
     s->n_read += tile->n_segments;
     return status;

@@ -1,8 +1,6 @@
 /* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
 #include "triangle/hdf5/views.h"
 
-#include "triangle/hdf5/ends.h"
-#include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };
@@ -11,7 +9,7 @@ static const char LINE_TYPES[] = "/VTKHDF/LineTypes";
 
 struct views {
     struct tri_h5_file *file;
-    const struct tri_h5_arrays *arrays;
+    const struct tri_h5_array *arrays; /* by kind */
     bool failed;
     enum tri_status status; /* already told */
     struct tri_error *error;
@@ -84,17 +82,12 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
 {
     if (v->failed)
         return;
-    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
-    hid_t space = checked(v, H5Screate_simple(rank, size, NULL));
+    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE));
     if (!v->failed)
         checked(v, H5Pset_fill_value(creation, H5T_NATIVE_INT, &fill));
     for (int i = 0; i < n; i++)
         add_part(v, creation, rank, size, &parts[i]);
-    if (!v->failed)
-        dataset = checked(v, H5Dcreate2(v->file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    close_with(H5Dclose, dataset);
-    close_with(H5Sclose, space);
-    close_with(H5Pclose, creation);
+    close_with(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
 }
 
 /* --- VTK */
@@ -102,24 +95,19 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
 /* One number, as an array. */
 static void add_count(struct views *v, const char *path, int64_t count)
 {
-    const hsize_t one = 1;
     if (v->failed)
         return;
-    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
-    hid_t space = checked(v, H5Screate_simple(1, &one, NULL));
-    if (!v->failed)
-        dataset = checked(v, H5Dcreate2(v->file->id, path, H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    if (dataset >= 0)
+    hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
+    hid_t dataset = tri_h5_new_dataset(v->file, path, H5T_STD_I64LE, 1, &(hsize_t){1}, NULL, creation);
+    if (checked(v, dataset) >= 0)
         checked(v, H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count));
     close_with(H5Dclose, dataset);
-    close_with(H5Pclose, creation);
-    close_with(H5Sclose, space);
 }
 
 static void add_vtk_cells(struct views *v)
 {
-    const hsize_t m = (hsize_t)v->arrays->triangles.n, s = (hsize_t)v->arrays->segments.n;
-    const hid_t type = tri_h5_type_id(v->arrays->triangles.type);
+    const hsize_t m = (hsize_t)v->arrays[TRI_H5_OF_TRIANGLES].n, s = (hsize_t)v->arrays[TRI_H5_OF_SEGMENTS].n;
+    const hid_t type = tri_h5_type_id(v->arrays[TRI_H5_OF_TRIANGLES].laid->type);
     const struct part nodes[2] = {{"/" TRI_H5_TRIANGLES, 2, {m, 3}, {0, 0}, {3 * m, 0}},
                                   {"/" TRI_H5_SEGMENTS, 2, {s, 2}, {3 * m, 0}, {2 * s, 0}}};
     const struct part lines = {LINE_TYPES, 1, {s, 0}, {m, 0}, {s, 0}};
@@ -135,24 +123,25 @@ static void add_vtk_cells(struct views *v)
 
 static void add_vtk_data(struct views *v)
 {
-    const struct tri_h5_arrays *a = v->arrays;
-    const hsize_t m = (hsize_t)a->triangles.n, s = (hsize_t)a->segments.n, k = (hsize_t)a->triangle_attributes.width;
+    const struct tri_h5_array *a = v->arrays, *of_cells = &a[TRI_H5_OF_TRIANGLE_ATTRIBUTES];
+    const hsize_t m = (hsize_t)a[TRI_H5_OF_TRIANGLES].n, s = (hsize_t)a[TRI_H5_OF_SEGMENTS].n;
+    const hsize_t k = of_cells->file ? (hsize_t)of_cells->laid->width : 0;
     const struct part markers = {"/" TRI_H5_SEGMENT_MARKERS, 1, {s, 0}, {m, 0}, {s, 0}};
     const struct part attributes = {"/" TRI_H5_TRIANGLE_ATTRIBUTES, 2, {m, k}, {0, 0}, {m, k}};
     add_group(v, "/VTKHDF/PointData");
-    add_link(v, &a->point_markers, "/VTKHDF/PointData/marker");
-    add_link(v, &a->point_attributes, "/VTKHDF/PointData/attributes");
+    add_link(v, &a[TRI_H5_OF_POINT_MARKERS], "/VTKHDF/PointData/marker");
+    add_link(v, &a[TRI_H5_OF_POINT_ATTRIBUTES], "/VTKHDF/PointData/attributes");
     add_group(v, "/VTKHDF/CellData");
-    if (a->segment_markers.file)
+    if (a[TRI_H5_OF_SEGMENT_MARKERS].file)
         add_view(v, "/VTKHDF/CellData/marker", H5T_STD_I32LE, 1, (hsize_t[2]){m + s, 0}, 0, &markers, 1);
-    if (a->triangle_attributes.file)
-        add_view(v, "/VTKHDF/CellData/attributes", tri_h5_type_id(a->triangle_attributes.type), 2,
-                 (hsize_t[2]){m + s, k}, 0, &attributes, 1);
+    if (of_cells->file)
+        add_view(v, "/VTKHDF/CellData/attributes", tri_h5_type_id(of_cells->laid->type), 2, (hsize_t[2]){m + s, k}, 0,
+                 &attributes, 1);
 }
 
 static void add_vtk(struct views *v)
 {
-    const hsize_t n = (hsize_t)v->arrays->points.n;
+    const hsize_t n = (hsize_t)v->arrays[TRI_H5_OF_POINTS].n;
     const struct part places = {"/" TRI_H5_POINTS, 2, {n, 2}, {0, 0}, {n, 2}};
     add_group(v, "/VTKHDF");
     add_integers(v, "/VTKHDF", "Version", 2, (int64_t[2]){2, 0});
@@ -168,15 +157,15 @@ static void add_vtk(struct views *v)
 static void add_petsc(struct views *v)
 {
     add_group(v, "/geometry");
-    add_link(v, &v->arrays->points, "/geometry/vertices");
+    add_link(v, &v->arrays[TRI_H5_OF_POINTS], "/geometry/vertices");
     add_group(v, "/viz");
     add_group(v, "/viz/topology");
-    add_link(v, &v->arrays->triangles, "/viz/topology/cells");
+    add_link(v, &v->arrays[TRI_H5_OF_TRIANGLES], "/viz/topology/cells");
     add_integers(v, "/viz/topology/cells", "cell_dim", 0, &(int64_t){2});
     add_integers(v, "/viz/topology/cells", "cell_corners", 0, &(int64_t){3});
 }
 
-enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_arrays *arrays,
+enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_array arrays[TRI_H5_KINDS],
                                    struct tri_error *error)
 {
     struct views v = {.file = file, .arrays = arrays, .error = error};

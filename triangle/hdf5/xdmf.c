@@ -1,5 +1,5 @@
 /* One grid: its topology, its geometry, and its attributes. */
-#include "triangle/hdf5/xdmf.h"
+#include "triangle/hdf5/views.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -39,10 +39,10 @@ static void put_item(struct text *text, const struct tri_h5_array *array)
 {
     char words[200], width[20] = "";
     if (!array->is_list)
-        snprintf(width, sizeof width, " %" PRId32, array->width);
+        snprintf(width, sizeof width, " %" PRId32, array->laid->width);
     snprintf(words, sizeof words, "<DataItem Dimensions=\"%" PRId64 "%s\" NumberType=\"%s\" Precision=\"%d\" "
-             "Format=\"HDF\">", array->n, width, array->type == TRI_H5_FLOAT64 ? "Float" : "Int",
-             array->type == TRI_H5_INT32 ? 4 : 8);
+             "Format=\"HDF\">", array->n, width, array->laid->type == TRI_H5_FLOAT64 ? "Float" : "Int",
+             array->laid->type == TRI_H5_INT32 ? 4 : 8);
     put(text, words);
     put(text, text->name);
     put(text, ":/");
@@ -56,7 +56,7 @@ static void put_attribute(struct text *text, const struct tri_h5_array *array, c
     if (!array->file)
         return;
     snprintf(words, sizeof words, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", name,
-             array->width == 1 ? "Scalar" : "Matrix", center);
+             array->laid->width == 1 ? "Scalar" : "Matrix", center);
     put(text, words);
     put_item(text, array);
     put(text, "\n</Attribute>\n");
@@ -76,16 +76,16 @@ static void put_grid(struct text *text, const struct tri_h5_array *triangles, co
     put(text, "\n</Geometry>\n");
 }
 
-enum tri_status tri_h5_write_xdmf(struct tri_output *output, const char *name, const struct tri_h5_arrays *arrays,
-                                  struct tri_error *error)
+enum tri_status tri_h5_write_xdmf(struct tri_output *output, const char *name,
+                                  const struct tri_h5_array arrays[TRI_H5_KINDS], struct tri_error *error)
 {
     struct text text = {output, escaped(name), TRI_OK, error};
     if (!text.name)
         return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "out of memory for file names");
-    put_grid(&text, &arrays->triangles, &arrays->points);
-    put_attribute(&text, &arrays->triangle_attributes, "attributes", "Cell");
-    put_attribute(&text, &arrays->point_markers, "marker", "Node");
-    put_attribute(&text, &arrays->point_attributes, "point_attributes", "Node");
+    put_grid(&text, &arrays[TRI_H5_OF_TRIANGLES], &arrays[TRI_H5_OF_POINTS]);
+    put_attribute(&text, &arrays[TRI_H5_OF_TRIANGLE_ATTRIBUTES], "attributes", "Cell");
+    put_attribute(&text, &arrays[TRI_H5_OF_POINT_MARKERS], "marker", "Node");
+    put_attribute(&text, &arrays[TRI_H5_OF_POINT_ATTRIBUTES], "point_attributes", "Node");
     put(&text, "</Grid>\n</Domain>\n</Xdmf>\n");
     free(text.name);
     return text.status;

@@ -1,8 +1,8 @@
 /* Chains of boundary edges.
  *
  * Edges of one triangle are listed with the triangle on their left, sorted by their first node, and get the markers of
- * the segments they are. Where nobody knows neighbours, as in a mesh that is not in memory, the boundary is among the
- * segments: one pass over the triangles tells which sides of them have one.
+ * the segments they are. They are among the segments, in every mesh: one pass over the triangles tells which sides of
+ * segments have one.
  *
  * At every node as many of them arrive as leave; so a walk along unused edges ends where it began: a loop. Where loops
  * touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker changes. */
@@ -33,34 +33,6 @@ static int compare(const void *left, const void *right)
     if (a->from != b->from)
         return a->from < b->from ? -1 : 1;
     return (a->to > b->to) - (a->to < b->to);
-}
-
-static int64_t count_sides(const struct tri_grid *grid)
-{
-    int64_t n = 0;
-    for (int64_t t = 0; t < grid->n_triangles; t++) {
-        int64_t neighbors[3];
-        grid->neighbors(grid->user, t, neighbors);
-        n += (neighbors[0] < 0) + (neighbors[1] < 0) + (neighbors[2] < 0);
-    }
-    return n;
-}
-
-static void sort_sides(struct builder *b) { qsort(b->sides, (size_t)b->n, sizeof *b->sides, compare); }
-
-static void list_sides(struct builder *b)
-{
-    int64_t n = 0;
-    for (int64_t t = 0; t < b->grid->n_triangles; t++) {
-        int64_t neighbors[3], nodes[6];
-        b->grid->neighbors(b->grid->user, t, neighbors);
-        b->grid->triangle(b->grid->user, t, nodes);
-        for (int k = 0; k < 3; k++)
-            if (neighbors[k] < 0)
-                b->sides[n++] = (struct side){nodes[(k + 1) % 3], nodes[(k + 2) % 3], 0, false, true};
-    }
-    assert(n == b->n);
-    sort_sides(b);
 }
 
 /* The first side that is not before (from, to). */
@@ -114,7 +86,7 @@ static void keep_boundary(struct builder *b)
 }
 
 /* False: no memory. */
-static bool list_sides_of_segments(struct builder *b)
+static bool list_sides(struct builder *b)
 {
     char *on_segment = calloc((size_t)b->grid->n_points + 1, 1);
     int64_t n = 0;
@@ -128,7 +100,7 @@ static bool list_sides_of_segments(struct builder *b)
             on_segment[segment.ends[k]] = 1;
         }
     }
-    sort_sides(b);
+    qsort(b->sides, (size_t)b->n, sizeof *b->sides, compare);
     use_sides(b, on_segment);
     keep_boundary(b);
     free(on_segment);
@@ -228,17 +200,12 @@ static void add_loop(struct builder *b, int64_t n)
 
 enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tri_grid *grid, struct tri_error *error)
 {
-    const bool known = grid->neighbors != NULL;
-    struct builder b = {.grid = grid, .n = known ? count_sides(grid) : 2 * grid->n_segments, .boundary = boundary};
+    struct builder b = {.grid = grid, .n = 2 * grid->n_segments, .boundary = boundary};
     const size_t n = (size_t)b.n + 1;
     b.sides = malloc(n * sizeof *b.sides);
     b.loop = malloc(n * sizeof *b.loop);
     *boundary = (struct tri_boundary){0, malloc(n * sizeof *boundary->pieces), malloc(2 * n * sizeof *boundary->nodes)};
-    bool enough = b.sides && b.loop && boundary->pieces && boundary->nodes;
-    if (enough && known)
-        list_sides(&b);
-    else if (enough)
-        enough = list_sides_of_segments(&b);
+    const bool enough = b.sides && b.loop && boundary->pieces && boundary->nodes && list_sides(&b);
     if (enough)
         mark_sides(&b);
     for (int64_t i = 0; enough && i < b.n; i++)

@@ -18,9 +18,8 @@ struct tri_boundary {
     int64_t *nodes;
 };
 
-/* Of a grid without neighbours, all edges of the boundary are segments. O(triangles + segments, and n log n for n edges
- * of the boundary, or, without neighbours, n segments); memory in proportion to n, and there a byte for each point.
- * TRI_NO_MEMORY. To be freed in any case. */
+/* All edges of the boundary are segments. O(triangles + segments log segments); memory in proportion to segments, and a
+ * byte for each point. TRI_NO_MEMORY. To be freed in any case. */
 enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tri_grid *grid, struct tri_error *error);
 void tri_boundary_free(struct tri_boundary *boundary);
 

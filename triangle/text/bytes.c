@@ -6,25 +6,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/text/text.h"
 
 static enum tri_status read_all(struct tri_bytes *bytes, int file, size_t size, const char *path,
                                 struct tri_error *error)
 {
-    size_t done = 0;
     bytes->data = malloc(size + 1);
     if (!bytes->data)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for %zu bytes", size);
-    while (done < size) {
-        const ssize_t got = read(file, bytes->data + done, size - done);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot read", errno);
-        if (got == 0)
-            return tri_fail(error, TRI_CANNOT_READ, path, 0, "became shorter while it was read");
-        done += (size_t)got;
-    }
+    const ssize_t got = tri_read_at(file, bytes->data, size, 0);
+    if (got < 0)
+        return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot read", errno);
+    if ((size_t)got < size)
+        return tri_fail(error, TRI_CANNOT_READ, path, 0, "became shorter while it was read");
     bytes->at = bytes->data;
     bytes->end = bytes->data + size;
     return TRI_OK;

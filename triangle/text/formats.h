@@ -9,10 +9,6 @@
 #include "triangle/mesh/pslg.h"
 #include "triangle/text/write.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { TRI_OPEN_BOUNDARY = 2 }; /* marker by which fort.14 tells open boundaries from land */
 
 tri_write_call tri_write_vtu; /* VTK XML, unstructured grid: binary, appended raw */
@@ -28,8 +24,8 @@ tri_write_parts_call tri_write_msh_parts;
 
 /* Reads what the writer of that name makes, and what of others is like it (docs/formats.md): points, triangles,
  * segments, and what there is of markers and attributes; corners and ends are numbers of points, coordinates finite.
- * Both structs are empty where it fails: TRI_CANNOT_READ, TRI_BAD_INPUT, TRI_TOO_LARGE, TRI_NO_MEMORY. Memory: about
- * twice the file. Linear, but for nodes that are not numbered in order: n log n. */
+ * Both structs are empty before, and to be freed in any case. TRI_CANNOT_READ, TRI_BAD_INPUT, TRI_TOO_LARGE,
+ * TRI_NO_MEMORY. Memory: about twice the file. Linear, but for nodes that are not numbered in order: n log n. */
 typedef enum tri_status tri_read_call(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
                                       const struct tri_executor *executor, struct tri_error *error);
 tri_read_call tri_read_vtu; /* one piece, arrays appended raw or as text */
@@ -58,9 +54,5 @@ const char *tri_format_missing(const char *name);
 
 /* How much of a name is the base of Triangle's files: all of it, less .node, .ele or .poly at its end. */
 size_t tri_format_base(const char *name);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

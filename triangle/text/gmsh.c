@@ -41,6 +41,7 @@ struct gmsh {
     struct tri_output *output;
     const struct tri_executor *executor;
     struct tri_error *error;
+    enum tri_status status;                   /* of what has been put so far */
     struct groups surfaces, curves;
     double low[2], high[2];
     const struct tri_parts *parts; /* NULL: there are none */
@@ -49,7 +50,7 @@ struct gmsh {
     int64_t n_inner;                          /* nodes that no other part has */
     int64_t *border;                          /* [n_nodes - n_inner] the others */
     int64_t first;                            /* of the rows of a block */
-    int32_t k;                                /* column of a data section */
+    int32_t k;                                /* column of a data section, or MARKER */
 };
 
 /* --- what is in the file */
@@ -75,21 +76,12 @@ static int count_blocks(const struct groups *groups)
     return n;
 }
 
-static void choose_all(struct groups *groups)
-{
-    groups->place = NULL;
-    for (int k = 0; k < groups->n; k++) {
-        groups->first[k] = groups->all.first[k];
-        groups->end[k] = groups->all.first[k + 1];
-    }
-}
-
-/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. */
+/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. NULL: each is its own. */
 static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t bound)
 {
     while (at < end) {
         const int64_t middle = at + (end - at) / 2;
-        if (place[middle] < bound)
+        if ((place ? place[middle] : middle) < bound)
             at = middle + 1;
         else
             end = middle;
@@ -97,8 +89,9 @@ static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t
     return at;
 }
 
-/* Places at .. end - 1 of a list of the parts; they ascend, as groups do. Returns how many they are. */
-static int64_t choose_some(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
+/* Places at .. end - 1 of a list of the parts, or, where that is NULL, of all; they ascend, as groups do. Returns how
+ * many they are. */
+static int64_t choose(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
 {
     const int64_t n = end - at;
     groups->place = place;
@@ -133,19 +126,19 @@ static enum tri_status choose_nodes(struct gmsh *g)
     return TRI_OK;
 }
 
-static enum tri_status put_text(const struct gmsh *g, const char *text)
+/* Nothing, once something has failed. */
+static void put_bytes(struct gmsh *g, const char *bytes, const char *end)
 {
-    return tri_output_write(g->output, text, strlen(text), g->error);
+    if (!g->status)
+        g->status = tri_output_write(g->output, bytes, (size_t)(end - bytes), g->error);
 }
 
-static enum tri_status put_bytes(const struct gmsh *g, const char *bytes, const char *end)
-{
-    return tri_output_write(g->output, bytes, (size_t)(end - bytes), g->error);
-}
+static void put_text(struct gmsh *g, const char *text) { put_bytes(g, text, text + strlen(text)); }
 
-static enum tri_status put_rows(struct gmsh *g, int64_t n, size_t bytes, char *(*row)(void *, size_t, char *))
+static void put_rows(struct gmsh *g, int64_t n, size_t bytes, char *(*row)(void *, size_t, char *))
 {
-    return tri_write_table(g->output, (size_t)n, bytes, row, g, g->executor, g->error);
+    if (!g->status)
+        g->status = tri_write_table(g->output, (size_t)n, bytes, row, g, g->executor, g->error);
 }
 
 /* --- entities */
@@ -194,30 +187,28 @@ static void choose_physical(struct groups *groups)
     }
 }
 
-static enum tri_status put_entities(const struct gmsh *g, const struct groups *groups)
+static void put_entities(struct gmsh *g, const struct groups *groups)
 {
-    enum tri_status status = TRI_OK;
-    for (int k = 0; k < groups->n && !status; k++) {
+    for (int k = 0; k < groups->n; k++) {
         char bytes[ENTITY_BYTES], *at = put_shape(g, tri_put_i32(bytes, k + 1), groups->physical[k]);
-        status = put_bytes(g, bytes, at);
+        put_bytes(g, bytes, at);
     }
-    return status;
 }
 
 /* Numbers of points, curves, surfaces and volumes. */
-static enum tri_status put_numbers(const struct gmsh *g, int64_t curves, int64_t surfaces)
+static void put_numbers(struct gmsh *g, int64_t curves, int64_t surfaces)
 {
     char bytes[32], *at = tri_put_i64(tri_put_u64(bytes, 0), curves);
-    return put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
+    put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
 }
 
-static enum tri_status write_entities(struct gmsh *g)
+static void write_entities(struct gmsh *g)
 {
-    enum tri_status status = put_text(g, "$Entities\n");
-    status = status ? status : put_numbers(g, g->curves.n, g->surfaces.n);
-    status = status ? status : put_entities(g, &g->curves);
-    status = status ? status : put_entities(g, &g->surfaces);
-    return status ? status : put_text(g, "\n$EndEntities\n");
+    put_text(g, "$Entities\n");
+    put_numbers(g, g->curves.n, g->surfaces.n);
+    put_entities(g, &g->curves);
+    put_entities(g, &g->surfaces);
+    put_text(g, "\n$EndEntities\n");
 }
 
 /* --- partitioned entities */
@@ -256,27 +247,26 @@ static int count_pieces(const struct gmsh *g, const struct groups *groups)
     return n;
 }
 
-static enum tri_status put_pieces(const struct gmsh *g, const struct groups *groups)
+static void put_pieces(struct gmsh *g, const struct groups *groups)
 {
-    enum tri_status status = TRI_OK;
-    for (int k = 0; k < groups->n && !status; k++) {
+    for (int k = 0; k < groups->n; k++) {
         char bytes[ENTITY_BYTES + 32], *at = tri_put_i32(bytes, tag_of(g, groups, k));
         at = tri_put_i32(tri_put_i32(at, groups->dimension), k + 1);
         at = tri_put_i32(tri_put_u64(at, 1), g->part + 1);
         at = put_shape(g, at, groups->physical[k]);
-        status = has_piece(g, groups, k) ? put_bytes(g, bytes, at) : TRI_OK;
+        if (has_piece(g, groups, k))
+            put_bytes(g, bytes, at);
     }
-    return status;
 }
 
-static enum tri_status put_interface(const struct gmsh *g, int64_t i)
+static void put_interface(struct gmsh *g, int64_t i)
 {
     const struct tri_shared_point *point = &g->parts->shared[g->parts->first_shared[i]];
     char bytes[ENTITY_BYTES], *at = tri_put_i32(tri_put_i32(tri_put_i32(bytes, interface_tag(g, i)), 2), 1);
-    enum tri_status status = put_bytes(g, bytes, tri_put_i64(at, point->n));
-    for (int32_t k = 0; k < point->n && !status; k++)
-        status = put_bytes(g, bytes, tri_put_i32(bytes, point->part[k] + 1));
-    return status ? status : put_bytes(g, bytes, put_shape(g, bytes, 0));
+    put_bytes(g, bytes, tri_put_i64(at, point->n));
+    for (int32_t k = 0; k < point->n; k++)
+        put_bytes(g, bytes, tri_put_i32(bytes, point->part[k] + 1));
+    put_bytes(g, bytes, put_shape(g, bytes, 0));
 }
 
 static int64_t count_interfaces(const struct gmsh *g)
@@ -288,20 +278,20 @@ static int64_t count_interfaces(const struct gmsh *g)
 }
 
 /* No ghosts. */
-static enum tri_status write_pieces(struct gmsh *g)
+static void write_pieces(struct gmsh *g)
 {
     char bytes[16];
     if (!g->parts)
-        return TRI_OK;
-    enum tri_status status = put_text(g, "$PartitionedEntities\n");
-    status = status ? status : put_bytes(g, bytes, tri_put_u64(tri_put_i64(bytes, g->parts->n), 0));
-    status = status ? status : put_numbers(g, count_pieces(g, &g->curves) + count_interfaces(g),
-                                           count_pieces(g, &g->surfaces));
-    status = status ? status : put_pieces(g, &g->curves);
-    for (int64_t i = 0; i < g->parts->n_interfaces && !status; i++)
-        status = has_interface(g, i) ? put_interface(g, i) : TRI_OK;
-    status = status ? status : put_pieces(g, &g->surfaces);
-    return status ? status : put_text(g, "\n$EndPartitionedEntities\n");
+        return;
+    put_text(g, "$PartitionedEntities\n");
+    put_bytes(g, bytes, tri_put_u64(tri_put_i64(bytes, g->parts->n), 0));
+    put_numbers(g, count_pieces(g, &g->curves) + count_interfaces(g), count_pieces(g, &g->surfaces));
+    put_pieces(g, &g->curves);
+    for (int64_t i = 0; i < g->parts->n_interfaces; i++)
+        if (has_interface(g, i))
+            put_interface(g, i);
+    put_pieces(g, &g->surfaces);
+    put_text(g, "\n$EndPartitionedEntities\n");
 }
 
 /* --- nodes: all on the first surface, but for interfaces */
@@ -321,43 +311,42 @@ static char *place_row(void *user, size_t i, char *at)
 }
 
 /* The head of $Nodes and $Elements: blocks, items, least and greatest tag. */
-static enum tri_status put_totals(const struct gmsh *g, int64_t blocks, int64_t n, int64_t least, int64_t greatest)
+static void put_totals(struct gmsh *g, int64_t blocks, int64_t n, int64_t least, int64_t greatest)
 {
     char bytes[32], *at = tri_put_i64(tri_put_i64(bytes, blocks), n);
-    return put_bytes(g, bytes, tri_put_i64(tri_put_i64(at, least), greatest));
+    put_bytes(g, bytes, tri_put_i64(tri_put_i64(at, least), greatest));
 }
 
 /* The head of a block: dimension and tag of the entity, a number that means something else in each section, items. */
-static enum tri_status put_block(const struct gmsh *g, int32_t dimension, int32_t tag, int32_t kind, int64_t n)
+static void put_block(struct gmsh *g, int32_t dimension, int32_t tag, int32_t kind, int64_t n)
 {
     char bytes[20], *at = tri_put_i32(tri_put_i32(tri_put_i32(bytes, dimension), tag), kind);
-    return put_bytes(g, bytes, tri_put_i64(at, n));
+    put_bytes(g, bytes, tri_put_i64(at, n));
 }
 
 /* Nodes first .. first + n - 1 of the file, without parameters. */
-static enum tri_status write_node_block(struct gmsh *g, int32_t dimension, int32_t tag, int64_t first, int64_t n)
+static void write_node_block(struct gmsh *g, int32_t dimension, int32_t tag, int64_t first, int64_t n)
 {
     g->first = first;
-    enum tri_status status = put_block(g, dimension, tag, 0, n);
-    status = status ? status : put_rows(g, n, 8, tag_row);
-    return status ? status : put_rows(g, n, 24, place_row);
+    put_block(g, dimension, tag, 0, n);
+    put_rows(g, n, 8, tag_row);
+    put_rows(g, n, 24, place_row);
 }
 
-static enum tri_status write_node_blocks(struct gmsh *g)
+static void write_node_blocks(struct gmsh *g)
 {
     int64_t first = g->n_inner;
-    enum tri_status status = write_node_block(g, 2, tag_of(g, &g->surfaces, first_surface(g)), 0, g->n_inner);
-    for (int64_t i = 0; g->parts && i < g->parts->n_interfaces && !status; i++) {
+    write_node_block(g, 2, tag_of(g, &g->surfaces, first_surface(g)), 0, g->n_inner);
+    for (int64_t i = 0; g->parts && i < g->parts->n_interfaces; i++) {
         if (!has_interface(g, i))
             continue;
-        status = write_node_block(g, 1, interface_tag(g, i), first, interface_size(g, i));
+        write_node_block(g, 1, interface_tag(g, i), first, interface_size(g, i));
         first += interface_size(g, i);
     }
-    return status;
 }
 
 /* Inner nodes ascend. */
-static enum tri_status put_node_totals(const struct gmsh *g)
+static void put_node_totals(struct gmsh *g)
 {
     int64_t least = INT64_MAX, greatest = 0;
     for (int64_t i = 0; i < g->n_nodes; i = i < g->n_inner - 1 ? g->n_inner - 1 : i + 1) {
@@ -365,15 +354,15 @@ static enum tri_status put_node_totals(const struct gmsh *g)
         least = tag < least ? tag : least;
         greatest = tag > greatest ? tag : greatest;
     }
-    return put_totals(g, 1 + count_interfaces(g), g->n_nodes, greatest > 0 ? least : -1, greatest);
+    put_totals(g, 1 + count_interfaces(g), g->n_nodes, greatest > 0 ? least : -1, greatest);
 }
 
-static enum tri_status write_nodes(struct gmsh *g)
+static void write_nodes(struct gmsh *g)
 {
-    enum tri_status status = put_text(g, "$Nodes\n");
-    status = status ? status : put_node_totals(g);
-    status = status ? status : write_node_blocks(g);
-    return status ? status : put_text(g, "\n$EndNodes\n");
+    put_text(g, "$Nodes\n");
+    put_node_totals(g);
+    write_node_blocks(g);
+    put_text(g, "\n$EndNodes\n");
 }
 
 /* --- elements */
@@ -412,22 +401,20 @@ static char *segment_row(void *user, size_t i, char *at)
     return tri_put_i64(tri_put_i64(at, segment.ends[0] + 1), segment.ends[1] + 1);
 }
 
-static enum tri_status write_blocks(struct gmsh *g, const struct groups *groups, int32_t kind, size_t row_bytes,
-                                    char *(*row)(void *, size_t, char *))
+static void write_blocks(struct gmsh *g, const struct groups *groups, int32_t kind, size_t row_bytes,
+                         char *(*row)(void *, size_t, char *))
 {
-    enum tri_status status = TRI_OK;
-    for (int k = 0; k < groups->n && !status; k++) {
+    for (int k = 0; k < groups->n; k++) {
         if (size_of(groups, k) == 0)
             continue;
         g->first = groups->first[k];
-        status = put_block(g, groups->dimension, tag_of(g, groups, k), kind, size_of(groups, k));
-        status = status ? status : put_rows(g, size_of(groups, k), row_bytes, row);
+        put_block(g, groups->dimension, tag_of(g, groups, k), kind, size_of(groups, k));
+        put_rows(g, size_of(groups, k), row_bytes, row);
     }
-    return status;
 }
 
 /* Tags ascend, triangles before segments. */
-static enum tri_status put_element_totals(const struct gmsh *g)
+static void put_element_totals(struct gmsh *g)
 {
     const struct groups *both[] = {&g->surfaces, &g->curves};
     int64_t least = 0, greatest = 0;
@@ -438,127 +425,102 @@ static enum tri_status put_element_totals(const struct gmsh *g)
             least = least > 0 ? least : element_tag(g, both[i], both[i]->first[k]);
             greatest = element_tag(g, both[i], both[i]->end[k] - 1);
         }
-    return put_totals(g, count_blocks(&g->surfaces) + count_blocks(&g->curves), g->n_triangles + g->n_segments,
-                      least, greatest);
+    put_totals(g, count_blocks(&g->surfaces) + count_blocks(&g->curves), g->n_triangles + g->n_segments, least,
+               greatest);
 }
 
-static enum tri_status write_elements(struct gmsh *g)
+static void write_elements(struct gmsh *g)
 {
     const int32_t kind = g->grid->n_nodes == 6 ? GMSH_QUADRATIC_TRIANGLE : GMSH_TRIANGLE;
-    enum tri_status status = put_text(g, "$Elements\n");
-    status = status ? status : put_element_totals(g);
-    status = status ? status : write_blocks(g, &g->surfaces, kind, 8 + 8 * (size_t)g->grid->n_nodes, triangle_row);
-    status = status ? status : write_blocks(g, &g->curves, GMSH_LINE, 24, segment_row);
-    return status ? status : put_text(g, "\n$EndElements\n");
+    put_text(g, "$Elements\n");
+    put_element_totals(g);
+    write_blocks(g, &g->surfaces, kind, 8 + 8 * (size_t)g->grid->n_nodes, triangle_row);
+    write_blocks(g, &g->curves, GMSH_LINE, 24, segment_row);
+    put_text(g, "\n$EndElements\n");
 }
 
-/* --- data: a tag and a number */
+/* --- data: a tag and a number; triangles have no marker, and segments no attributes: 0 */
+
+enum { MARKER = -1 };
 
 static char *put_datum(char *at, int64_t tag, double value)
 {
     return tri_put_f64(tri_put_i32(at, (int32_t)tag), value);
 }
 
-static char *node_marker_row(void *user, size_t i, char *at)
+static char *node_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
     const int64_t node = node_at(g, (int64_t)i);
     struct tri_grid_point point;
+    if (g->k != MARKER)
+        return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
     g->grid->point(g->grid->user, node, &point);
     return put_datum(at, node + 1, point.marker);
 }
 
-static char *node_attribute_row(void *user, size_t i, char *at)
+static char *triangle_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    const int64_t node = node_at(g, (int64_t)i);
-    return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
+    const int64_t tag = element_tag(g, &g->surfaces, g->first + (int64_t)i);
+    const bool none = g->k == MARKER;
+    return put_datum(at, tag, none ? 0 : g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k));
 }
 
-/* Triangles have no marker, and segments no attributes. */
-static char *triangle_zero_row(void *user, size_t i, char *at)
+static char *segment_datum(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), 0);
-}
-
-static char *triangle_attribute_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    const double value = g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k);
-    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), value);
-}
-
-static char *segment_zero_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), 0);
-}
-
-static char *segment_marker_row(void *user, size_t i, char *at)
-{
-    const struct gmsh *g = user;
-    const double value = tri_segment_group(g->grid, item_at(g, &g->curves, i));
-    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), value);
+    const int64_t tag = element_tag(g, &g->curves, g->first + (int64_t)i);
+    return put_datum(at, tag, g->k == MARKER ? tri_segment_group(g->grid, item_at(g, &g->curves, i)) : 0);
 }
 
 /* Without time: one step, one component. */
-static enum tri_status begin_data(const struct gmsh *g, const char *section, const char *name, int64_t n)
+static void begin_data(struct gmsh *g, const char *section, int64_t n)
 {
-    char head[192];
+    char head[192], name[32] = "marker";
+    if (g->k != MARKER)
+        snprintf(name, sizeof name, "attribute %" PRId32, g->k);
     snprintf(head, sizeof head, "$%s\n1\n\"%s\"\n1\n0\n3\n0\n1\n%" PRId64 "\n", section, name, n);
-    return put_text(g, head);
+    put_text(g, head);
 }
 
-static enum tri_status write_node_data(struct gmsh *g, const char *name, char *(*row)(void *, size_t, char *))
+static void write_node_data(struct gmsh *g)
 {
-    enum tri_status status = begin_data(g, "NodeData", name, g->n_nodes);
-    status = status ? status : put_rows(g, g->n_nodes, 12, row);
-    return status ? status : put_text(g, "\n$EndNodeData\n");
+    begin_data(g, "NodeData", g->n_nodes);
+    put_rows(g, g->n_nodes, 12, node_datum);
+    put_text(g, "\n$EndNodeData\n");
 }
 
-static enum tri_status put_data_blocks(struct gmsh *g, const struct groups *groups,
-                                       char *(*row)(void *, size_t, char *))
+static void put_data_blocks(struct gmsh *g, const struct groups *groups, char *(*row)(void *, size_t, char *))
 {
-    enum tri_status status = TRI_OK;
-    for (int k = 0; k < groups->n && !status; k++) {
+    for (int k = 0; k < groups->n; k++) {
         g->first = groups->first[k];
-        status = put_rows(g, size_of(groups, k), 12, row);
+        put_rows(g, size_of(groups, k), 12, row);
     }
-    return status;
 }
 
-static enum tri_status write_element_data(struct gmsh *g, const char *name, char *(*triangle)(void *, size_t, char *),
-                                          char *(*segment)(void *, size_t, char *))
+static void write_element_data(struct gmsh *g)
 {
-    enum tri_status status = begin_data(g, "ElementData", name, g->n_triangles + g->n_segments);
-    status = status ? status : put_data_blocks(g, &g->surfaces, triangle);
-    status = status ? status : put_data_blocks(g, &g->curves, segment);
-    return status ? status : put_text(g, "\n$EndElementData\n");
+    begin_data(g, "ElementData", g->n_triangles + g->n_segments);
+    put_data_blocks(g, &g->surfaces, triangle_datum);
+    put_data_blocks(g, &g->curves, segment_datum);
+    put_text(g, "\n$EndElementData\n");
 }
 
-static const char *name_column(char name[32], int32_t k)
-{
-    snprintf(name, 32, "attribute %" PRId32, k);
-    return name;
-}
-
-static enum tri_status write_all_data(struct gmsh *g)
+static void write_all_data(struct gmsh *g)
 {
     const struct tri_grid *grid = g->grid;
-    enum tri_status status = TRI_OK;
-    char name[32];
     if (grid->n_points > INT32_MAX || grid->n_triangles + grid->n_segments > INT32_MAX)
-        return TRI_OK; /* the format has no room for their tags */
+        return; /* the format has no room for their tags */
+    g->k = MARKER;
     if (grid->has_markers) {
-        status = write_node_data(g, "marker", node_marker_row);
-        status = status ? status : write_element_data(g, "marker", triangle_zero_row, segment_marker_row);
+        write_node_data(g);
+        write_element_data(g);
     }
-    for (g->k = 0; g->k < grid->n_attributes && !status; g->k++)
-        status = write_node_data(g, name_column(name, g->k), node_attribute_row);
-    for (g->k = 0; g->k < grid->n_columns && !status; g->k++)
-        status = write_element_data(g, name_column(name, g->k), triangle_attribute_row, segment_zero_row);
-    return status;
+    for (g->k = 0; g->k < grid->n_attributes; g->k++)
+        write_node_data(g);
+    for (g->k = 0; g->k < grid->n_columns; g->k++)
+        write_element_data(g);
 }
 
 /* --- the file */
@@ -566,14 +528,15 @@ static enum tri_status write_all_data(struct gmsh *g)
 static enum tri_status write_all(struct gmsh *g)
 {
     char one[4];
-    enum tri_status status = put_text(g, "$MeshFormat\n4.1 1 8\n");
-    status = status ? status : put_bytes(g, one, tri_put_i32(one, 1)); /* tells the order of bytes */
-    status = status ? status : put_text(g, "\n$EndMeshFormat\n");
-    status = status ? status : write_entities(g);
-    status = status ? status : write_pieces(g);
-    status = status ? status : write_nodes(g);
-    status = status ? status : write_elements(g);
-    return status ? status : write_all_data(g);
+    put_text(g, "$MeshFormat\n4.1 1 8\n");
+    put_bytes(g, one, tri_put_i32(one, 1)); /* tells the order of bytes */
+    put_text(g, "\n$EndMeshFormat\n");
+    write_entities(g);
+    write_pieces(g);
+    write_nodes(g);
+    write_elements(g);
+    write_all_data(g);
+    return g->status;
 }
 
 static enum tri_status begin(struct gmsh *g)
@@ -605,8 +568,8 @@ enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *
     struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
                      .n_inner = grid->n_points, .n_triangles = grid->n_triangles, .n_segments = grid->n_segments};
     enum tri_status status = begin(&g);
-    choose_all(&g.surfaces);
-    choose_all(&g.curves);
+    choose(&g.surfaces, NULL, 0, grid->n_triangles);
+    choose(&g.curves, NULL, 0, grid->n_segments);
     status = status ? status : write_all(&g);
     end(&g);
     return status;
@@ -617,8 +580,8 @@ static enum tri_status write_part(struct gmsh *g, int part, struct tri_output *o
     const struct tri_parts *p = g->parts;
     g->part = part;
     g->output = output;
-    g->n_triangles = choose_some(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
-    g->n_segments = choose_some(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
+    g->n_triangles = choose(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
+    g->n_segments = choose(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
     enum tri_status status = choose_nodes(g);
     status = status ? status : write_all(g);
     free(g->border);

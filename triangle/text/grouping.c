@@ -44,13 +44,12 @@ static void make_one(struct tri_grouping *g, int64_t n)
     g->first[1] = n;
 }
 
-/* From numbers of items to the place of the first. */
-static void accumulate(struct tri_grouping *g)
+void tri_accumulate(int64_t *first, int n)
 {
     int64_t before = 0;
-    for (int k = 0; k <= g->n; k++) {
-        int64_t own = k < g->n ? g->first[k] : 0;
-        g->first[k] = before;
+    for (int k = 0; k <= n; k++) {
+        const int64_t own = k < n ? first[k] : 0;
+        first[k] = before;
         before += own;
     }
 }
@@ -69,10 +68,9 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
         make_one(g, n);
         return TRI_OK;
     }
-    accumulate(g);
+    tri_accumulate(g->first, g->n);
     g->storage = grid->storage;
-    const size_t bytes = (size_t)n * sizeof *g->order;
-    g->order = g->storage ? g->storage->extra(g->storage->user, bytes) : malloc(bytes);
+    g->order = tri_room(g->storage, n, sizeof *g->order);
     if (!g->order)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to group %lld items: %s", (long long)n,
                         strerror(errno));
@@ -84,11 +82,22 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
 
 void tri_grouping_free(struct tri_grouping *g)
 {
-    if (g->order && g->storage)
-        g->storage->extra_free(g->storage->user, g->order);
-    else
-        free(g->order);
+    tri_room_free(g->storage, g->order);
     g->order = NULL;
+}
+
+void *tri_room(const struct tri_storage *storage, int64_t n, size_t bytes)
+{
+    const size_t all = (size_t)n * bytes;
+    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
+}
+
+void tri_room_free(const struct tri_storage *storage, void *room)
+{
+    if (room && storage)
+        storage->extra_free(storage->user, room);
+    else
+        free(room);
 }
 
 int32_t tri_group_tag(double value)

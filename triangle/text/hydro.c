@@ -21,6 +21,7 @@ struct hydro {
     const struct tri_executor *executor;
     struct tri_error *error;
     struct tri_boundary boundary;
+    const char *card;                       /* with which nodes begin */
     const struct tri_boundary_piece *piece; /* whose rows are written */
 };
 
@@ -45,20 +46,22 @@ static enum tri_status put_rows(struct hydro *h, int64_t n, size_t bytes, char *
 }
 
 /* Number, place, and the first attribute. */
-static char *put_node(char *at, const struct tri_grid *grid, size_t i)
+static char *node_row(void *user, size_t i, char *at)
 {
+    const struct hydro *h = user;
+    const struct tri_grid *grid = h->grid;
     struct tri_grid_point point;
     grid->point(grid->user, (int64_t)i, &point);
-    at = put_integer(at, (int64_t)i + 1);
+    at = put_integer(put(at, h->card), (int64_t)i + 1);
     at = put_real(put_real(at, point.at[0]), point.at[1]);
     return put(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, (int64_t)i, 0) : 0), "\n");
 }
 
-static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), struct tri_output *output,
-                                 const struct tri_grid *grid, const struct tri_executor *executor,
-                                 struct tri_error *error)
+static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), const char *card,
+                                 struct tri_output *output, const struct tri_grid *grid,
+                                 const struct tri_executor *executor, struct tri_error *error)
 {
-    struct hydro h = {.grid = grid, .output = output, .executor = executor, .error = error};
+    struct hydro h = {.grid = grid, .output = output, .executor = executor, .error = error, .card = card};
     enum tri_status status = tri_boundary_make(&h.boundary, grid, error);
     status = status ? status : write(&h);
     tri_boundary_free(&h.boundary);
@@ -81,12 +84,6 @@ static char *element_card(void *user, size_t i, char *at)
     return put(put_integer(at, material > 0 ? material : 1), "\n");
 }
 
-static char *node_card(void *user, size_t i, char *at)
-{
-    const struct hydro *h = user;
-    return put_node(put(at, "ND"), h->grid, i);
-}
-
 /* Ten nodes a line; the last is negative. */
 static char *string_card(void *user, size_t i, char *at)
 {
@@ -106,7 +103,7 @@ static enum tri_status write_2dm(struct hydro *h)
     const size_t element_bytes = 3 + 8 * INTEGER_BYTES + 1, node_bytes = 2 + INTEGER_BYTES + 3 * REAL_BYTES + 1;
     enum tri_status status = put_text(h, "MESH2D\nNUM_MATERIALS_PER_ELEM 1\n");
     status = status ? status : put_rows(h, h->grid->n_triangles, element_bytes, element_card);
-    status = status ? status : put_rows(h, h->grid->n_points, node_bytes, node_card);
+    status = status ? status : put_rows(h, h->grid->n_points, node_bytes, node_row);
     for (int64_t p = 0; p < h->boundary.n_pieces && !status; p++) {
         h->piece = &h->boundary.pieces[p];
         const int64_t lines = (h->piece->n + h->piece->closed - 1) / NODES_A_LINE + 1;
@@ -118,16 +115,10 @@ static enum tri_status write_2dm(struct hydro *h)
 enum tri_status tri_write_2dm(struct tri_output *output, const struct tri_grid *grid,
                               const struct tri_executor *executor, struct tri_error *error)
 {
-    return write_all(write_2dm, output, grid, executor, error);
+    return write_all(write_2dm, "ND", output, grid, executor, error);
 }
 
 /* --- fort.14 */
-
-static char *node_line(void *user, size_t i, char *at)
-{
-    const struct hydro *h = user;
-    return put_node(at, h->grid, i);
-}
 
 static char *element_line(void *user, size_t i, char *at)
 {
@@ -188,7 +179,7 @@ static enum tri_status write_14(struct hydro *h)
 {
     enum tri_status status = put_text(h, "ptriangle\n");
     status = status ? status : put_numbers(h, h->grid->n_triangles, h->grid->n_points, "");
-    status = status ? status : put_rows(h, h->grid->n_points, INTEGER_BYTES + 3 * REAL_BYTES + 1, node_line);
+    status = status ? status : put_rows(h, h->grid->n_points, INTEGER_BYTES + 3 * REAL_BYTES + 1, node_row);
     status = status ? status : put_rows(h, h->grid->n_triangles, 5 * INTEGER_BYTES + 1, element_line);
     status = status ? status : write_pieces(h, true);
     return status ? status : write_pieces(h, false);
@@ -199,5 +190,5 @@ enum tri_status tri_write_14(struct tri_output *output, const struct tri_grid *g
 {
     if (grid->n_nodes == 6)
         return tri_fail(error, TRI_BAD_INPUT, output->path, 0, "the format has no second-order triangles (-o2)");
-    return write_all(write_14, output, grid, executor, error);
+    return write_all(write_14, "", output, grid, executor, error);
 }

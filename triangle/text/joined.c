@@ -14,6 +14,7 @@
 #include <sys/vfs.h>
 #endif
 
+#include "triangle/base/at_place.h"
 #include "triangle/text/text.h"
 
 static bool put(char *at, size_t room, const char *text)
@@ -105,15 +106,14 @@ enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output
     char *buffer = malloc(PIECE);
     if (!buffer)
         return tri_fail(error, TRI_NO_MEMORY, to->path, 0, "no memory to write the file");
-    for (uint64_t done = 0; done < n && !result;) {
-        const ssize_t got = pread(from->file, buffer, n - done < PIECE ? n - done : PIECE, (off_t)done);
-        if (got == 0 || (got < 0 && errno != EINTR)) {
+    for (uint64_t done = 0; done < n && !result; done += PIECE) {
+        const size_t piece = n - done < PIECE ? (size_t)(n - done) : PIECE;
+        if (!tri_read_again(from->file, buffer, piece, done)) {
+            const int reason = errno;
             free(buffer);
-            return tri_fail_system(error, TRI_CANNOT_WRITE, from->path, "cannot read again", got == 0 ? EIO : errno);
+            return tri_fail_system(error, TRI_CANNOT_WRITE, from->path, "cannot read again", reason);
         }
-        if (got > 0)
-            result = tri_output_write_at(to, place + done, buffer, (size_t)got);
-        done += got > 0 ? (uint64_t)got : 0;
+        result = tri_output_write_at(to, place + done, buffer, piece);
     }
     free(buffer);
     return tri_output_conclude(to, result, error);

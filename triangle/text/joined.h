@@ -11,10 +11,6 @@
 
 #include "triangle/text/output.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { TRI_TICKET_PATH = 1024, TRI_TICKET_HOST = 256 };
 
 struct tri_ticket {
@@ -37,9 +33,5 @@ enum tri_status tri_output_leave(struct tri_output *output, bool on_disk, struct
 /* Writes the first n bytes of one output, which has places, into another, from this place on. */
 enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output *to, uint64_t place, uint64_t n,
                                 struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

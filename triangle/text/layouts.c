@@ -48,11 +48,14 @@ static char *put_number(char *at, const struct tri_grid *grid, size_t i)
 
 typedef char *row_call(void *user, size_t i, char *at);
 
-static enum tri_status write_rows(struct tri_output *output, const struct tri_grid *grid, int64_t n,
-                                  size_t max_row_bytes, row_call *row, const struct tri_executor *executor,
-                                  struct tri_error *error)
+/* A line of counts, the first of which is that of the rows behind it. */
+static enum tri_status write_table(struct tri_output *output, const struct tri_grid *grid, const int64_t *counts,
+                                   int n_counts, size_t max_row_bytes, row_call *row,
+                                   const struct tri_executor *executor, struct tri_error *error)
 {
-    return tri_write_table(output, (size_t)n, max_row_bytes, row, (void *)grid, executor, error);
+    enum tri_status status = tri_write_counts(output, counts, n_counts, error);
+    return status ? status : tri_write_table(output, (size_t)counts[0], max_row_bytes, row, (void *)grid, executor,
+                                             error);
 }
 
 /* Rows that do not begin with the first. */
@@ -104,9 +107,7 @@ enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid 
                                const struct tri_executor *executor, struct tri_error *error)
 {
     const int64_t counts[] = {grid->n_points, 2, grid->n_attributes, grid->has_markers};
-    enum tri_status status = tri_write_counts(output, counts, 4, error);
-    return status ? status
-                  : write_rows(output, grid, grid->n_points, node_bytes(grid), node_row, executor, error);
+    return write_table(output, grid, counts, 4, node_bytes(grid), node_row, executor, error);
 }
 
 /* --- .ele */
@@ -139,8 +140,7 @@ enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *
                               const struct tri_executor *executor, struct tri_error *error)
 {
     const int64_t counts[] = {grid->n_triangles, grid->n_nodes, grid->n_columns};
-    enum tri_status status = tri_write_counts(output, counts, 3, error);
-    return status ? status : write_rows(output, grid, grid->n_triangles, ele_bytes(grid), ele_row, executor, error);
+    return write_table(output, grid, counts, 3, ele_bytes(grid), ele_row, executor, error);
 }
 
 /* --- .poly: no vertices; segments, holes, regions */
@@ -162,14 +162,6 @@ enum tri_status tri_write_segment_rows(struct tri_output *output, const struct t
                                        int64_t n, const struct tri_executor *executor, struct tri_error *error)
 {
     return write_part(output, (struct part){grid, first, segment_row}, n, SEGMENT_BYTES, executor, error);
-}
-
-static enum tri_status write_segments(struct tri_output *output, const struct tri_grid *grid,
-                                      const struct tri_executor *executor, struct tri_error *error)
-{
-    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_segments, grid->has_markers}, 2, error);
-    return status ? status
-                  : write_rows(output, grid, grid->n_segments, SEGMENT_BYTES, segment_row, executor, error);
 }
 
 /* Holes or regions: so many reals in each row. */
@@ -210,9 +202,11 @@ enum tri_status tri_write_sites(struct tri_output *output, const struct tri_grid
 enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid *grid,
                                const struct tri_executor *executor, struct tri_error *error)
 {
-    const int64_t counts[] = {0, 2, grid->n_attributes, grid->has_markers};
-    enum tri_status status = tri_write_counts(output, counts, 4, error);
-    status = status ? status : write_segments(output, grid, executor, error);
+    const int64_t points[] = {0, 2, grid->n_attributes, grid->has_markers};
+    const int64_t segments[] = {grid->n_segments, grid->has_markers};
+    enum tri_status status = tri_write_counts(output, points, 4, error);
+    status = status ? status
+                    : write_table(output, grid, segments, 2, SEGMENT_BYTES, segment_row, executor, error);
     return status ? status : tri_write_sites(output, grid, executor, error);
 }
 
@@ -235,9 +229,8 @@ static char *edge_row(void *user, size_t i, char *at)
 enum tri_status tri_write_edge(struct tri_output *output, const struct tri_grid *grid,
                                const struct tri_executor *executor, struct tri_error *error)
 {
-    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_edges, grid->has_markers}, 2, error);
-    return status ? status
-                  : write_rows(output, grid, grid->n_edges, 4 * INTEGER_BYTES + 1, edge_row, executor, error);
+    const int64_t counts[] = {grid->n_edges, grid->has_markers};
+    return write_table(output, grid, counts, 2, 4 * INTEGER_BYTES + 1, edge_row, executor, error);
 }
 
 static char *v_edge_row(void *user, size_t i, char *at)
@@ -257,8 +250,7 @@ enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_gri
                                  const struct tri_executor *executor, struct tri_error *error)
 {
     const size_t row_bytes = 3 * INTEGER_BYTES + 2 * REAL_BYTES + 1;
-    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_edges, 0}, 2, error);
-    return status ? status : write_rows(output, grid, grid->n_edges, row_bytes, v_edge_row, executor, error);
+    return write_table(output, grid, (int64_t[]){grid->n_edges, 0}, 2, row_bytes, v_edge_row, executor, error);
 }
 
 static char *neigh_row(void *user, size_t i, char *at)
@@ -274,9 +266,8 @@ static char *neigh_row(void *user, size_t i, char *at)
 enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_grid *grid,
                                 const struct tri_executor *executor, struct tri_error *error)
 {
-    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_triangles, 3}, 2, error);
-    return status ? status
-                  : write_rows(output, grid, grid->n_triangles, 4 * INTEGER_BYTES + 1, neigh_row, executor, error);
+    const int64_t counts[] = {grid->n_triangles, 3};
+    return write_table(output, grid, counts, 2, 4 * INTEGER_BYTES + 1, neigh_row, executor, error);
 }
 
 /* --- .off: always counts from 0, has corners alone, and z, which is 0 */
@@ -316,8 +307,7 @@ enum tri_status tri_write_off(struct tri_output *output, const struct tri_grid *
                               const struct tri_executor *executor, struct tri_error *error)
 {
     enum tri_status status = write_off_header(output, grid, error);
-    status = status ? status
-                    : write_rows(output, grid, grid->n_points, 2 * REAL_BYTES + 8, off_vertex_row, executor, error);
-    return status ? status
-                  : write_rows(output, grid, grid->n_triangles, 4 * INTEGER_BYTES, off_face_row, executor, error);
+    const struct part points = {grid, 0, off_vertex_row}, faces = {grid, 0, off_face_row};
+    status = status ? status : write_part(output, points, grid->n_points, 2 * REAL_BYTES + 8, executor, error);
+    return status ? status : write_part(output, faces, grid->n_triangles, 4 * INTEGER_BYTES, executor, error);
 }

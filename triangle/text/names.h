@@ -8,10 +8,6 @@
 
 #include "triangle/base/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* The first `length` bytes of a name, and an ending; from malloc, NULL: no memory. */
 char *tri_name(const char *stem, size_t length, const char *ending);
 
@@ -29,9 +25,5 @@ struct tri_names {
 /* To be freed in any case. */
 enum tri_status tri_names_make(struct tri_names *names, const char *stem, size_t length, struct tri_error *error);
 void tri_names_free(struct tri_names *names);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -17,6 +17,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
+#include "triangle/text/names.h"
 #include "triangle/text/text.h"
 
 #ifndef O_DIRECT
@@ -43,13 +45,7 @@ static size_t directory_length(const char *path)
 /* directory_of's directory followed by name; malloc'ed. */
 static char *beside(const char *directory_of, const char *name)
 {
-    const size_t directory = directory_length(directory_of), length = strlen(name);
-    char *const path = malloc(directory + length + 1);
-    if (path) {
-        memcpy(path, directory_of, directory);
-        memcpy(path + directory, name, length + 1);
-    }
-    return path;
+    return tri_name(directory_of, directory_length(directory_of), name);
 }
 
 static bool stat_directory(const char *path, struct stat *status)
@@ -456,42 +452,7 @@ enum tri_status tri_output_write(struct tri_output *output, const char *data, si
     return tri_output_conclude(output, tri_output_write_at(output, place, data, size), error);
 }
 
-static bool punch_hole(const struct tri_output *output, uint64_t place, uint64_t size)
-{
-#ifdef FALLOC_FL_PUNCH_HOLE
-    return fallocate(output->file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, (off_t)place, (off_t)size) == 0;
-#else
-    (void)output, (void)place, (void)size;
-    return false;
-#endif
-}
-
-int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t size)
-{
-    static const char zeros[1 << 16];
-    int result = 0;
-    if (size == 0 || punch_hole(output, place, size))
-        return 0;
-    for (uint64_t done = 0; done < size && !result; done += sizeof zeros) {
-        const uint64_t left = size - done;
-        result = tri_output_write_at(output, place + done, zeros, left < sizeof zeros ? (size_t)left : sizeof zeros);
-    }
-    return result;
-}
-
 enum { SHIFT_BYTES = 1 << 20 };
-
-/* Moves n bytes, which fit in the buffer. */
-static int move_piece(const struct tri_output *output, uint64_t from, uint64_t to, size_t n, char *buffer)
-{
-    for (size_t done = 0; done < n;) {
-        const ssize_t got = pread(output->file, buffer + done, n - done, (off_t)(from + done));
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return got == 0 ? EIO : errno;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return tri_output_write_at(output, to, buffer, n);
-}
 
 /* Forwards from the end, so that nothing is overwritten before it has been moved; backwards from the begin. */
 static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
@@ -502,7 +463,9 @@ static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *
         const uint64_t left = end - from - done;
         const size_t n = left < SHIFT_BYTES ? (size_t)left : SHIFT_BYTES;
         const uint64_t at = by > 0 ? end - done - n : from + done;
-        result = move_piece(output, at, at + (uint64_t)by, n, buffer);
+        result = tri_read_again(output->file, buffer, n, at)
+                     ? tri_output_write_at(output, at + (uint64_t)by, buffer, n)
+                     : errno;
         done += n;
     }
     output->size = end + (uint64_t)by;

@@ -20,10 +20,6 @@
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { TRI_MAX_OUTPUTS = 544 };
 
 /* Which file it is: of one that exists its own node, of a new one its folder's, where its name tells it. */
@@ -87,9 +83,6 @@ enum { TRI_OUTPUT_STOPPED = -1 };
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
 enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
 
-/* Zeros in a place that has been written, on the disk nothing where that can be. Returns the same. */
-int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t size);
-
 /* A descriptor of a file that has places, past the system's cache where that can be: then memory, sizes and places must
  * be aligned for it. Stays open until the output is closed. */
 int tri_output_direct(struct tri_output *output);
@@ -115,9 +108,5 @@ void tri_outputs_abort(struct tri_output_set *set);
 /* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
  * link itself? */
 bool tri_is_same_file(const char *a, const char *b);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

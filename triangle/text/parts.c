@@ -53,20 +53,6 @@ struct work {
     bool no_memory;
 };
 
-static void *get(const struct tri_storage *storage, int64_t n, size_t bytes)
-{
-    const size_t all = (size_t)n * bytes;
-    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
-}
-
-static void give_back(const struct tri_storage *storage, void *at)
-{
-    if (at && storage)
-        storage->extra_free(storage->user, at);
-    else
-        free(at);
-}
-
 /* --- cutting the plane */
 
 static int by_axis(int axis, const struct site *a, const struct site *b)
@@ -295,16 +281,6 @@ static enum tri_status assign_segments(struct work *w, struct tri_error *error)
 
 /* --- lists */
 
-static void accumulate(int64_t *first, int n)
-{
-    int64_t before = 0;
-    for (int k = 0; k <= n; k++) {
-        const int64_t own = k < n ? first[k] : 0;
-        first[k] = before;
-        before += own;
-    }
-}
-
 static int32_t part_of_triangle(const struct work *w, int64_t t) { return w->part[t]; }
 static int32_t part_of_segment(const struct work *w, int64_t s) { return w->segment_part[s]; }
 
@@ -325,7 +301,7 @@ static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(con
         if (part > 0)
             first[part - 1]++;
     }
-    accumulate(first, w->parts->n);
+    tri_accumulate(first, w->parts->n);
     memcpy(next, first, sizeof next);
     for (int64_t place = 0; place < n; place++) {
         const int32_t part = part_of(w, tri_grouped(groups, place));
@@ -412,12 +388,12 @@ static enum tri_status get_room(struct work *w, struct tri_error *error)
 {
     const struct tri_grid *g = w->grid;
     struct tri_parts *p = w->parts;
-    w->part = get(p->storage, g->n_triangles, sizeof *w->part);
-    w->user = get(p->storage, g->n_points, sizeof *w->user);
-    w->segment_part = get(p->storage, g->n_segments, sizeof *w->segment_part);
-    p->triangle = get(p->storage, g->n_triangles, sizeof *p->triangle);
-    p->inner = get(p->storage, g->n_points, sizeof *p->inner);
-    p->segment = get(p->storage, g->n_segments, sizeof *p->segment);
+    w->part = tri_room(p->storage, g->n_triangles, sizeof *w->part);
+    w->user = tri_room(p->storage, g->n_points, sizeof *w->user);
+    w->segment_part = tri_room(p->storage, g->n_segments, sizeof *w->segment_part);
+    p->triangle = tri_room(p->storage, g->n_triangles, sizeof *p->triangle);
+    p->inner = tri_room(p->storage, g->n_points, sizeof *p->inner);
+    p->segment = tri_room(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts: %s", strerror(errno));
     for (int64_t i = 0; i < g->n_points; i++) {
@@ -441,9 +417,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
         status = assign_segments(&w, error);
     }
     status = status ? status : make_lists(&w, surfaces, curves, error);
-    give_back(parts->storage, w.part);
-    give_back(parts->storage, w.user);
-    give_back(parts->storage, w.segment_part);
+    tri_room_free(parts->storage, w.part);
+    tri_room_free(parts->storage, w.user);
+    tri_room_free(parts->storage, w.segment_part);
     free(w.use);
     free(w.edge);
     return status;
@@ -451,9 +427,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
 
 void tri_parts_free(struct tri_parts *parts)
 {
-    give_back(parts->storage, parts->triangle);
-    give_back(parts->storage, parts->inner);
-    give_back(parts->storage, parts->segment);
+    tri_room_free(parts->storage, parts->triangle);
+    tri_room_free(parts->storage, parts->inner);
+    tri_room_free(parts->storage, parts->segment);
     free(parts->shared);
     free(parts->part_list);
     free(parts->first_shared);
@@ -463,13 +439,8 @@ void tri_parts_free(struct tri_parts *parts)
 bool tri_part_has_interface(const struct tri_parts *p, int part, int64_t interface)
 {
     const struct tri_shared_point *point = &p->shared[p->first_shared[interface]];
-    int32_t low = 0, high = point->n;
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        if (point->part[middle] < part)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < point->n && point->part[low] == part;
+    for (int32_t k = 0; k < point->n; k++)
+        if (point->part[k] == part)
+            return true;
+    return false;
 }

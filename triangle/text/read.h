@@ -21,10 +21,6 @@
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/pslg.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_read_options {
     int32_t default_base; /* number of the first vertex where the file says neither 0 nor 1: 1, or 0 with -z */
     bool want_regions;    /* the .poly file must have its section of regions; else that is not looked at */
@@ -59,9 +55,5 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
  * none, as where the file has no value. Errors count triangles from base, as tri_read_ele does. */
 enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t base,
                               struct tri_elements *elements, struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

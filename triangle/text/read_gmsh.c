@@ -9,17 +9,14 @@
 #include "triangle/text/bytes.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
-#include "triangle/text/tags.h"
+#include "triangle/text/reading.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9, GMSH_POINT = 15 };
 enum { DATUM_BYTES = 12, MOST_NAME = 32, MOST_ATTRIBUTES = 1000 };
 
 struct reading {
-    const char *path;
-    struct tri_error *error;
+    struct tri_reading to;
     struct tri_bytes file;
-    struct tri_pslg *mesh;
-    struct tri_elements *elements;
     bool has_format, has_nodes, has_elements;
     struct tri_tags nodes, triangles, segments;
     int64_t n_elements;      /* of any kind */
@@ -34,19 +31,11 @@ struct data {
     const char *at; /* [n] of DATUM_BYTES */
 };
 
-static enum tri_status fail(const struct reading *r, const char *text)
-{
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s", text);
-}
-
-static enum tri_status no_memory(const struct reading *r)
-{
-    return tri_fail(r->error, TRI_NO_MEMORY, r->path, 0, "out of memory");
-}
+static enum tri_status fail(const struct reading *r, const char *text) { return tri_reading_fail(&r->to, 0, text); }
 
 static enum tri_status ends_early(const struct reading *r, const char *section)
 {
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the section $%s is not complete", section);
+    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the section $%s is not complete", section);
 }
 
 static bool is_line(const char *line, size_t length, const char *text)
@@ -96,26 +85,15 @@ static bool take_block(struct reading *r, struct block *block)
 
 /* --- nodes */
 
-static enum tri_status order_tags(const struct reading *r, struct tri_tags *tags, const char *what)
-{
-    int64_t twice = 0;
-    switch (tri_tags_order(tags, &twice)) {
-    case TRI_TAGS_GOOD: return TRI_OK;
-    case TRI_TAGS_NO_MEMORY: return no_memory(r);
-    case TRI_TAGS_TWICE: break;
-    }
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s %" PRId64 " is there twice", what, twice);
-}
-
 static enum tri_status take_node(struct reading *r, int64_t i, const char *tag, const char *place)
 {
     const double x = tri_get_f64(place), y = tri_get_f64(place + 8), z = tri_get_f64(place + 16);
     r->nodes.tag[i] = tri_get_i64(tag);
-    r->mesh->points[2 * i] = x;
-    r->mesh->points[2 * i + 1] = y;
+    r->to.mesh->points[2 * i] = x;
+    r->to.mesh->points[2 * i + 1] = y;
     if (isfinite(x) && isfinite(y) && z == 0)
         return TRI_OK;
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "node %" PRId64 " is not finite, or not at z = 0",
+    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "node %" PRId64 " is not finite, or not at z = 0",
                     r->nodes.tag[i]);
 }
 
@@ -126,9 +104,9 @@ static enum tri_status read_nodes(struct reading *r)
     if (r->has_nodes || !take_totals(r, &blocks, &n, 32))
         return ends_early(r, "Nodes");
     r->has_nodes = true;
-    r->mesh->points = malloc((n + 1) * 2 * sizeof *r->mesh->points);
-    if (!tri_tags_begin(&r->nodes, (int64_t)n) || !r->mesh->points)
-        return no_memory(r);
+    r->to.mesh->points = malloc((n + 1) * 2 * sizeof *r->to.mesh->points);
+    if (!tri_tags_begin(&r->nodes, (int64_t)n) || !r->to.mesh->points)
+        return tri_reading_no_memory(&r->to);
     for (uint64_t b = 0; b < blocks && !status; b++) {
         struct block block;
         if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
@@ -140,10 +118,10 @@ static enum tri_status read_nodes(struct reading *r)
             status = take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i);
         r->file.at += 32 * block.n;
     }
-    r->mesh->n_points = (int32_t)n;
+    r->to.mesh->n_points = (int32_t)n;
     if (!status && done < n)
         return ends_early(r, "Nodes");
-    return status ? status : order_tags(r, &r->nodes, "node");
+    return status ? status : tri_tags_order(&r->nodes, "node", &r->to);
 }
 
 /* --- elements */
@@ -164,8 +142,8 @@ static int32_t place_of(const struct reading *r, const char *at)
 {
     const int64_t place = tri_tags_place(&r->nodes, tri_get_i64(at));
     if (place < 0)
-        (void)tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "an element names node %" PRId64 ", which is not there",
-                       tri_get_i64(at));
+        (void)tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "an element names node %" PRId64
+                       ", which is not there", tri_get_i64(at));
     return (int32_t)place;
 }
 
@@ -176,7 +154,7 @@ static bool take_triangle(struct reading *r, const char *at, int n_nodes)
     const int64_t i = r->n_triangles++;
     r->triangles.tag[i] = tri_get_i64(at);
     for (int k = 0; k < n_nodes; k++) {
-        int32_t *to = k < 3 ? &r->elements->corners[3 * i + k] : &r->elements->extra[3 * i + opposite[k - 3]];
+        int32_t *to = k < 3 ? &r->to.elements->corners[3 * i + k] : &r->to.elements->extra[3 * i + opposite[k - 3]];
         if ((*to = place_of(r, at + 8 * (k + 1))) < 0)
             return false;
     }
@@ -188,7 +166,7 @@ static bool take_segment(struct reading *r, const char *at)
     const int64_t i = r->n_segments++;
     r->segments.tag[i] = tri_get_i64(at);
     for (int k = 0; k < 2; k++)
-        if ((r->mesh->segments[2 * i + k] = place_of(r, at + 8 * (k + 1))) < 0)
+        if ((r->to.mesh->segments[2 * i + k] = place_of(r, at + 8 * (k + 1))) < 0)
             return false;
     return true;
 }
@@ -197,39 +175,36 @@ static enum tri_status take_elements(struct reading *r, const struct block *bloc
 {
     const int n = nodes_of(block->kind);
     const size_t bytes = 8 * (size_t)(n + 1);
-    if (n >= 3 && r->n_triangles > 0 && r->elements->n_nodes != n)
+    if (n >= 3 && r->n_triangles > 0 && r->to.elements->n_nodes != n)
         return fail(r, "triangles of three nodes and of six in one mesh");
     if (n >= 3)
-        r->elements->n_nodes = n;
+        r->to.elements->n_nodes = n;
     for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
         if ((n >= 3 && !take_triangle(r, r->file.at, n)) || (n == 2 && !take_segment(r, r->file.at)))
             return TRI_BAD_INPUT;
     return TRI_OK;
 }
 
-static bool begin_elements(struct reading *r, uint64_t n)
+/* Which are of what kind shows later. */
+static bool begin_elements(struct reading *r, int64_t n)
 {
-    struct tri_elements *e = r->elements;
-    e->n_nodes = 3;
-    e->corners = malloc((n + 1) * 3 * sizeof *e->corners);
-    e->extra = malloc((n + 1) * 3 * sizeof *e->extra);
-    r->mesh->segments = malloc((n + 1) * 2 * sizeof *r->mesh->segments);
-    return tri_tags_begin(&r->triangles, (int64_t)n) && tri_tags_begin(&r->segments, (int64_t)n) && e->corners &&
-           e->extra && r->mesh->segments;
+    const bool room = tri_reading_triangles(&r->to, n, 6) && tri_reading_segments(&r->to, n);
+    r->to.elements->n_nodes = 3;
+    return room && tri_tags_begin(&r->triangles, n) && tri_tags_begin(&r->segments, n);
 }
 
 static enum tri_status end_elements(struct reading *r)
 {
-    r->elements->n = (int32_t)r->n_triangles;
-    r->mesh->n_segments = (int32_t)r->n_segments;
+    r->to.elements->n = (int32_t)r->n_triangles;
+    r->to.mesh->n_segments = (int32_t)r->n_segments;
     r->triangles.n = r->n_triangles;
     r->segments.n = r->n_segments;
-    if (r->elements->n_nodes == 3) {
-        free(r->elements->extra);
-        r->elements->extra = NULL;
+    if (r->to.elements->n_nodes == 3) {
+        free(r->to.elements->extra);
+        r->to.elements->extra = NULL;
     }
-    enum tri_status status = order_tags(r, &r->triangles, "element");
-    return status ? status : order_tags(r, &r->segments, "element");
+    enum tri_status status = tri_tags_order(&r->triangles, "element", &r->to);
+    return status ? status : tri_tags_order(&r->segments, "element", &r->to);
 }
 
 static enum tri_status read_elements(struct reading *r)
@@ -239,15 +214,15 @@ static enum tri_status read_elements(struct reading *r)
     if (!r->has_nodes || r->has_elements || !take_totals(r, &blocks, &n, 16))
         return ends_early(r, r->has_nodes ? "Elements" : "Nodes");
     r->has_elements = true;
-    if (!begin_elements(r, n))
-        return no_memory(r);
+    if (!begin_elements(r, (int64_t)n))
+        return tri_reading_no_memory(&r->to);
     for (uint64_t b = 0; b < blocks && !status; b++) {
         struct block block;
         if (!take_block(r, &block) || block.n > n - done)
             return ends_early(r, "Elements");
         if (nodes_of(block.kind) == 0)
-            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "an element of type %" PRId32 ": triangles and lines "
-                            "are read", block.kind);
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "an element of type %" PRId32
+                            ": triangles and lines are read", block.kind);
         if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
             return ends_early(r, "Elements");
         status = take_elements(r, &block);
@@ -299,7 +274,7 @@ static enum tri_status add_column(const struct reading *r, const struct data *da
     const size_t n = (size_t)tags->n, old = (size_t)*width, new = old + 1;
     double *all = calloc(n * new + 1, sizeof *all);
     if (!all)
-        return no_memory(r);
+        return tri_reading_no_memory(&r->to);
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k < old; k++)
             all[new * i + k] = (*columns)[old * i + k];
@@ -324,7 +299,7 @@ static enum tri_status take_markers(const struct reading *r, const struct data *
     free(*markers);
     *markers = calloc((size_t)tags->n + 1, sizeof **markers);
     if (!*markers)
-        return no_memory(r);
+        return tri_reading_no_memory(&r->to);
     for (int64_t i = 0; i < data->n; i++) {
         const int64_t place = tri_tags_place(tags, tri_get_i32(data->at + DATUM_BYTES * i));
         const double value = tri_get_f64(data->at + DATUM_BYTES * i + 4);
@@ -339,14 +314,14 @@ static enum tri_status take_markers(const struct reading *r, const struct data *
 static enum tri_status take_data(struct reading *r, const struct data *data)
 {
     char next[MOST_NAME];
-    int32_t *width = data->of_nodes ? &r->mesh->n_attributes : &r->elements->n_attributes;
+    int32_t *width = data->of_nodes ? &r->to.mesh->n_attributes : &r->to.elements->n_attributes;
     snprintf(next, sizeof next, "\"attribute %" PRId32 "\"", *width);
     if (strcmp(data->name, "\"marker\"") == 0)
         return take_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
-                            data->of_nodes ? &r->mesh->markers : &r->mesh->segment_markers);
+                            data->of_nodes ? &r->to.mesh->markers : &r->to.mesh->segment_markers);
     if (strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES)
         return add_column(r, data, data->of_nodes ? &r->nodes : &r->triangles,
-                          data->of_nodes ? &r->mesh->attributes : &r->elements->attributes, width);
+                          data->of_nodes ? &r->to.mesh->attributes : &r->to.elements->attributes, width);
     return TRI_OK;
 }
 
@@ -359,8 +334,8 @@ static enum tri_status read_data(struct reading *r, bool of_nodes)
         return TRI_OK; /* of another kind */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
-        return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%.*s: not one number for each of the %" PRId64 " %s",
-                        MOST_NAME, data.name, items, of_nodes ? "nodes" : "elements");
+        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "%.*s: not one number for each of the %" PRId64
+                        " %s", MOST_NAME, data.name, items, of_nodes ? "nodes" : "elements");
     data.at = r->file.at;
     r->file.at += (uint64_t)data.n * DATUM_BYTES;
     return take_data(r, &data);
@@ -399,7 +374,7 @@ static enum tri_status read_sections(struct reading *r)
         snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);
         r->file.at--; /* of what has no content the end of the line stands before it */
         if (!tri_bytes_pass(&r->file, end))
-            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the section %.*s has no end", (int)n, line);
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the section %.*s has no end", (int)n, line);
         (void)tri_bytes_line(&r->file, &line, &n);
     }
     return r->has_elements ? TRI_OK : fail(r, "not a .msh file, or one without elements");
@@ -408,19 +383,12 @@ static enum tri_status read_sections(struct reading *r)
 enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
                              const struct tri_executor *executor, struct tri_error *error)
 {
-    struct reading r = {.path = path, .error = error, .mesh = mesh, .elements = elements};
-    (void)executor;
-    *mesh = (struct tri_pslg){0};
-    *elements = (struct tri_elements){0};
+    struct reading r = {.to = {path, executor, mesh, elements, error}};
     enum tri_status status = tri_bytes_load(&r.file, path, error);
     status = status ? status : read_sections(&r);
     tri_bytes_free(&r.file);
     tri_tags_free(&r.nodes);
     tri_tags_free(&r.triangles);
     tri_tags_free(&r.segments);
-    if (status) {
-        tri_pslg_free(mesh);
-        tri_elements_free(elements);
-    }
     return status;
 }

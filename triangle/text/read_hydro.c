@@ -8,15 +8,12 @@
 
 #include "triangle/base/grow.h"
 #include "triangle/text/formats.h"
-#include "triangle/text/tags.h"
+#include "triangle/text/reading.h"
 #include "triangle/text/text.h"
 
 struct reading {
+    struct tri_reading to;
     struct tri_text text;
-    const struct tri_executor *executor;
-    struct tri_pslg *mesh;
-    struct tri_elements *elements;
-    struct tri_error *error;
     struct tri_tags nodes;
     double *z;                   /* [n_points] */
     int64_t most_ends, most_markers; /* room in the arrays of segments */
@@ -24,43 +21,17 @@ struct reading {
 
 static enum tri_status fail(const struct reading *r, size_t line, const char *text)
 {
-    return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)line, "%s", text);
-}
-
-static enum tri_status no_memory(const struct reading *r)
-{
-    return tri_fail(r->error, TRI_NO_MEMORY, r->text.name, 0, "out of memory");
+    return tri_reading_fail(&r->to, line, text);
 }
 
 /* --- what both have */
 
 static bool begin_nodes(struct reading *r, int64_t n)
 {
-    r->mesh->n_points = (int32_t)n;
-    r->mesh->points = malloc(((size_t)n + 1) * 2 * sizeof *r->mesh->points);
+    r->to.mesh->n_points = (int32_t)n;
+    r->to.mesh->points = malloc(((size_t)n + 1) * 2 * sizeof *r->to.mesh->points);
     r->z = malloc(((size_t)n + 1) * sizeof *r->z);
-    return tri_tags_begin(&r->nodes, n) && r->mesh->points && r->z;
-}
-
-static bool begin_elements(struct reading *r, int64_t n, int n_nodes)
-{
-    struct tri_elements *e = r->elements;
-    e->n = (int32_t)n;
-    e->n_nodes = n_nodes;
-    e->corners = malloc(((size_t)n + 1) * 3 * sizeof *e->corners);
-    e->extra = n_nodes > 3 ? malloc(((size_t)n + 1) * 3 * sizeof *e->extra) : NULL;
-    return e->corners && (n_nodes == 3 || e->extra);
-}
-
-static enum tri_status order_nodes(struct reading *r)
-{
-    int64_t twice = 0;
-    switch (tri_tags_order(&r->nodes, &twice)) {
-    case TRI_TAGS_GOOD: return TRI_OK;
-    case TRI_TAGS_NO_MEMORY: return no_memory(r);
-    case TRI_TAGS_TWICE: break;
-    }
-    return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, 0, "node %lld is there twice", (long long)twice);
+    return tri_tags_begin(&r->nodes, n) && r->to.mesh->points && r->z;
 }
 
 /* Number, place and elevation. */
@@ -70,7 +41,7 @@ static const char *take_node(void *user, size_t i, struct tri_fields *fields)
     if (tri_fields_integer(fields, &r->nodes.tag[i]) != TRI_FIELD_GOOD)
         return "has no number";
     for (size_t c = 0; c < 2; c++)
-        if (tri_fields_real(fields, &r->mesh->points[2 * i + c]) != TRI_FIELD_GOOD)
+        if (tri_fields_real(fields, &r->to.mesh->points[2 * i + c]) != TRI_FIELD_GOOD)
             return "has a coordinate that is missing or not finite";
     return tri_fields_real(fields, &r->z[i]) == TRI_FIELD_BAD ? "has an elevation that is not finite" : NULL;
 }
@@ -84,7 +55,7 @@ static int32_t take_place(const struct reading *r, struct tri_fields *fields)
 
 static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t marker)
 {
-    struct tri_pslg *m = r->mesh;
+    struct tri_pslg *m = r->to.mesh;
     const int64_t n = m->n_segments;
     if (n == INT32_MAX || !tri_grow_far(&m->segments, &r->most_ends, 2 * (n + 1), sizeof *m->segments) ||
         !tri_grow_far(&m->segment_markers, &r->most_markers, n + 1, sizeof *m->segment_markers))
@@ -100,10 +71,10 @@ static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t mar
 static void hand_over(struct reading *r)
 {
     bool any = false;
-    for (int32_t i = 0; i < r->mesh->n_points; i++)
+    for (int32_t i = 0; i < r->to.mesh->n_points; i++)
         any = any || r->z[i] != 0;
-    r->mesh->n_attributes = any;
-    r->mesh->attributes = any ? r->z : NULL;
+    r->to.mesh->n_attributes = any;
+    r->to.mesh->attributes = any ? r->z : NULL;
     if (any)
         r->z = NULL;
 }
@@ -112,9 +83,7 @@ static enum tri_status read_with(enum tri_status (*read)(struct reading *r), con
                                  struct tri_elements *elements, const struct tri_executor *executor,
                                  struct tri_error *error)
 {
-    struct reading r = {.executor = executor, .mesh = mesh, .elements = elements, .error = error};
-    *mesh = (struct tri_pslg){0};
-    *elements = (struct tri_elements){0};
+    struct reading r = {.to = {path, executor, mesh, elements, error}};
     enum tri_status status = tri_text_load(&r.text, path, 0, executor, NULL, error);
     status = status ? status : read(&r);
     if (!status)
@@ -122,10 +91,6 @@ static enum tri_status read_with(enum tri_status (*read)(struct reading *r), con
     tri_text_free(&r.text);
     tri_tags_free(&r.nodes);
     free(r.z);
-    if (status) {
-        tri_pslg_free(mesh);
-        tri_elements_free(elements);
-    }
     return status;
 }
 
@@ -139,7 +104,7 @@ static const char *take_element(void *user, size_t i, struct tri_fields *fields)
     if (tri_fields_integer(fields, &n) != TRI_FIELD_GOOD || n != 3)
         return "is no triangle";
     for (size_t k = 0; k < 3; k++)
-        if ((r->elements->corners[3 * i + k] = take_place(r, fields)) < 0)
+        if ((r->to.elements->corners[3 * i + k] = take_place(r, fields)) < 0)
             return "has a corner that is no node";
     return NULL;
 }
@@ -164,12 +129,12 @@ static enum tri_status read_string(struct reading *r, struct tri_cursor *cursor,
         if (node < 0)
             return fail(r, cursor->line, "a node of a boundary is missing, or no node");
         if (i > 0 && !add_segment(r, last, node, marker))
-            return no_memory(r);
+            return tri_reading_no_memory(&r->to);
         first = i == 0 ? node : first;
         last = node;
     }
     if (closed && first != last && !add_segment(r, last, first, marker))
-        return no_memory(r);
+        return tri_reading_no_memory(&r->to);
     return TRI_OK;
 }
 
@@ -201,15 +166,15 @@ static enum tri_status read_14(struct reading *r)
     const size_t left = tri_cursor_remaining(&cursor);
     if ((uint64_t)n_nodes > left || (uint64_t)n_elements > left - (size_t)n_nodes || n_nodes > INT32_MAX ||
         n_elements > INT32_MAX)
-        return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)cursor.line, "%lld nodes and %lld elements are "
+        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, (long)cursor.line, "%lld nodes and %lld elements are "
                         "announced, but only %zu records follow", (long long)n_nodes, (long long)n_elements, left);
-    if (!begin_nodes(r, n_nodes) || !begin_elements(r, n_elements, 3))
-        return no_memory(r);
+    if (!begin_nodes(r, n_nodes) || !tri_reading_triangles(&r->to, n_elements, 3))
+        return tri_reading_no_memory(&r->to);
     const struct tri_table nodes = {"node", (size_t)n_nodes, 1, take_node, r};
     const struct tri_table elements = {"element", (size_t)n_elements, 1, take_element, r};
-    enum tri_status status = tri_cursor_table(&cursor, &nodes, r->executor, r->error);
-    status = status ? status : order_nodes(r);
-    status = status ? status : tri_cursor_table(&cursor, &elements, r->executor, r->error);
+    enum tri_status status = tri_cursor_table(&cursor, &nodes, r->to.executor, r->to.error);
+    status = status ? status : tri_tags_order(&r->nodes, "node", &r->to);
+    status = status ? status : tri_cursor_table(&cursor, &elements, r->to.executor, r->to.error);
     status = status ? status : read_boundaries(r, &cursor, true);
     return status ? status : read_boundaries(r, &cursor, false);
 }
@@ -284,7 +249,7 @@ static enum tri_status count_cards(const struct reading *r, int64_t count[CARDS]
     if (count[CARD_TRIANGLE] > 0 && count[CARD_SIX_NODES] > 0)
         return fail(r, 0, "triangles of three nodes and of six in one mesh");
     if (count[CARD_NODE] > INT32_MAX || count[CARD_TRIANGLE] + count[CARD_SIX_NODES] > INT32_MAX)
-        return tri_fail(r->error, TRI_TOO_LARGE, r->text.name, 0, "more nodes or triangles than are read");
+        return tri_fail(r->to.error, TRI_TOO_LARGE, r->to.path, 0, "more nodes or triangles than are read");
     return TRI_OK;
 }
 
@@ -294,16 +259,16 @@ static enum tri_status read_nodes(struct reading *r)
     for (struct cards c = all_cards(r); next_card(&c);) {
         const char *wrong = c.card == CARD_NODE ? take_node(r, i++, &c.fields) : NULL;
         if (wrong)
-            return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)c.line, "node %zu %s", i, wrong);
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, (long)c.line, "node %zu %s", i, wrong);
     }
-    return order_nodes(r);
+    return tri_tags_order(&r->nodes, "node", &r->to);
 }
 
 /* Nodes go round the triangle, beginning with a corner; ours are the corners, then those opposite to each. */
 static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields)
 {
     static const int place_of_three[] = {0, 1, 2}, place_of_six[] = {0, 5, 1, 3, 2, 4};
-    struct tri_elements *e = r->elements;
+    struct tri_elements *e = r->to.elements;
     tri_fields_skip(fields);
     for (int k = 0; k < e->n_nodes; k++) {
         const int place = e->n_nodes == 3 ? place_of_three[k] : place_of_six[k];
@@ -320,12 +285,12 @@ static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields
 
 static enum tri_status read_triangles(struct reading *r)
 {
-    struct tri_elements *e = r->elements;
+    struct tri_elements *e = r->to.elements;
     double *material = malloc(((size_t)e->n + 1) * sizeof *material);
     int64_t i = 0;
     bool any = false;
     if (!material)
-        return no_memory(r);
+        return tri_reading_no_memory(&r->to);
     e->attributes = material;
     for (struct cards c = all_cards(r); next_card(&c);) {
         if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
@@ -359,15 +324,15 @@ static enum tri_status read_strings(struct reading *r)
             if (node < 0)
                 return fail(r, c.line, "a node string has a node that is not there");
             if (last >= 0 && !add_segment(r, last, node, 0))
-                return no_memory(r);
+                return tri_reading_no_memory(&r->to);
             last = node;
         }
         if (!ends)
             continue;
         if (tri_fields_integer(&c.fields, &marker) != TRI_FIELD_GOOD || marker < INT32_MIN || marker > INT32_MAX)
             marker = 0;
-        for (; first < r->mesh->n_segments; first++)
-            r->mesh->segment_markers[first] = (int32_t)marker;
+        for (; first < r->to.mesh->n_segments; first++)
+            r->to.mesh->segment_markers[first] = (int32_t)marker;
         last = -1;
     }
     return last < 0 ? TRI_OK : fail(r, 0, "a node string has no end");
@@ -380,8 +345,8 @@ static enum tri_status read_2dm(struct reading *r)
     if (status)
         return status;
     if (!begin_nodes(r, count[CARD_NODE]) ||
-        !begin_elements(r, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], count[CARD_SIX_NODES] > 0 ? 6 : 3))
-        return no_memory(r);
+        !tri_reading_triangles(&r->to, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], count[CARD_SIX_NODES] > 0 ? 6 : 3))
+        return tri_reading_no_memory(&r->to);
     if (count[CARD_NODE] == 0)
         return fail(r, 0, "no mesh: there are no nodes (ND)");
     status = read_nodes(r);

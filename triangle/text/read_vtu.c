@@ -11,6 +11,7 @@
 #include "triangle/text/bytes.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/reading.h"
 
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_QUADRATIC_TRIANGLE = 22, MOST_COMPONENTS = 1000 };
 
@@ -26,6 +27,8 @@ static const struct kind {
     {"CellData", "attributes", 0}, {"Points", NULL, 3},            {"Cells", "connectivity", 1},
     {"Cells", "offsets", 1},       {"Cells", "types", 1},
 };
+
+static const char *name_of(int k) { return kinds[k].name ? kinds[k].name : "of points"; }
 
 static const struct type {
     const char *name;
@@ -51,8 +54,7 @@ struct array {
 };
 
 struct reading {
-    const char *path;
-    struct tri_error *error;
+    struct tri_reading to;
     struct tri_bytes file;
     bool wide_sizes; /* of appended data: 8 bytes */
     const char *data; /* where these begin; NULL: there are none */
@@ -60,19 +62,9 @@ struct reading {
     int n_pieces;
     int64_t n_points, n_cells;
     struct array array[ARRAYS];
-    struct tri_pslg *mesh;
-    struct tri_elements *elements;
 };
 
-static enum tri_status fail(const struct reading *r, const char *text)
-{
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s", text);
-}
-
-static enum tri_status no_memory(const struct reading *r)
-{
-    return tri_fail(r->error, TRI_NO_MEMORY, r->path, 0, "out of memory");
-}
+static enum tri_status fail(const struct reading *r, const char *text) { return tri_reading_fail(&r->to, 0, text); }
 
 /* --- tags */
 
@@ -152,7 +144,7 @@ static enum tri_status take_piece_tag(struct reading *r, struct span tag)
     if (r->n_points < 0 || r->n_cells < 0)
         return fail(r, "the numbers of points and cells are missing");
     if (r->n_points > INT32_MAX || r->n_cells > INT32_MAX)
-        return tri_fail(r->error, TRI_TOO_LARGE, r->path, 0, "more points or cells than are read");
+        return tri_fail(r->to.error, TRI_TOO_LARGE, r->to.path, 0, "more points or cells than are read");
     return TRI_OK;
 }
 
@@ -243,8 +235,7 @@ static enum tri_status read_head(struct reading *r)
         return fail(r, "not a VTK file of an unstructured grid (.vtu)");
     for (int k = PLACES; k < ARRAYS && !status; k++)
         if (!r->array[k].there)
-            status = tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the array %s is missing",
-                              kinds[k].name ? kinds[k].name : "of points");
+            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s is missing", name_of(k));
     return status;
 }
 
@@ -318,17 +309,17 @@ static enum tri_status take_array(const struct reading *r, enum which k, int64_t
     const uint64_t n = (uint64_t)rows * (uint64_t)a->components;
     *out = NULL;
     if (n > (uint64_t)(r->file.end - r->file.data))
-        return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the file is too small for its array %s",
-                        kinds[k].name ? kinds[k].name : "of points");
+        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the file is too small for its array %s",
+                        name_of(k));
     *out = malloc((n + 1) * sizeof **out);
     if (!*out)
-        return no_memory(r);
+        return tri_reading_no_memory(&r->to);
     if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
         return TRI_OK;
     free(*out);
     *out = NULL;
-    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the array %s has not %" PRIu64 " finite numbers",
-                    kinds[k].name ? kinds[k].name : "of points", n);
+    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s has not %" PRIu64 " finite numbers",
+                    name_of(k), n);
 }
 
 /* --- points */
@@ -341,12 +332,12 @@ static enum tri_status take_points(struct reading *r)
         return status;
     for (int64_t i = 0; i < r->n_points && !status; i++) {
         if (places[3 * i + 2] != 0)
-            status = tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "point %" PRId64 " is not at z = 0", i);
+            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "point %" PRId64 " is not at z = 0", i);
         places[2 * i] = places[3 * i];
         places[2 * i + 1] = places[3 * i + 1];
     }
-    r->mesh->points = places;
-    r->mesh->n_points = (int32_t)r->n_points;
+    r->to.mesh->points = places;
+    r->to.mesh->n_points = (int32_t)r->n_points;
     return status;
 }
 
@@ -357,7 +348,7 @@ static enum tri_status take_markers(const struct reading *r, enum which k, int64
     enum tri_status status = take_array(r, k, rows, &values);
     *out = status ? NULL : malloc(((size_t)rows + 1) * sizeof **out);
     if (!status && !*out)
-        status = no_memory(r);
+        status = tri_reading_no_memory(&r->to);
     for (int64_t i = 0; i < rows && !status; i++) {
         if (!(values[i] >= INT32_MIN && values[i] <= INT32_MAX))
             status = fail(r, "a marker does not fit into 32 bits");
@@ -372,11 +363,11 @@ static enum tri_status take_point_data(struct reading *r)
 {
     enum tri_status status = TRI_OK;
     if (r->array[POINT_MARKER].there)
-        status = take_markers(r, POINT_MARKER, r->n_points, &r->mesh->markers);
+        status = take_markers(r, POINT_MARKER, r->n_points, &r->to.mesh->markers);
     if (status || !r->array[POINT_ATTRIBUTES].there)
         return status;
-    r->mesh->n_attributes = (int32_t)r->array[POINT_ATTRIBUTES].components;
-    return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->mesh->attributes);
+    r->to.mesh->n_attributes = (int32_t)r->array[POINT_ATTRIBUTES].components;
+    return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
 }
 
 /* --- cells: each array as doubles */
@@ -399,10 +390,10 @@ static enum tri_status check_cells(const struct reading *r, struct cells *c, int
         const int n = nodes_of(c->type[i]);
         end += n;
         if (n == 0)
-            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "cell %" PRId64 " is of type %g: neither triangle nor "
-                            "line", i, c->type[i]);
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "cell %" PRId64 " is of type %g: neither "
+                            "triangle nor line", i, c->type[i]);
         if (c->end[i] != end)
-            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "cell %" PRId64 " has not %d points", i, n);
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "cell %" PRId64 " has not %d points", i, n);
         if (n > 2 && c->n_of_a_triangle != n && *triangles > 0)
             return fail(r, "triangles of three nodes and of six in one mesh");
         c->n_of_a_triangle = n > 2 ? n : c->n_of_a_triangle;
@@ -416,29 +407,16 @@ static enum tri_status check_nodes(const struct reading *r, const struct cells *
 {
     for (int64_t i = 0; i < c->n_nodes; i++)
         if (!(c->node[i] >= 0 && c->node[i] < (double)r->n_points))
-            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "a cell names point %g of %" PRId64, c->node[i],
+            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "a cell names point %g of %" PRId64, c->node[i],
                             r->n_points);
     return TRI_OK;
-}
-
-static bool begin_arrays(struct reading *r, int64_t triangles, int n_nodes)
-{
-    struct tri_elements *e = r->elements;
-    const int64_t segments = r->n_cells - triangles;
-    e->n = (int32_t)triangles;
-    e->n_nodes = n_nodes;
-    r->mesh->n_segments = (int32_t)segments;
-    e->corners = malloc(((size_t)triangles + 1) * 3 * sizeof *e->corners);
-    e->extra = n_nodes > 3 ? malloc(((size_t)triangles + 1) * 3 * sizeof *e->extra) : NULL;
-    r->mesh->segments = malloc(((size_t)segments + 1) * 2 * sizeof *r->mesh->segments);
-    return e->corners && r->mesh->segments && (e->extra || n_nodes == 3);
 }
 
 /* VTK has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
 static void put_cells(struct reading *r, const struct cells *c)
 {
     static const int opposite[] = {2, 0, 1};
-    struct tri_elements *e = r->elements;
+    struct tri_elements *e = r->to.elements;
     const double *node = c->node;
     size_t t = 0, s = 0;
     for (int64_t i = 0; i < r->n_cells; i++) {
@@ -449,7 +427,7 @@ static void put_cells(struct reading *r, const struct cells *c)
                 e->extra[3 * t + (size_t)opposite[k]] = (int32_t)node[3 + k];
         }
         for (size_t k = 0; k < 2 && n == 2; k++)
-            r->mesh->segments[2 * s + k] = (int32_t)node[k];
+            r->to.mesh->segments[2 * s + k] = (int32_t)node[k];
         t += n > 2;
         s += n == 2;
         node += n;
@@ -460,23 +438,23 @@ static void put_cells(struct reading *r, const struct cells *c)
 static enum tri_status take_cell_attributes(struct reading *r, const struct cells *c)
 {
     const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;
-    enum tri_status status = take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->elements->attributes);
+    enum tri_status status = take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->to.elements->attributes);
     size_t t = 0;
     for (int64_t i = 0; i < r->n_cells && !status; i++)
         if (nodes_of(c->type[i]) > 2)
-            memmove(r->elements->attributes + width * t++, r->elements->attributes + width * (size_t)i,
+            memmove(r->to.elements->attributes + width * t++, r->to.elements->attributes + width * (size_t)i,
                     width * sizeof(double));
-    r->elements->n_attributes = (int32_t)width;
+    r->to.elements->n_attributes = (int32_t)width;
     return status;
 }
 
 static enum tri_status take_segment_markers(struct reading *r, const struct cells *c)
 {
-    enum tri_status status = take_markers(r, CELL_MARKER, r->n_cells, &r->mesh->segment_markers);
+    enum tri_status status = take_markers(r, CELL_MARKER, r->n_cells, &r->to.mesh->segment_markers);
     size_t s = 0;
     for (int64_t i = 0; i < r->n_cells && !status; i++)
         if (nodes_of(c->type[i]) == 2)
-            r->mesh->segment_markers[s++] = r->mesh->segment_markers[i];
+            r->to.mesh->segment_markers[s++] = r->to.mesh->segment_markers[i];
     return status;
 }
 
@@ -497,8 +475,9 @@ static enum tri_status take_cells(struct reading *r)
     status = status ? status : check_cells(r, &c, &triangles);
     status = status ? status : take_array(r, CONNECTIVITY, c.n_nodes, &c.node);
     status = status ? status : check_nodes(r, &c);
-    if (!status && !begin_arrays(r, triangles, c.n_of_a_triangle))
-        status = no_memory(r);
+    if (!status && !(tri_reading_triangles(&r->to, triangles, c.n_of_a_triangle) &&
+                     tri_reading_segments(&r->to, r->n_cells - triangles)))
+        status = tri_reading_no_memory(&r->to);
     if (!status)
         put_cells(r, &c);
     status = status ? status : take_cell_data(r, &c);
@@ -511,19 +490,12 @@ static enum tri_status take_cells(struct reading *r)
 enum tri_status tri_read_vtu(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
                              const struct tri_executor *executor, struct tri_error *error)
 {
-    struct reading r = {.path = path, .error = error, .mesh = mesh, .elements = elements};
-    (void)executor;
-    *mesh = (struct tri_pslg){0};
-    *elements = (struct tri_elements){0};
+    struct reading r = {.to = {path, executor, mesh, elements, error}};
     enum tri_status status = tri_bytes_load(&r.file, path, error);
     status = status ? status : read_head(&r);
     status = status ? status : take_points(&r);
     status = status ? status : take_point_data(&r);
     status = status ? status : take_cells(&r);
     tri_bytes_free(&r.file);
-    if (status) {
-        tri_pslg_free(mesh);
-        tri_elements_free(elements);
-    }
     return status;
 }

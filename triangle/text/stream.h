@@ -12,10 +12,6 @@
 #include "ptriangle/tiles.h"
 #include "triangle/text/write.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_text_options {
     struct tri_output *node, *ele, *poly; /* opened, the caller's, with places; NULL: not wanted */
     int32_t base;                         /* 0 or 1: what files count from */
@@ -25,19 +21,19 @@ struct tri_text_options {
     char *const *argv;
 };
 
+/* A copy of the attributes of triangles in each region, malloc'ed; NULL: no memory. */
+double *tri_copy_columns(const struct tri_stream *stream);
+
 struct tri_text_stream;
 
-/* *sink writes the files. After its end they are complete, and their owner commits them; after any failure, or where no
- * end comes, he aborts them. What the options name outlives the stream. TRI_NO_MEMORY, and of the sink what is said in
- * triangle/text/output.h; TRI_CANNOT_WRITE also for a device or pipe. */
+/* *sink writes the files, anew where it is told of the beginning again. After its end they are complete, and their
+ * owner commits them; after any failure, or where no end comes, he aborts them. What the options name outlives the
+ * stream. TRI_NO_MEMORY, and of the sink what is said in triangle/text/output.h; TRI_CANNOT_WRITE also for a device or
+ * pipe. */
 enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struct tri_text_options *options,
                                     struct tri_sink *sink, struct tri_error *error);
 
 /* NULL is fine. */
 void tri_text_stream_free(struct tri_text_stream *stream);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
 
 enum { DEFAULT_CHUNK = 1 << 18 };
@@ -102,22 +103,6 @@ struct load {
     int *errors; /* [n_chunks] error number of each chunk's read; -1: the file has become shorter */
 };
 
-/* Up to n bytes from offset; fewer only at the end of the file. -1 and errno on failure. */
-static ssize_t read_at(int file, char *at, size_t n, size_t offset)
-{
-    size_t done = 0;
-    while (done < n) {
-        const ssize_t got = pread(file, at + done, n - done, (off_t)(offset + done));
-        if (got == 0)
-            break;
-        if (got < 0 && errno != EINTR)
-            return -1;
-        if (got > 0)
-            done += (size_t)got;
-    }
-    return (ssize_t)done;
-}
-
 static void read_chunk(void *context, size_t i)
 {
     struct load *const load = context;
@@ -126,7 +111,7 @@ static void read_chunk(void *context, size_t i)
     const size_t begin = i * load->text->chunk_bytes;
     const size_t left = load->file_size - begin;
     const size_t n = left < load->text->chunk_bytes ? left : load->text->chunk_bytes;
-    const ssize_t got = read_at(load->file, load->text->data + begin, n, begin);
+    const ssize_t got = tri_read_at(load->file, load->text->data + begin, n, begin);
     load->errors[i] = got < 0 ? errno : (size_t)got < n ? -1 : 0;
 }
 
@@ -352,83 +337,54 @@ size_t tri_cursor_remaining(const struct tri_cursor *cursor)
 
 /* What parsing the records of one chunk came to. */
 struct outcome {
-    struct tri_cursor cursor; /* behind the last record parsed */
+    struct tri_cursor cursor; /* behind the last record parsed; its text is NULL where there was none */
     const char *fault;        /* of that record, or NULL */
 };
 
 struct parse {
     const struct tri_table *table;
     struct tri_cursor begin;  /* of the table */
-    size_t first_chunk;
-    struct outcome *outcomes; /* one for each chunk of the table */
+    struct outcome *outcomes; /* [n_chunks] */
 };
 
+/* The records of the table that begin in chunk i. */
 static void parse_chunk(void *context, size_t i)
 {
     struct parse *const parse = context;
     const struct tri_text *const text = parse->begin.text;
-    if (tri_stop_is_asked(text->stop))
-        return;
-    const struct tri_text_chunk *const chunk = &text->chunks[parse->first_chunk + i];
-    const char *const stop = text->data + chunk[1].begin;
+    const struct tri_text_chunk *const chunk = &text->chunks[i];
+    const char *const end = text->data + text->size, *const stop = text->data + chunk[1].begin;
     struct tri_cursor cursor = {text, text->data + chunk->begin, chunk->line, chunk->record};
-    if (i == 0)
-        cursor = parse->begin;
     const char *fault = NULL;
+    if (cursor.at <= parse->begin.at)
+        cursor = parse->begin;
     size_t row = cursor.record - parse->begin.record;
+    if (row >= parse->table->n || cursor.at >= stop || tri_stop_is_asked(text->stop))
+        return;
     while (!fault && row < parse->table->n && cursor.at < stop) {
         struct tri_fields fields;
-        const bool is_record = tri_fields_open(&fields, cursor.at, text->data + text->size);
+        const bool is_record = tri_fields_open(&fields, cursor.at, end);
         if (is_record)
             fault = parse->table->row(parse->table->user, row++, &fields);
-        cursor.at = next_line(fields.at, text->data + text->size);
+        cursor.at = next_line(fields.at, end);
         cursor.line++;
         cursor.record += is_record;
     }
     parse->outcomes[i] = (struct outcome){cursor, fault};
 }
 
-/* The last chunk that begins at or before the offset. */
-static size_t chunk_of(const struct tri_text *text, size_t offset)
-{
-    size_t low = 0, high = text->n_chunks; /* chunks[low].begin <= offset < chunks[high].begin, or high is the end */
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (text->chunks[middle].begin <= offset)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* The first chunk at or behind `first` with which n_records are read. */
-static size_t chunk_reaching(const struct tri_text *text, size_t first, size_t n_records)
-{
-    size_t low = first, high = text->n_chunks - 1;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (text->chunks[middle + 1].record >= n_records)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
 /* The fault of the first faulty record; else the cursor goes behind the table. */
-static enum tri_status conclude(const struct parse *parse, size_t n_outcomes, struct tri_cursor *cursor,
-                                struct tri_error *error)
+static enum tri_status conclude(const struct parse *parse, struct tri_cursor *cursor, struct tri_error *error)
 {
-    for (size_t i = 0; i < n_outcomes; i++) {
+    const struct tri_text *text = parse->begin.text;
+    for (size_t i = 0; i < text->n_chunks; i++) {
         const struct outcome *const outcome = &parse->outcomes[i];
-        if (!outcome->fault)
-            continue;
         const int64_t row = (int64_t)(outcome->cursor.record - 1 - parse->begin.record);
-        return tri_fail(error, TRI_BAD_INPUT, parse->begin.text->name, (long)outcome->cursor.line, "%s %lld %s",
-                        parse->table->noun, (long long)(row + parse->table->base), outcome->fault);
+        if (outcome->fault)
+            return tri_fail(error, TRI_BAD_INPUT, text->name, (long)outcome->cursor.line, "%s %lld %s",
+                            parse->table->noun, (long long)(row + parse->table->base), outcome->fault);
+        *cursor = outcome->cursor.text ? outcome->cursor : *cursor;
     }
-    *cursor = parse->outcomes[n_outcomes - 1].cursor;
     assert(cursor->record == parse->begin.record + parse->table->n);
     return TRI_OK;
 }
@@ -439,16 +395,12 @@ enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_tab
     assert(table->n <= tri_cursor_remaining(cursor));
     if (table->n == 0)
         return TRI_OK;
-    struct parse parse = {table, *cursor, chunk_of(cursor->text, (size_t)(cursor->at - cursor->text->data)), NULL};
-    const size_t last = chunk_reaching(cursor->text, parse.first_chunk, cursor->record + table->n);
-    const size_t n_chunks = last - parse.first_chunk + 1;
-    parse.outcomes = calloc(n_chunks, sizeof *parse.outcomes);
+    struct parse parse = {table, *cursor, calloc(cursor->text->n_chunks, sizeof *parse.outcomes)};
     if (!parse.outcomes)
         return tri_fail(error, TRI_NO_MEMORY, cursor->text->name, 0, "no memory to read a table");
-    tri_execute(executor, n_chunks, parse_chunk, &parse);
-    const enum tri_status status = tri_stop_is_asked(cursor->text->stop)
-                                       ? tri_fail_stopped(error)
-                                       : conclude(&parse, n_chunks, cursor, error);
+    tri_execute(executor, cursor->text->n_chunks, parse_chunk, &parse);
+    const enum tri_status status = tri_stop_is_asked(cursor->text->stop) ? tri_fail_stopped(error)
+                                                                         : conclude(&parse, cursor, error);
     free(parse.outcomes);
     return status;
 }

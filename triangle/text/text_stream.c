@@ -17,13 +17,15 @@ struct table {
     int n_counts;
 };
 
+enum { POINTS, TRIANGLES, SEGMENTS, TABLES };
+
 struct tri_text_stream {
     struct tri_text_options options;
     struct tri_grid grid;
     const struct tri_tile *tile;
     bool known;                /* the counts are, from the beginning */
     double *columns;           /* [n_regions][n_columns] */
-    struct table points, triangles, segments;
+    struct table table[TABLES];
 };
 
 /* --- the tile as a grid */
@@ -97,27 +99,34 @@ static enum tri_status conclude_table(struct table *table, struct tri_error *err
 
 static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream *stream)
 {
-    struct table *tables[] = {&s->points, &s->triangles, &s->segments};
-    const double expected[] = {stream->estimate / 2, stream->estimate, sqrt(stream->estimate)};
-    const int64_t *first[] = {stream->first_vertex, stream->first_triangle, stream->first_segment};
-    for (int i = 0; i < 3; i++) {
+    const double expected[TABLES] = {stream->estimate / 2, stream->estimate, sqrt(stream->estimate)};
+    const int64_t *first[TABLES] = {stream->first_vertex, stream->first_triangle, stream->first_segment};
+    for (int i = 0; i < TABLES; i++) {
         const int64_t n = s->known ? first[i][stream->n_ranks] : 0;
-        keep_room(tables[i], s->known ? (double)n : expected[i]);
-        tables[i]->counts[0] = n;
+        keep_room(&s->table[i], s->known ? (double)n : expected[i]);
+        s->table[i].counts[0] = n;
     }
 }
 
 /* --- the sink */
 
-static enum tri_status copy_columns(struct tri_text_stream *s, const struct tri_stream *stream, struct tri_error *error)
+/* What was written is void. */
+static enum tri_status begin_again(struct tri_text_stream *s, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int i = 0; i < TABLES && !status; i++)
+        status = s->table[i].output ? tri_output_restart(s->table[i].output, error) : TRI_OK;
+    free(s->columns);
+    return status;
+}
+
+double *tri_copy_columns(const struct tri_stream *stream)
 {
     const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
-    s->columns = malloc((n + 1) * sizeof *s->columns);
-    if (!s->columns)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
-    if (n > 0)
-        memcpy(s->columns, stream->regions, n * sizeof *s->columns);
-    return TRI_OK;
+    double *columns = malloc((n + 1) * sizeof *columns);
+    if (columns && n > 0)
+        memcpy(columns, stream->regions, n * sizeof *columns);
+    return columns;
 }
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -129,15 +138,18 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
                                 .n_attributes = stream->n_attributes, .n_columns = stream->n_columns, .n_nodes = 3,
                                 .figure = o->figure, .point = point, .attribute = attribute, .triangle = triangle,
                                 .column = column, .segment = segment};
-    s->points = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
-    s->triangles = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
-    s->segments = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
+    enum tri_status status = s->columns ? begin_again(s, error) : TRI_OK;
+    s->table[POINTS] = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
+    s->table[TRIANGLES] = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
+    s->table[SEGMENTS] = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
     s->known = stream->n_ranks > 1;
-    enum tri_status status = copy_columns(s, stream, error);
+    s->columns = tri_copy_columns(stream);
+    if (!s->columns)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
     if (status || stream->rank > 0)
         return status;
     if (o->poly)
-        status = tri_write_counts(o->poly, s->points.counts, 4, error); /* no points */
+        status = tri_write_counts(o->poly, s->table[POINTS].counts, 4, error); /* no points */
     keep_room_for_all(s, stream);
     return status;
 }
@@ -145,24 +157,26 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_text_stream *s = user;
+    const int64_t first[TABLES] = {tile->first_vertex, tile->first_triangle, tile->first_segment};
+    const int32_t n[TABLES] = {tile->n_vertices, tile->n_triangles, tile->n_segments};
+    enum tri_status status = TRI_OK;
     s->tile = tile;
-    enum tri_status status = add_rows(s, &s->points, tile->first_vertex, tile->n_vertices, error);
-    status = status ? status : add_rows(s, &s->triangles, tile->first_triangle, tile->n_triangles, error);
-    return status ? status : add_rows(s, &s->segments, tile->first_segment, tile->n_segments, error);
+    for (int i = 0; i < TABLES && !status; i++)
+        status = add_rows(s, &s->table[i], first[i], n[i], error);
+    return status;
 }
 
 static enum tri_status end(void *user, struct tri_error *error)
 {
     struct tri_text_stream *s = user;
     const struct tri_text_options *o = &s->options;
-    struct tri_output *files[] = {o->node, o->ele, o->poly};
-    enum tri_status status = conclude_table(&s->points, error);
-    status = status ? status : conclude_table(&s->triangles, error);
-    status = status ? status : conclude_table(&s->segments, error);
+    enum tri_status status = TRI_OK;
+    for (int i = 0; i < TABLES && !status; i++)
+        status = conclude_table(&s->table[i], error);
     if (!status && o->poly)
         status = tri_write_sites(o->poly, &s->grid, NULL, error);
-    for (int i = 0; i < 3 && o->argc > 0 && !status; i++)
-        status = files[i] ? tri_write_comment(files[i], o->argc, o->argv, error) : TRI_OK;
+    for (int i = 0; i < TABLES && o->argc > 0 && !status; i++)
+        status = s->table[i].output ? tri_write_comment(s->table[i].output, o->argc, o->argv, error) : TRI_OK;
     return status;
 }
 

@@ -14,7 +14,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
+#include "triangle/text/stream.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
@@ -45,20 +47,12 @@ static enum tri_status cannot_write(const struct tri_tile_store *s, struct tri_e
 static bool append(struct tri_tile_store *s, enum kind kind, const void *bytes, size_t n)
 {
     struct sheet *sheet = &s->sheet[kind];
-    const char *at = bytes;
     if (sheet->file < 0)
         sheet->file = tri_scratch_file(s->folder);
-    while (sheet->file >= 0 && n > 0) {
-        ssize_t done = pwrite(sheet->file, at, n, (off_t)sheet->bytes);
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return false;
-        at += done;
-        n -= (size_t)done;
-        sheet->bytes += (size_t)done;
-    }
-    return sheet->file >= 0;
+    if (sheet->file < 0 || !tri_write_at(sheet->file, bytes, n, sheet->bytes))
+        return false;
+    sheet->bytes += n;
+    return true;
 }
 
 static bool map(struct sheet *sheet)
@@ -126,15 +120,12 @@ static void let_go(const void *user)
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_tile_store *s = user;
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
     for (int k = 0; k < SHEETS; k++)
         empty(&s->sheet[k]);
     free(s->columns);
-    s->columns = malloc((n + 1) * sizeof *s->columns);
+    s->columns = tri_copy_columns(stream);
     if (!s->columns)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
-    if (n > 0)
-        memcpy(s->columns, stream->regions, n * sizeof *s->columns);
     s->n_attributes = stream->n_attributes;
     s->n_columns = stream->n_columns;
     s->n_points = s->n_triangles = s->n_segments = 0;

@@ -10,10 +10,6 @@
 #include "ptriangle/tiles.h"
 #include "triangle/mesh/grid.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_tile_store;
 
 /* The files will be in this folder; borrowed. The sink may be told of the beginning again: then what it has taken is
@@ -28,9 +24,5 @@ enum tri_status tri_tile_store_grid(struct tri_tile_store *store, bool markers, 
 
 /* NULL is fine. */
 void tri_tile_store_free(struct tri_tile_store *store);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -32,6 +32,7 @@ struct array {
 struct vtu {
     const struct tri_grid *grid;
     bool wide; /* indices of 64 bits */
+    size_t row_bytes; /* of what is written */
     int n_arrays;
     struct array arrays[MOST_ARRAYS]; /* those of a section together */
 };
@@ -54,12 +55,6 @@ static char *attributes_row(void *user, size_t i, char *at)
     return at;
 }
 
-static char *no_marker_row(void *user, size_t i, char *at)
-{
-    (void)user, (void)i;
-    return tri_put_i32(at, 0);
-}
-
 static char *segment_marker_row(void *user, size_t i, char *at)
 {
     const struct vtu *v = user;
@@ -76,13 +71,12 @@ static char *columns_row(void *user, size_t i, char *at)
     return at;
 }
 
-static char *no_columns_row(void *user, size_t i, char *at)
+static char *zero_row(void *user, size_t i, char *at)
 {
     const struct vtu *v = user;
     (void)i;
-    for (int32_t k = 0; k < v->grid->n_columns; k++)
-        at = tri_put_f64(at, 0);
-    return at;
+    memset(at, 0, v->row_bytes);
+    return at + v->row_bytes;
 }
 
 static char *place_row(void *user, size_t i, char *at)
@@ -169,11 +163,11 @@ static void list_arrays(struct vtu *v)
         add(v, "PointData", "Float64", "attributes", g->n_attributes,
             (struct rows){points, attributes, attributes_row}, none);
     if (g->has_markers)
-        add(v, "CellData", "Int32", "marker", 1, (struct rows){triangles, 4, no_marker_row},
+        add(v, "CellData", "Int32", "marker", 1, (struct rows){triangles, 4, zero_row},
             (struct rows){segments, 4, segment_marker_row});
     if (g->n_columns > 0)
         add(v, "CellData", "Float64", "attributes", g->n_columns, (struct rows){triangles, columns, columns_row},
-            (struct rows){segments, columns, no_columns_row});
+            (struct rows){segments, columns, zero_row});
     add(v, "Points", "Float64", "points", 3, (struct rows){points, 24, place_row}, none);
     add(v, "Cells", index, "connectivity", 1,
         (struct rows){triangles, index_bytes * (size_t)g->n_nodes, triangle_row},
@@ -227,6 +221,7 @@ static enum tri_status write_array(struct tri_output *output, struct vtu *v, con
     enum tri_status status = tri_output_write(output, size, (size_t)(tri_put_u64(size, bytes_of(array)) - size), error);
     for (int k = 0; k < 2 && !status; k++) {
         const struct rows *rows = &array->rows[k];
+        v->row_bytes = rows->bytes;
         status = tri_write_table(output, (size_t)rows->n, rows->bytes, rows->row, v, executor, error);
     }
     return status;

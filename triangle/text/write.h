@@ -19,10 +19,6 @@
 #include "triangle/mesh/grid.h"
 #include "triangle/text/output.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* --- tables */
 
 enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see triangle/text/decimal.h */
@@ -66,9 +62,5 @@ tri_write_rows_call tri_write_segment_rows;
 tri_write_call tri_write_sites;
 
 tri_write_call tri_write_off;  /* the corners of second-order triangles alone; always counts from 0 */
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
