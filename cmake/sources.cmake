@@ -80,7 +80,6 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/missing.c
     triangle/check/winding.c
     triangle/check/hull.c
-    triangle/check/tube.c
     triangle/check/segment_chains.c
     triangle/check/border.c
     triangle/check/vertex_markers.c

@@ -99,34 +99,6 @@ if (ulimit -v 300000 && "$bin/trianglecheck" --help) >/dev/null 2>&1; then # san
     check "trianglecheck of overlapping segments without a mesh: exit code" test $? -eq 0
 fi
 
-# Of either chain between two vertices one half is missing, not the same; beside that 400 segments that overlap on one
-# line, which take the search beyond what it may.
-awk 'BEGIN { k = 200; n = 7 + k + 3; OFMT = CONVFMT = "%.17g"; up = 2 ^ -50; down = -up
-    split("-4 0 0 0 1.5 " up " 2.5 " down " 4 0 2 -1 2 1", lens)
-    print n, 2, 0, 0 >"crowd.node"
-    for (i = 0; i < 7; i++) print i, lens[2 * i + 1], lens[2 * i + 2] >"crowd.node"
-    for (i = 0; i <= k; i++) print 7 + i, 10 + i / k, 0 >"crowd.node"
-    print n - 2, 10.5, -1 >"crowd.node"; print n - 1, 10.5, 1 >"crowd.node"
-    t = split("1 3 2 3 4 2 0 1 6 1 2 6 2 4 6 0 5 1 1 5 3 3 5 4", corner) / 3
-    print t + 2 * k, 3, 0 >"crowd.ele"
-    for (i = 0; i < t; i++) print i, corner[3 * i + 1], corner[3 * i + 2], corner[3 * i + 3] >"crowd.ele"
-    for (i = 0; i < k; i++) print t++, 7 + i, 8 + i, n - 1 >"crowd.ele"
-    for (i = 0; i < k; i++) print t++, 8 + i, 7 + i, n - 2 >"crowd.ele"
-    common = "0 5 5 4 4 6 6 0 7 " n - 2 " " n - 2 " " n - 3 " " n - 3 " " n - 1 " " n - 1 " 7"
-    s = split("0 1 1 3 2 4 " common, end) / 2
-    print 0, 2, 0, 0 >"crowd.poly"; print s + k, 0 >"crowd.poly"
-    for (i = 0; i < s; i++) print i, end[2 * i + 1], end[2 * i + 2] >"crowd.poly"
-    for (i = 0; i < k; i++) print s++, 7 + i, 8 + i >"crowd.poly"
-    print 0 >"crowd.poly"
-    s = split("1 3 2 4 " common, end) / 2
-    print 0, 2, 0, 0 >"input.poly"; print s + 3 * k + 1, 0 >"input.poly"
-    for (i = 0; i < s; i++) print i, end[2 * i + 1], end[2 * i + 2] >"input.poly"
-    for (i = 0; i < k; i++) print s++, 7 + i, 8 + i >"input.poly"
-    for (i = 0; i < 2 * k; i++) print s++, 7 + (i % k < k / 2 ? i % k : 0), 7 + k - i % 7 >"input.poly"
-    print s, 0, 4 >"input.poly"; print 0 >"input.poly" }'
-cp crowd.node input.node
-denies "^FAIL  input segments: 1, first: input segment [0-9]+ .0-4. is missing" crowd --poly input.poly --no-delaunay
-
 # --- one verdict for any number of threads
 fresh letter.poly
 full && area=0.0008 || area=0.002

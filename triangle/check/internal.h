@@ -211,6 +211,9 @@ enum tri_status tri_check_frame(struct checker *c);
 int32_t tri_check_in_frame(const struct checker *c, int64_t v); /* -1: not there, or v is -1. O(log n) */
 enum tri_status tri_check_subsegments(struct checker *c); /* fills the fan */
 enum tri_status tri_check_input(struct checker *c);       /* adds queries */
+/* Each segment of the input is a chain of subsegments, with its marker. Fills is_along, missing; adds queries. O(n) for
+ * n input segments and subsegments, but n for each input segment that is not one chain from end to end. */
+enum tri_status tri_check_chains(struct checker *c);
 enum tri_status tri_check_border(struct checker *c);      /* needs chains */
 enum tri_status tri_check_vertex_markers(struct checker *c); /* needs subsegments, twins */
 void tri_check_stars(struct checker *c);                  /* needs EDGES, ORIENTATION */

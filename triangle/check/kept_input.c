@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "triangle/check/internal.h"
-#include "triangle/check/segment_chains.h"
 
 enum { SLICE = 1 << 14 };
 

@@ -6,23 +6,19 @@
  *      ways, up to the first fork it is certain which subsegments the input segment runs along; the others it may run
  *      along, and their markers are right if some choice makes them so.
  *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
- *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
+ *      sorted along it; chains are followed from each that lies beyond what is covered so far.
  *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. If nothing does, and
  *      no chain leads from end to end, a piece is missing beside others within rounding of it. It may have been carved
- *      where one of these bounds the mesh; else it should be there.
- *   4. Where input segments overlap so much that this would take too long, what lies along one line is put in order
- *      (tube.h). An input segment that is covered there by a way from end to end may run along all that lies
- *      between its ends within the tolerance, whether a search would have come there or not. */
-#include "triangle/check/segment_chains.h"
+ *      where one of these bounds the mesh; else it should be there. */
+#include "triangle/check/internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/check/tube.h"
 #include "triangle/geometry/predicates.h"
 
-enum { MAX_GRID_SIDE = 2048, HUB = 16, MOST_PASSES = 16 };
+enum { HUB = 16 };
 
 struct line { /* the input segment in question */
     int32_t id, marker;
@@ -35,11 +31,9 @@ struct stop {  /* a vertex on the line */
     int32_t vertex;
 };
 
-struct grid { /* vertices of subsegments by place; made when first needed */
-    struct tri_point low;
-    double width, height; /* of a cell */
-    int32_t side;         /* cells in a row, and in a column; 0: not made yet */
-    int32_t *first, *vertex;
+struct place { /* of a vertex of subsegments */
+    struct tri_point at;
+    int32_t vertex;
 };
 
 struct chains {
@@ -52,16 +46,10 @@ struct chains {
     int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
     bool beside_border; /* does the mesh end at a subsegment along the input segment in question? */
-    int64_t n_steps;   /* of searches */
-    struct check_tubes tubes;
     struct stop *stop; /* [n_points at most] */
     int32_t n_stops, stop_capacity;
-    struct grid grid;
-};
-
-struct line_in_chains {
-    struct chains *k;
-    const struct line *l;
+    struct place *place; /* [n_places] from left to right; made when first needed */
+    int32_t n_places;
 };
 
 static double along(const struct line *l, struct tri_point p)
@@ -99,7 +87,6 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
     struct tri_point from = check_point(c, u);
     double best = INFINITY;
     int ways = 0;
-    k->n_steps++;
     for (int32_t i = c->fan_first[u]; i < c->fan_first[u + 1]; i++) {
         int32_t w = other_end(k, c->fan[i]);
         struct tri_point to = check_point(c, w);
@@ -192,67 +179,23 @@ static void mark(struct chains *k, const struct line *l, int32_t u, bool whole)
             k->certain[k->via[u] >> 1] = l->id;
 }
 
-static int32_t cell_index(double x, double low, double width, int32_t side)
+static int compare_places(const void *a, const void *b)
 {
-    double i = width > 0 ? floor((x - low) / width) : 0;
-    return i < 0 ? 0 : i >= side ? side - 1 : (int32_t)i;
+    const struct place *p = a, *q = b;
+    int order = tri_compare_places(p->at, q->at);
+    return order != 0 ? order : (p->vertex > q->vertex) - (p->vertex < q->vertex);
 }
 
-static size_t cell_of(const struct grid *g, struct tri_point p)
-{
-    return (size_t)cell_index(p.x, g->low.x, g->width, g->side) * (size_t)g->side +
-           (size_t)cell_index(p.y, g->low.y, g->height, g->side);
-}
-
-static bool has_subsegment(const struct checker *c, int32_t v)
-{
-    return c->fan_first[v] < c->fan_first[v + 1];
-}
-
-/* Bounding box of the vertices of subsegments; returns how many there are. */
-static int32_t measure(const struct checker *c, struct tri_point *low, struct tri_point *high)
-{
-    int32_t n = 0;
-    *low = (struct tri_point){INFINITY, INFINITY};
-    *high = (struct tri_point){-INFINITY, -INFINITY};
-    for (int32_t v = 0; v < c->n_frame; v++) {
-        if (!has_subsegment(c, v))
-            continue;
-        struct tri_point p = check_point(c, v);
-        *low = (struct tri_point){fmin(low->x, p.x), fmin(low->y, p.y)};
-        *high = (struct tri_point){fmax(high->x, p.x), fmax(high->y, p.y)};
-        n++;
-    }
-    return n;
-}
-
-static enum tri_status make_grid(struct chains *k)
+static enum tri_status list_places(struct chains *k)
 {
     const struct checker *c = k->c;
-    struct grid *g = &k->grid;
-    struct tri_point high;
-    int32_t n = measure(c, &g->low, &high);
-    g->side = 1 + (int32_t)fmin(MAX_GRID_SIDE - 1, sqrt(n));
-    g->width = n > 0 ? (high.x - g->low.x) / g->side : 0;
-    g->height = n > 0 ? (high.y - g->low.y) / g->side : 0;
-    size_t n_cells = (size_t)g->side * (size_t)g->side;
-    g->first = tri_check_zeros((int64_t)n_cells + 1, sizeof *g->first);
-    g->vertex = tri_check_array(n, sizeof *g->vertex);
-    if (g->first == NULL || g->vertex == NULL)
+    k->place = tri_check_array(c->n_frame, sizeof *k->place);
+    if (k->place == NULL)
         return TRI_NO_MEMORY;
-    for (int32_t v = 0; v < c->n_frame; v++) {
-        if (has_subsegment(c, v))
-            g->first[cell_of(g, check_point(c, v)) + 1]++;
-    }
-    for (size_t i = 0; i < n_cells; i++)
-        g->first[i + 1] += g->first[i];
-    for (int32_t v = 0; v < c->n_frame; v++) {
-        if (has_subsegment(c, v))
-            g->vertex[g->first[cell_of(g, check_point(c, v))]++] = v;
-    }
-    for (size_t i = n_cells; i > 0; i--)
-        g->first[i] = g->first[i - 1];
-    g->first[0] = 0;
+    for (int32_t v = 0; v < c->n_frame; v++)
+        if (c->fan_first[v] < c->fan_first[v + 1])
+            k->place[k->n_places++] = (struct place){check_point(c, v), v};
+    qsort(k->place, (size_t)k->n_places, sizeof *k->place, compare_places);
     return TRI_OK;
 }
 
@@ -264,35 +207,6 @@ static enum tri_status add_stop(struct chains *k, double at, int32_t v)
     return TRI_OK;
 }
 
-static enum tri_status add_stops_of_cell(struct chains *k, const struct line *l, size_t cell)
-{
-    enum tri_status status = TRI_OK;
-    for (int32_t i = k->grid.first[cell]; i < k->grid.first[cell + 1] && status == TRI_OK; i++) {
-        struct tri_point p = check_point(k->c, k->grid.vertex[i]);
-        if (is_on(l, p))
-            status = add_stop(k, along(l, p), k->grid.vertex[i]);
-    }
-    return status;
-}
-
-static double clamp(double x, double low, double high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-/* Rows that the line passes in a column of the grid, with a margin for rounding. */
-static void rows_of(const struct chains *k, const struct line *l, int32_t column, int32_t *from, int32_t *to)
-{
-    const struct grid *g = &k->grid;
-    double margin = l->tolerance + 1e-9 * g->height, slope = l->dy / l->dx, y[2] = {l->a.y, l->b.y};
-    for (int i = 0; i < 2 && fabs(l->dx) > g->width * 1e-3; i++) {
-        double x = g->low.x + (column + i) * g->width + (2 * i - 1) * (l->tolerance + 1e-9 * g->width);
-        y[i] = clamp(l->a.y + (x - l->a.x) * slope, fmin(l->a.y, l->b.y), fmax(l->a.y, l->b.y));
-    }
-    *from = cell_index(fmin(y[0], y[1]) - margin, g->low.y, g->height, g->side);
-    *to = cell_index(fmax(y[0], y[1]) + margin, g->low.y, g->height, g->side);
-}
-
 static int compare_stops(const void *a, const void *b)
 {
     const struct stop *s = a, *t = b;
@@ -301,21 +215,29 @@ static int compare_stops(const void *a, const void *b)
     return (s->vertex > t->vertex) - (s->vertex < t->vertex);
 }
 
+/* The first place that is no farther left than that. */
+static int32_t find_place(const struct chains *k, double x)
+{
+    int32_t low = 0, high = k->n_places;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (k->place[middle].at.x < x)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* Step 2, the vertices on the line. */
 static enum tri_status find_stops(struct chains *k, const struct line *l)
 {
-    const struct grid *g = &k->grid;
-    enum tri_status status = g->side == 0 ? make_grid(k) : TRI_OK;
-    double margin = l->tolerance + 1e-9 * g->width;
-    int32_t left = cell_index(fmin(l->a.x, l->b.x) - margin, g->low.x, g->width, g->side);
-    int32_t right = cell_index(fmax(l->a.x, l->b.x) + margin, g->low.x, g->width, g->side);
+    enum tri_status status = k->place == NULL ? list_places(k) : TRI_OK;
+    const double left = fmin(l->a.x, l->b.x) - 2 * l->tolerance, right = fmax(l->a.x, l->b.x) + 2 * l->tolerance;
     k->n_stops = 0;
-    for (int32_t i = left; i <= right && status == TRI_OK; i++) {
-        int32_t from, to;
-        rows_of(k, l, i, &from, &to);
-        for (int32_t j = from; j <= to && status == TRI_OK; j++) {
-            status = add_stops_of_cell(k, l, (size_t)i * (size_t)g->side + (size_t)j);
-        }
+    for (int32_t i = find_place(k, left); i < k->n_places && k->place[i].at.x <= right && status == TRI_OK; i++) {
+        if (is_on(l, k->place[i].at))
+            status = add_stop(k, along(l, k->place[i].at), k->place[i].vertex);
     }
     if (status == TRI_OK && k->n_stops > 1)
         qsort(k->stop, (size_t)k->n_stops, sizeof *k->stop, compare_stops);
@@ -381,48 +303,6 @@ static bool is_hub(const struct checker *c, int32_t point)
     return v >= 0 && c->fan_first[v + 1] - c->fan_first[v] > HUB;
 }
 
-static void take_any(void *chains, int32_t subsegment)
-{
-    struct chains *k = chains;
-    k->c->is_along[subsegment] = 1;
-}
-
-static void take_own(void *line_in_chains, int32_t subsegment)
-{
-    struct line_in_chains *u = line_in_chains;
-    may_run_along(u->k, u->l, subsegment);
-}
-
-/* Step 4: up (1) or down (0) from vertex v, as far as there is one way. What is certain already is passed over. */
-static void mark_in_tube(struct chains *k, const struct line *l, const struct check_span *span, int32_t v, int up)
-{
-    struct check_tube_entry *entry = k->tubes.entry;
-    int32_t i = tri_check_tube_sole_way(&k->tubes, span->tube, v, up);
-    while (i >= 0 && entry[i].low >= span->low && entry[i].high <= span->high) {
-        int32_t *certain = &k->certain[entry[i].subsegment], *onward = &entry[i].onward[up];
-        *certain = *certain < 0 ? l->id : *certain;
-        if (*onward >= 0 && k->certain[entry[*onward].subsegment] >= 0)
-            *onward = entry[*onward].onward[up];
-        i = *onward;
-    }
-}
-
-static bool take_from_tube(struct chains *k, const struct line *l, int32_t from, int32_t to)
-{
-    const int32_t ends[2] = {from, to};
-    struct line_in_chains in_chains = {k, l};
-    struct check_span span;
-    if (!tri_check_tube_span(&k->tubes, l->id, ends, l->tolerance, &span))
-        return false;
-    tri_check_tube_take(&k->tubes, &span, NULL, take_any, k);
-    if (l->marker == 0)
-        return true;
-    if (k->c->segment_markers != NULL)
-        tri_check_tube_take(&k->tubes, &span, &l->marker, take_own, &in_chains);
-    mark_in_tube(k, l, &span, from, tri_check_tube_ascends(&k->tubes, span.tube, from, to));
-    return true;
-}
-
 static enum tri_status check_line(struct chains *k, int32_t id)
 {
     const struct tri_pslg *input = k->c->input;
@@ -442,8 +322,6 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     if (!(l.length > 0) || !isfinite(l.length))
         return TRI_OK;
     int32_t from = k->c->twin[a], to = k->c->twin[b];
-    if (from >= 0 && to >= 0 && take_from_tube(k, &l, from, to))
-        return TRI_OK;
     k->search++;
     k->beside_border = false;
     int32_t reached = from >= 0 && to >= 0 ? follow(k, &l, from, to) : -1;
@@ -501,16 +379,7 @@ static void release(struct chains *k)
     free(k->certain);
     free(k->possible);
     free(k->stop);
-    free(k->grid.first);
-    free(k->grid.vertex);
-    tri_check_tubes_free(&k->tubes);
-}
-
-/* Have searches passed the same places again and again? */
-static bool is_slow(const struct chains *k)
-{
-    const struct checker *c = k->c;
-    return k->n_steps / MOST_PASSES > (int64_t)c->n_frame + c->n_segments + c->input->n_segments;
+    free(k->place);
 }
 
 static enum tri_status check_lines(struct chains *k)
@@ -519,12 +388,8 @@ static enum tri_status check_lines(struct chains *k)
     enum tri_status status = TRI_OK;
     for (int32_t s = 0; s < c->n_segments; s++)
         k->certain[s] = k->possible[s] = -1;
-    for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++) {
-        if (k->tubes.of_line == NULL && is_slow(k))
-            status = tri_check_tubes_make(&k->tubes, c, id);
-        if (status == TRI_OK)
-            status = check_line(k, id);
-    }
+    for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++)
+        status = check_line(k, id);
     return status;
 }
 
