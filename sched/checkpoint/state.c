@@ -5,13 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/carry_halt.h"
 #include "sched/schedule/phase.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
-#include "triangle/refine/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3865746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3965746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -61,9 +59,8 @@ struct cells {
 
 struct head {
     uint64_t word;
-    int64_t odd, stage, amid, paused, round, phase, numbered; /* the first: 0, or the column of a sweep */
-    int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
-    int64_t n_halted; /* blocks of a phase that has been halted; 0: none has */
+    int64_t next, odd, round, phase, numbered; /* enum par_next; 0, or the column of a sweep */
+    int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_done, n_held, n_spare[PAR_KINDS];
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
     int64_t counts_remaining, n_remaining, remained[TRI_EXCUSES + 1];
     int64_t n_schedules, rounds, levels, schedule, prerefined, pauses, most_live, deferred, left_over;
@@ -97,19 +94,17 @@ static void set_report(struct head *h, const struct par_report *r)
 static struct head head_of(const struct par_state *state, const struct par_tiles *tiles, int32_t odd)
 {
     const struct tri_mesh *m = state->mesh;
-    const bool lists = tiles || state->amid;
-    struct head h = {.word = STATE, .odd = odd, .stage = state->stage, .amid = state->amid,
-                     .paused = state->paused != NULL, .round = state->round,
-                     .phase = state->phase, .numbered = state->end == PAR_NUMBERED,
+    const bool lists = tiles || par_is_phase(state->next) || par_is_rest(state->next);
+    struct head h = {.word = STATE, .next = state->next, .odd = odd, .round = state->round,
+                     .phase = state->phase, .n_done = state->done.n, .numbered = state->end == PAR_NUMBERED,
                      .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
                      .n_worklist = lists ? state->worklist.n : 0, .n_keys = lists ? state->key.n : 0,
                      .n_schedules = state->n_schedules, .radius = state->radius};
     set_report(&h, state->report);
     for (int k = 0; k < PAR_KINDS; k++) {
-        assert(state->spare.ranges[k].dealt == 0 || state->halt.n_blocks > 0); /* no block is at work */
+        assert(state->spare.ranges[k].dealt == 0); /* no block is at work */
         h.n_spare[k] = state->spare.ranges[k].n;
     }
-    h.n_halted = state->halt.n_blocks;
     if (!tiles) {
         h.cells = cells_of(&state->cells);
         h.first = cells_of(&state->report->partition);
@@ -144,29 +139,6 @@ static void carry_mesh(struct par_state_file *f, const struct head *h, struct tr
     par_carry(f, m->sub, (size_t)h->n_subs * sizeof *m->sub);
 }
 
-static struct par_carried_counts counts_of(const struct head *h, const struct par_tiles *tiles)
-{
-    return (struct par_carried_counts){h->n_triangles, h->n_subs,
-                                       tiles ? par_blocks(tiles->partition) : h->cells.n_columns * h->cells.n_rows};
-}
-
-/* Where the call at hand is. */
-static enum tri_status carry_call(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                  struct tri_error *error)
-{
-    const struct par_carried_counts counts = counts_of(h, NULL);
-    const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
-    return h->paused ? par_carry_pause(f, &state->paused, &counts, listed, error) : TRI_OK;
-}
-
-/* Where the phase at hand is. */
-static enum tri_status carry_halt(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                  const struct par_tiles *tiles, struct tri_error *error)
-{
-    const struct par_carried_counts counts = counts_of(h, tiles);
-    return h->n_halted > 0 ? par_carry_halt(f, &state->halt, &state->spare, &counts, h->n_halted, error) : TRI_OK;
-}
-
 /* tiles: NULL, or those of a sweep. */
 static void carry_arrays(struct par_state_file *f, const struct head *h, struct par_state *state,
                          struct par_tiles *tiles)
@@ -174,6 +146,7 @@ static void carry_arrays(struct par_state_file *f, const struct head *h, struct 
     carry_mesh(f, h, state->mesh);
     par_carry(f, state->worklist.item, (size_t)h->n_worklist * sizeof *state->worklist.item);
     par_carry(f, state->key.item, (size_t)h->n_keys * sizeof *state->key.item);
+    par_carry(f, state->done.item, (size_t)h->n_done * sizeof *state->done.item);
     for (int k = 0; k < PAR_KINDS; k++)
         par_carry(f, state->spare.ranges[k].item, (size_t)h->n_spare[k] * sizeof *state->spare.ranges[k].item);
     if (tiles) {
@@ -199,10 +172,10 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
 {
     const struct cargo *cargo = user;
     struct head h = head_of(cargo->state, cargo->tiles, *cargo->odd);
+    (void)error;
     par_carry_head(f, &h, sizeof h);
-    enum tri_status status = carry_call(f, &h, cargo->state, error);
     carry_arrays(f, &h, cargo->state, cargo->tiles);
-    return status ? status : carry_halt(f, &h, cargo->state, cargo->tiles, error);
+    return TRI_OK;
 }
 
 static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
@@ -231,11 +204,15 @@ static bool are_cells(const struct cells *c)
 
 static bool is_place(const struct head *h, const struct par_tiles *tiles)
 {
-    const bool amid = h->phase >= 0 && h->phase < PAR_PHASES && (h->n_halted == 0 || h->amid);
+    const bool in_column = h->next == PAR_COLUMN || h->next == PAR_COLUMN_PHASE;
+    if (h->next < 0 || h->next > PAR_HAND_OUT || h->phase < 0 || h->phase > PAR_PHASES || h->round < 0 ||
+        in_column != (tiles != NULL))
+        return false;
     if (tiles)
-        return amid && h->odd % 2 == 1 && h->odd >= (h->amid ? 1 : 3) && h->odd <= tiles->partition->n_columns + 2;
-    return amid && h->odd == 0 && h->stage >= 0 && h->stage <= PAR_FINISHED && h->round >= 0 &&
-           (!h->amid || h->cells.n_columns > 0);
+        return h->odd % 2 == 1 && h->odd >= (h->next == PAR_COLUMN ? 3 : 1) &&
+               h->odd <= tiles->partition->n_columns + 2;
+    return h->odd == 0 && (h->cells.n_columns > 0 || !(par_is_phase((enum par_next)h->next) ||
+                                                       par_is_rest((enum par_next)h->next)));
 }
 
 /* Could this be the head of a state of this run? */
@@ -244,7 +221,8 @@ static bool is_head(const struct head *h, const struct par_state *state, const s
     const struct tri_mesh *m = state->mesh;
     bool counts = is_count(h->n_vertices, m->n_vertices) && is_count(h->n_triangles, 0) &&
                   is_count(h->n_subs, m->n_subs) && is_count(h->n_worklist, 0) && is_count(h->n_held, 0) &&
-                  is_count(h->n_remaining, 0) && is_count(h->n_halted, 0) &&
+                  is_count(h->n_remaining, 0) &&
+                  is_count(h->n_done, 0) &&
                   (h->n_keys == 0 || h->n_keys == h->n_worklist);
     for (int k = 0; k < PAR_KINDS; k++)
         counts = counts && is_count(h->n_spare[k], 0);
@@ -277,7 +255,8 @@ static bool reserve_lists(const struct head *h, struct par_state *state, struct 
 {
     bool memory = tri_grow(&state->worklist.item, &state->worklist.capacity, (int32_t)h->n_worklist,
                            sizeof *state->worklist.item) &&
-                  tri_grow(&state->key.item, &state->key.capacity, (int32_t)h->n_keys, sizeof *state->key.item);
+                  tri_grow(&state->key.item, &state->key.capacity, (int32_t)h->n_keys, sizeof *state->key.item) &&
+                  tri_grow(&state->done.item, &state->done.capacity, (int32_t)h->n_done, sizeof *state->done.item);
     for (int k = 0; memory && k < PAR_KINDS; k++)
         memory = par_ranges_reserve(&state->spare.ranges[k], (int32_t)h->n_spare[k]);
     if (!tiles)
@@ -314,8 +293,8 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     state->worklist.n = (int32_t)h->n_worklist;
     state->key.n = (int32_t)h->n_keys;
     state->n_schedules = (int32_t)h->n_schedules;
-    state->stage = (enum par_stage)h->stage;
-    state->amid = h->amid != 0;
+    state->done.n = (int32_t)h->n_done;
+    state->next = (enum par_next)h->next;
     state->round = (int)h->round;
     state->phase = (int)h->phase;
     state->end = h->numbered != 0 ? PAR_NUMBERED : PAR_UNFINISHED;
@@ -358,8 +337,8 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
     struct head h = {0};
     par_carry_head(f, &h, sizeof h);
     f->failed = f->failed || !is_head(&h, state, cargo->tiles);
-    enum tri_status status = f->failed ? TRI_OK : carry_call(f, &h, state, error);
-    if (!f->failed && !status && f->way == PAR_READ) {
+    enum tri_status status = TRI_OK;
+    if (!f->failed && f->way == PAR_READ) {
         status = reserve_mesh(&h, state->mesh, error);
         if (!status && !reserve_lists(&h, state, cargo->tiles))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
@@ -372,7 +351,7 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
         *cargo->odd = (int32_t)h.odd;
         assert(is_state_sound(state));
     }
-    return f->failed ? TRI_OK : carry_halt(f, &h, state, cargo->tiles, error);
+    return TRI_OK;
 }
 
 static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
@@ -422,8 +401,8 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *sta
 
 void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
 
-/* Asked by refiners that may pause. It does not stay true: pauses end. */
-static bool is_pause_due(void *user)
+/* Asked by blocks before they begin. It does not stay true: a halt ends. */
+static bool is_halt_due(void *user)
 {
     const struct par_checkpoint *c = user;
     const double passed = tri_seconds() - c->last;
@@ -434,50 +413,17 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *stat
                                 const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
                                 struct tri_error *error)
 {
-    const struct tri_stop pauses = {is_pause_due, c};
+    const struct tri_stop halt = {is_halt_due, c};
     enum tri_status status;
-    state->may_halt = true;
     do {
-        state->mesh->stop = &pauses;
+        state->halt = state->options->by_block ? NULL : &halt;
         status = par_phase(state, partition, state->phase, only, error);
-        state->mesh->stop = NULL;
+        state->halt = NULL;
         if (status != TRI_STOPPED)
             break;
         status = save(c, state, tiles, tiles ? only | 1 : 0, error); /* with the odd column beside an even one */
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
-    } while (!status);
-    state->may_halt = false;
-    return status;
-}
-
-/* The refiner has paused: the state is kept, and it goes on unless somebody asks for the end. */
-static enum tri_status save_call(struct par_checkpoint *c, struct par_state *state,
-                                 const struct tri_refiner *refiner, struct tri_error *error)
-{
-    struct tri_pause pause;
-    tri_refiner_show(refiner, &pause);
-    state->paused = &pause;
-    enum tri_status status = save(c, state, NULL, 0, error);
-    state->paused = NULL;
-    return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
-}
-
-enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state, struct tri_refiner *refiner,
-                               struct tri_error *error)
-{
-    const struct tri_stop pauses = {is_pause_due, c};
-    enum tri_status status;
-    if (state->paused)
-        tri_refiner_go_on(refiner, state->paused);
-    tri_pause_drop(&state->paused);
-    do {
-        state->mesh->stop = &pauses;
-        status = tri_refiner_run(refiner, error);
-        state->mesh->stop = NULL;
-        if (status != TRI_STOPPED)
-            return status;
-        status = save_call(c, state, refiner, error);
     } while (!status);
     return status;
 }

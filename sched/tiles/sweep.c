@@ -78,14 +78,13 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
 static enum tri_status go_through(struct par_state *state, const struct par_tiles *tiles,
                                   const struct par_ahead *ahead, int32_t odd, struct tri_error *error)
 {
-    if (!state->amid && !par_ahead_give(ahead, state, odd))
+    if (state->next != PAR_COLUMN_PHASE && !par_ahead_give(ahead, state, odd))
         return no_memory(error);
-    state->phase = state->amid ? state->phase : 0;
-    state->amid = true;
+    state->next = PAR_COLUMN_PHASE;
     enum tri_status status = refine_columns(state, tiles, odd, error);
     if (status)
         return status;
-    state->amid = false;
+    state->next = PAR_COLUMN;
     state->phase = 0;
     return TRI_OK;
 }
@@ -131,8 +130,10 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     const bool fresh = *odd == 0;
     *odd = fresh ? 1 : *odd;
-    if (fresh)
-        state->worklist.n = 0;
+    if (fresh) {
+        state->worklist.n = state->phase = 0;
+        state->next = PAR_COLUMN;
+    }
     state->counts_remaining = state->options->count_remaining && (fresh || state->counts_remaining);
     if (!status && state->counts_remaining && fresh && !par_remain_begin(state))
         status = no_memory(error);
@@ -150,7 +151,8 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
     if (!status && state->counts_remaining)
         par_remain_settle(state);
-    state->counts_remaining = state->amid = false;
+    state->counts_remaining = false;
+    state->next = PAR_BOUNDS;
     state->column = state->n_columns = 0;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)
