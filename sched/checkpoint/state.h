@@ -42,9 +42,9 @@ enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_s
  * stopped is lost: the run goes on from the last state. */
 void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_state *state);
 
-/* Runs a phase to its end, of a column of a sweep or (tiles NULL, only TRI_NONE) of the whole mesh, and keeps states of
- * it on the way, between blocks: where it is time to, unless more than a tenth of the time would go into that, and
- * where somebody asks for the end (TRI_STOPPED then). By_block, where ids depend on which blocks run at once, between phases
+/* Runs a phase to its end, of a column of a sweep or (tiles NULL, only TRI_NONE) of the whole mesh. Keeps states of it
+ * on the way, between blocks: where it is time to, unless more than a tenth of the time would go into that, and where
+ * somebody asks for the end (TRI_STOPPED then); by_block, where ids depend on which blocks run at once, between phases
  * alone. Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or what the phase says. */
 enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_state *state,
                                 const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,

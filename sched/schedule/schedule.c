@@ -308,6 +308,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
         par_room_mark(&state->spare, state->mesh, &state->executor);
         status = status ? status : refine_rest(state, quality, false, error);
     }
+    state->worklist.n = state->key.n = 0;
     state->report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     par_forget_deferred(state->report);
