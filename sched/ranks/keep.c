@@ -9,13 +9,10 @@
 #include "sched/schedule/room.h"
 #include "triangle/base/clock.h"
 
-static const uint64_t STATE = UINT64_C(0x3274617473746972); /* a version as well */
-
 /* The state's file: this, then struct writer of each rank. */
 struct common {
-    uint64_t word;
-    struct par_stand stand;
-    int64_t n_tiles, left_over;
+    int32_t next, round, phase, step; /* as in struct par_state */
+    int64_t left_over;
     int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];
 };
@@ -57,8 +54,6 @@ static const struct writer *writers_of(const struct state *s)
     return (const struct writer *)(const void *)(s->bytes + sizeof(struct common));
 }
 
-static int32_t tiles_in_all(const struct par_ranks *r) { return r->territory.start[r->territory.n_ranks]; }
-
 /* --- going on */
 
 /* The mesh is empty but for the vertices that all ranks have: what follows tells of all others. */
@@ -99,23 +94,13 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
 
-static bool is_state(const struct par_ranks *r, const struct common *c, const struct state *s)
-{
-    const struct writer *writer = writers_of(s);
-    bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
-                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0 &&
-                c->rounds >= c->stand.round && c->rounds < 64 &&
-                (c->stand.schedule == 0 || (c->stand.schedule == 1 && r->state->then));
-    for (int64_t p = 0; good && p < s->n_ranks; p++)
-        good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
-    return good && writer[s->n_ranks - 1].end == c->n_tiles;
-}
-
 /* Rank 0 counts what has been done for all. */
 static void go_on_from(struct par_ranks *r, const struct common *c)
 {
-    r->stand = c->stand;
-    r->state->round = c->stand.round;
+    r->state->next = (enum par_next)c->next;
+    r->state->round = c->round;
+    r->state->phase = c->phase;
+    r->state->step = c->step;
     r->state->report->rounds += (int)c->rounds;
     r->state->report->left_over += c->left_over;
     if (r->carrier->rank == 0)
@@ -134,8 +119,6 @@ static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m
         return status;
     struct common common;
     memcpy(&common, from->bytes, sizeof common);
-    if (!is_state(r, &common, from))
-        return tri_fail(error, TRI_BAD_INPUT, checkpoint->directory, 0, "the checkpoint's state is damaged");
     status = read_pieces(r, m, from, error);
     if (!status)
         go_on_from(r, &common);
@@ -199,7 +182,7 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
                            struct tri_error *error)
 {
     struct state state;
-    struct common common = {.word = STATE, .stand = r->stand, .n_tiles = tiles_in_all(r),
+    struct common common = {r->state->next, r->state->round, r->state->phase, r->state->step,
                             .left_over = r->state->report->left_over - r->left_before,
                             .rounds = r->state->report->rounds - r->rounds_before - 1};
     int64_t triangles = 0;
