@@ -52,7 +52,6 @@ uint64_t par_state_run(const struct par_state *state)
 struct cargo {
     struct par_state *state;
     struct par_tiles *tiles; /* NULL: a mesh as a whole */
-    int32_t *odd;
     bool memory;             /* there has been enough */
 };
 
@@ -171,7 +170,7 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 {
     struct par_state *state = cargo->state;
     struct par_tiles *tiles = cargo->tiles;
-    par_carry(f, cargo->odd, sizeof *cargo->odd);
+    CARRY(f, state->column);
     CARRY(f, state->counts_remaining);
     CARRY(f, state->remained);
     CARRY(f, tiles->n_vertices);
@@ -206,10 +205,10 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 
-static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
-                            int32_t odd, struct tri_error *error)
+static enum tri_status save(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+                            struct tri_error *error)
 {
-    struct cargo cargo = {(struct par_state *)state, (struct par_tiles *)tiles, &odd, true}; /* which it only reads */
+    struct cargo cargo = {state, tiles, true};
     const double began = tri_seconds();
     enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, par_triangles(state),
                                                   carry, &cargo, error);
@@ -233,10 +232,10 @@ static bool is_state_sound(const struct par_state *state)
 }
 #endif
 
-static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
+static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
                             struct tri_error *error)
 {
-    struct cargo cargo = {state, tiles, odd, true};
+    struct cargo cargo = {state, tiles, true};
     enum tri_status status = par_checkpoint_read(c, carry, &cargo, error);
     assert(status || is_state_sound(state));
     return status;
@@ -246,7 +245,6 @@ static enum tri_status load(struct par_checkpoint *c, struct par_state *state, s
 
 enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)
 {
-    int32_t odd;
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
     if (par_checkpoint_has_ranks(c)) /* whose hash of the same run is another one */
@@ -262,25 +260,27 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *stat
     if (!state->stays)
         return TRI_OK;
     state->mesh->stop = NULL;
-    return load(c, state, NULL, &odd, error);
-}
-
-void par_state_end(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
-
-/* --- a mesh that stays as a whole */
-
-enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *state, bool surely,
-                                 struct tri_error *error)
-{
-    state->mesh->stop = NULL;
-    const bool asked = tri_stop_is_asked(c->stop);
-    if (!asked && !surely && tri_seconds() - c->last < c->seconds)
-        return TRI_OK;
-    enum tri_status status = save(c, state, NULL, 0, error);
-    return status || !asked ? status : tri_fail_stopped(error);
+    return load(c, state, NULL, error);
 }
 
 void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
+
+/* --- borders and phases */
+
+enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+                                 bool surely, struct tri_error *error)
+{
+    const bool asked = tri_stop_is_asked(c->stop), failed = tiles && c->spool.failed;
+    state->mesh->stop = NULL;
+    if (!asked && !surely && !failed && tri_seconds() - c->last < c->seconds)
+        return TRI_OK;
+    enum tri_status status = save(c, state, tiles, error);
+    if (failed && error) /* whether the state could be saved or not */
+        *error = c->spool.failure;
+    if (failed)
+        return c->spool.failed;
+    return status || !asked ? status : tri_fail_stopped(error);
+}
 
 /* Asked by blocks before they begin. It does not stay true: a halt ends. */
 static bool is_halt_due(void *user)
@@ -291,7 +291,7 @@ static bool is_halt_due(void *user)
 }
 
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *state,
-                                const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
+                                const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
                                 struct tri_error *error)
 {
     const struct tri_stop halt = {is_halt_due, c};
@@ -302,7 +302,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *stat
         state->halt = NULL;
         if (status != TRI_STOPPED)
             break;
-        status = save(c, state, tiles, tiles ? only | 1 : 0, error); /* with the odd column beside an even one */
+        status = save(c, state, tiles, error);
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
     } while (!status);
@@ -312,7 +312,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *stat
 /* --- a sweep */
 
 enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
-                                      int32_t *odd, struct tri_error *error)
+                                      struct tri_error *error)
 {
     const bool again = par_checkpoint_has_state(c);
     c->spool.to = tiles->sink;
@@ -321,32 +321,7 @@ enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state
     tiles->sink = &c->sink;
     state->mesh->stop = NULL;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    return status || !again ? status : load(c, state, tiles, odd, error);
-}
-
-enum tri_status par_state_column(struct par_checkpoint *c, struct par_state *state, const struct par_tiles *tiles,
-                                 int32_t odd, struct tri_error *error)
-{
-    state->mesh->stop = NULL;
-    bool asked = tri_stop_is_asked(c->stop), failed = c->spool.failed != TRI_OK;
-    if (!asked && !failed && tri_seconds() - c->last < c->seconds)
-        return TRI_OK;
-    if (failed)
-        return par_state_last_column(c, state, tiles, odd, error);
-    enum tri_status status = save(c, state, tiles, odd, error);
-    return status || !asked ? status : tri_fail_stopped(error);
-}
-
-/* Whether the state could be saved or not, what the taker said is told. */
-enum tri_status par_state_last_column(struct par_checkpoint *c, const struct par_state *state,
-                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
-{
-    if (!c->spool.failed)
-        return TRI_OK;
-    (void)save(c, state, tiles, odd, NULL);
-    if (error)
-        *error = c->spool.failure;
-    return c->spool.failed;
+    return status || !again ? status : load(c, state, tiles, error);
 }
 
 enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)

@@ -76,7 +76,7 @@ struct par_state {
     int level;               /* of the schedule or the call at work */
     int round, phase;        /* of the schedule; the phase from 0 */
     int32_t step;            /* of the phase, on ranks */
-    int32_t column, n_columns; /* of a sweep, the first from 1; 0: it is none */
+    int32_t column, n_columns; /* of a sweep, odd ones alone, from 1; 0: it is none */
     struct par_ids done;     /* blocks of phase `phase` that have ended, where it has been halted */
     const struct tri_stop *halt; /* asked by the blocks of a phase before they begin; NULL: nobody */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */

@@ -132,7 +132,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
 static enum tri_status come_to_border(struct par_state *state, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(state);
-    return checkpoint ? par_state_border(checkpoint, state, false, error) : TRI_OK;
+    return checkpoint ? par_state_border(checkpoint, state, NULL, false, error) : TRI_OK;
 }
 
 /* What comes now may be stopped, though not all that has been done is in a state. */
@@ -552,7 +552,7 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
     if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
-        (void)par_state_border(state->options->checkpoint, state, true, NULL);
+        (void)par_state_border(state->options->checkpoint, state, NULL, true, NULL);
     return status;
 }
 
@@ -582,8 +582,7 @@ static void clean_up(struct par_state *state)
     report->parked = state->park ? par_park_bytes(state->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
-    if (checkpoint_of(state))
-        par_state_end(checkpoint_of(state), state);
+    let_stop(state);
     if (state->options->park)
         *state->options->park = state->park;
     else
