@@ -389,8 +389,8 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     return status || done ? status : cannot_write(c->directory, name, error);
 }
 
-enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t triangles,
-                                     par_state_walk *walk, void *user, struct tri_error *error)
+enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t n_ranks,
+                                     int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error)
 {
     struct par_manifest m = c->manifest;
     struct par_state_file to;
@@ -404,6 +404,7 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
     m.state_bytes = to.place;
     m.state_hash = to.hash;
     m.tiles_bytes = c->spool.length;
+    m.n_ranks = n_ranks;
     m.triangles = triangles;
     status = write_manifest(c, m, error);
     c->saved += !status;

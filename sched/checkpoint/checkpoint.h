@@ -36,6 +36,7 @@ struct par_manifest {
     uint64_t state_hash;
     int64_t tiles_bytes;
     int64_t triangles;     /* so far */
+    int64_t n_ranks;       /* of a state of ranks */
     int64_t made_directory; /* by the run: it goes with it */
 };
 
@@ -123,8 +124,8 @@ typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, 
 
 /* The state is on disk afterwards, and the tiles so far. TRI_CANNOT_WRITE, or what the walk says: then the last state
  * counts. */
-enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t triangles,
-                                     par_state_walk *walk, void *user, struct tri_error *error);
+enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t n_ranks,
+                                     int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error);
 
 /* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, TRI_STOPPED: somebody asks for the end, before
  * anything has been read; or what the walk says. */

@@ -210,8 +210,8 @@ static enum tri_status save(struct par_checkpoint *c, struct par_state *state, s
 {
     struct cargo cargo = {state, tiles, true};
     const double began = tri_seconds();
-    enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, par_triangles(state),
-                                                  carry, &cargo, error);
+    enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, 0,
+                                                  par_triangles(state), carry, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
     return status;
