@@ -421,8 +421,9 @@ static void note_end(struct par_phase_run *p, const struct par_task *task)
     const int64_t made = least_made_by(task);
     const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
+    const double before = p->state->done_share, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell(p->state, p->phase + 1, (double)done / (double)p->expected, p->before + all);
+        tell(p->state, p->phase + 1, before + (1 - before) * share, p->before + all);
 }
 
 static void run_next(void *context, size_t index)
@@ -542,35 +543,38 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     return !status && is_any(p, PAR_READY) ? tri_fail_stopped(error) : status;
 }
 
-/* What blocks that have not begun would have taken goes back into the worklist, and those that have ended are noted. */
-static bool halt(struct par_phase_run *p)
+static bool note_done(struct par_phase_run *p)
 {
-    struct par_state *state = p->state;
-    const bool has_keys = p->given_key.n > 0;
     bool memory = true;
-    int32_t n = 0;
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         if (p->tasks[i].progress == PAR_ENDED) {
-            memory = par_ids_add(&state->done, p->tasks[i].block);
+            memory = par_ids_add(&p->state->done, p->tasks[i].block);
             p->is_done[p->tasks[i].block] = true;
         }
-    for (int32_t i = 0; i < p->given.n; i++) {
-        if (p->block_of[i] == GONE || (p->block_of[i] != TRI_NONE && p->is_done[p->block_of[i]]))
-            continue;
-        p->given.item[n] = p->given.item[i];
-        if (has_keys)
-            p->given_key.item[n] = p->given_key.item[i];
-        n++;
-    }
-    const struct par_ids kept = state->worklist;
-    const struct par_keys kept_key = state->key;
-    p->given.n = n;
-    p->given_key.n = has_keys ? n : 0;
-    state->worklist = p->given;
-    state->key = p->given_key;
-    p->given = kept;
-    p->given_key = kept_key;
+    p->state->done_share += (1 - p->state->done_share) * (double)p->done / (double)p->expected;
     return memory;
+}
+
+/* The worklist as it was, without what has gone since, or was taken by blocks that are done. */
+static void put_back(struct par_phase_run *p)
+{
+    struct par_ids *list = &p->given;
+    struct par_keys *key = &p->given_key;
+    int32_t n = 0;
+    for (int32_t i = 0; i < list->n; i++)
+        if (p->block_of[i] == TRI_NONE || (p->block_of[i] != GONE && !p->is_done[p->block_of[i]])) {
+            if (key->n > 0)
+                key->item[n] = key->item[i];
+            list->item[n++] = list->item[i];
+        }
+    list->n = n;
+    key->n = key->n > 0 ? n : 0;
+    free(p->state->worklist.item);
+    free(p->state->key.item);
+    p->state->worklist = *list;
+    p->state->key = *key;
+    *list = (struct par_ids){0};
+    *key = (struct par_keys){0};
 }
 
 /* Runs the phase, or what is left of it; then collects what its tasks have done. */
@@ -582,8 +586,11 @@ static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *erro
     if (!order_tasks(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
     status = status ? status : run_to_end(p, error);
-    if (status == TRI_STOPPED && p->state->halt && !halt(p))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks that are done");
+    if (status == TRI_STOPPED && p->state->halt) {
+        if (!note_done(p))
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks that are done");
+        put_back(p);
+    }
     double merging = tri_seconds();
     enum tri_status collected = par_collect(p, error);
     p->state->report->seconds_merge += tri_seconds() - merging;
@@ -610,8 +617,10 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
-    if (status != TRI_STOPPED)
+    if (status != TRI_STOPPED) {
         state->done.n = 0;
+        state->done_share = 0;
+    }
     free(p.block_of);
     free(p.work);
     free(p.worklist);

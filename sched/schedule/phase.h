@@ -78,6 +78,7 @@ struct par_state {
     int32_t step;            /* of the phase, on ranks */
     int32_t column, n_columns; /* of a sweep, odd ones alone, from 1; 0: it is none */
     struct par_ids done;     /* blocks of phase `phase` that have ended, where it has been halted */
+    double done_share;       /* of that phase, to the order */
     const struct tri_stop *halt; /* asked by the blocks of a phase before they begin; NULL: nobody */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices that there were before refinement */
