@@ -46,7 +46,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine/feed.c
     triangle/refine/treat.c
     triangle/refine/refine.c
-    triangle/refine/pause.c
     triangle/refine/census.c
     triangle/size/crowd.c
     triangle/size/estimate.c
@@ -159,13 +158,11 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/checkpoint/spool.c
     sched/checkpoint/folder.c
     sched/checkpoint/checkpoint.c
-    sched/checkpoint/carry_halt.c
     sched/checkpoint/state.c
     sched/tiles/ahead.c
     sched/tiles/remain.c
     sched/tiles/sweep.c
     sched/schedule/worklist.c
-    sched/schedule/halt.c
     sched/schedule/phase.c
     sched/schedule/collect.c
     sched/schedule/report.c

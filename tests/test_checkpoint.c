@@ -443,10 +443,10 @@ static const struct way ways[] = {
     {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED, 0}, /* two schedules */
     {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED, 0}, /* swept at first */
     {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* beyond the schedule */
-    {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY, 400}, /* amid large blocks */
+    {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 400}, /* blocks wait */
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
     {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
-    {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* amid large blocks */
+    {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* blocks wait */
 };
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
@@ -619,7 +619,7 @@ static void test_memory_is_short_for_a_halt(void **state)
 {
     (void)state;
     static const struct way way = {{"letter.poly", 30, 4000, 300, false, false, 0},
-                                   false, true, 0, -1, PAR_IN_MEMORY, 0};
+                                   false, false, 0, -1, PAR_IN_MEMORY, 0};
     enum { LAST = 20 };
     int64_t all, calls;
     struct whole_run wanted = whole_run_of(&way, NULL);

@@ -24,7 +24,7 @@
 
 enum { WAITING = 1 << 20 }; /* bytes that are written at a time; a multiple of any block of a disk */
 
-static const uint64_t MANIFEST = UINT64_C(0x336863697274706b); /* a version, too */
+static const uint64_t MANIFEST = UINT64_C(0x346863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char piece_prefix[] = "piece-";
@@ -323,40 +323,16 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
 
 /* --- a state's file */
 
-enum { PIECE = 1 << 14 }; /* bytes that go into the hash at a time */
-
-static uint64_t hash_pieces(uint64_t hash, const char *at, size_t n)
-{
-    for (; n > PIECE; n -= PIECE, at += PIECE)
-        hash = par_hash(hash, at, PIECE);
-    return par_hash(hash, at, n);
-}
-
-/* Bytes that are only checked. */
-static void check(struct par_state_file *f, size_t n)
-{
-    char piece[PIECE];
-    while (n > 0 && !f->failed) {
-        const size_t part = n < PIECE ? n : PIECE;
-        f->failed = f->stopped = tri_stop_is_asked(f->stop);
-        if (f->stopped)
-            break;
-        f->failed = !par_read_at(f->file, piece, part, f->place);
-        f->hash = f->failed ? f->hash : par_hash(f->hash, piece, part);
-        f->place += (int64_t)part;
-        n -= part;
-    }
-}
-
 static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcmp(bytes, bytes + 1, n - 1) == 0; }
 
 /* Writes what waits, which ends at f->place. Room that blocks have not used yet, most of a mesh while its first phase
  * runs, is zero, and stays a hole. The last of it, which is no whole number of blocks, goes by way of the cache, and so
  * does all where the file system knows no other. */
-static bool write_waiting(const struct par_state_file *f, size_t n)
+static bool write_waiting(struct par_state_file *f, size_t n)
 {
     const int64_t place = f->place - (int64_t)n;
     const int flags = fcntl(f->file, F_GETFL);
+    f->hash = par_hash(f->hash, f->waiting, n);
     if (n == WAITING && is_zero(f->waiting, n))
         return true;
     if (n == WAITING && par_write_at(f->file, f->waiting, n, place))
@@ -382,31 +358,19 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
 {
     if (n == 0 || f->failed)
         return;
-    if (f->way == PAR_CHECK) {
-        check(f, n);
-    } else if (f->way == PAR_WRITE) {
-        f->hash = hash_pieces(f->hash, bytes, n);
+    if (!f->reads) {
         put_bytes(f, bytes, n);
-    } else {
-        f->failed = !par_read_at(f->file, bytes, n, f->place);
-        f->hash = f->failed ? f->hash : hash_pieces(f->hash, bytes, n);
-        f->place += (int64_t)n;
+        return;
     }
-}
-
-void par_carry_head(struct par_state_file *f, void *bytes, size_t n)
-{
-    const enum par_carrying way = f->way;
-    f->way = way == PAR_CHECK ? PAR_READ : way;
-    par_carry(f, bytes, n);
-    f->way = way;
+    f->failed = !par_read_at(f->file, bytes, n, f->place);
+    f->place += (int64_t)n;
 }
 
 /* The file of a state, with all of it, on the disk. */
 static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
                                    par_state_walk *walk, void *user, struct tri_error *error)
 {
-    *to = (struct par_state_file){.file = par_folder_create(c->folder, name), .way = PAR_WRITE};
+    *to = (struct par_state_file){.file = par_folder_create(c->folder, name)};
     to->failed = to->file < 0;
     if (posix_memalign((void **)&to->waiting, 1 << 12, WAITING) != 0) {
         close(to->file);
@@ -425,8 +389,8 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     return status || done ? status : cannot_write(c->directory, name, error);
 }
 
-enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t triangles,
-                                     par_state_walk *walk, void *user, struct tri_error *error)
+enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t n_ranks,
+                                     int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error)
 {
     struct par_manifest m = c->manifest;
     struct par_state_file to;
@@ -440,33 +404,52 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
     m.state_bytes = to.place;
     m.state_hash = to.hash;
     m.tiles_bytes = c->spool.length;
+    m.n_ranks = n_ranks;
     m.triangles = triangles;
     status = write_manifest(c, m, error);
     c->saved += !status;
     return status;
 }
 
-static enum tri_status walk_through(const struct par_checkpoint *c, enum par_carrying way, par_state_walk *walk,
-                                    void *user, struct tri_error *error)
+static enum tri_status damaged(const struct par_checkpoint *c, struct tri_error *error)
 {
-    const char *name = state_name[c->manifest.which];
-    struct par_state_file from = {.file = par_folder_read(c->folder, name), .way = way};
-    from.stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
-    from.failed = from.file < 0;
-    enum tri_status status = walk(&from, user, error);
-    bool sound = !from.failed && from.place == c->manifest.state_bytes && from.hash == c->manifest.state_hash;
-    if (from.file >= 0)
-        close(from.file);
-    if (status || sound)
-        return status;
-    if (from.stopped)
+    return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged",
+                    state_name[c->manifest.which]);
+}
+
+/* Is all of it what has been written? */
+static enum tri_status check(const struct par_checkpoint *c, int file, struct tri_error *error)
+{
+    const int64_t all = c->manifest.state_bytes;
+    const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
+    char *piece = malloc(WAITING);
+    uint64_t hash = 0;
+    bool sound = true, stopped = false;
+    for (int64_t place = 0; piece && sound && !stopped && place < all; place += WAITING) {
+        const size_t n = all - place < WAITING ? (size_t)(all - place) : WAITING;
+        sound = par_read_at(file, piece, n, place);
+        hash = sound ? par_hash(hash, piece, n) : hash;
+        stopped = tri_stop_is_asked(stop);
+    }
+    const bool memory = piece;
+    free(piece);
+    if (!memory)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
+    if (stopped)
         return tri_fail_stopped(error);
-    return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
+    return sound && hash == c->manifest.state_hash ? TRI_OK : damaged(c, error);
 }
 
 enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_walk *walk, void *user,
                                     struct tri_error *error)
 {
-    enum tri_status status = walk_through(c, PAR_CHECK, walk, user, error);
-    return status ? status : walk_through(c, PAR_READ, walk, user, error);
+    struct par_state_file from = {.file = par_folder_read(c->folder, state_name[c->manifest.which]), .reads = true};
+    if (from.file < 0)
+        return damaged(c, error);
+    enum tri_status status = check(c, from.file, error);
+    status = status ? status : walk(&from, user, error);
+    if (!status && (from.failed || from.place != c->manifest.state_bytes))
+        status = damaged(c, error);
+    close(from.file);
+    return status;
 }

@@ -36,6 +36,7 @@ struct par_manifest {
     uint64_t state_hash;
     int64_t tiles_bytes;
     int64_t triangles;     /* so far */
+    int64_t n_ranks;       /* of a state of ranks */
     int64_t made_directory; /* by the run: it goes with it */
 };
 
@@ -105,36 +106,29 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *checkpoint, uint64_t 
 enum tri_status par_checkpoint_forget(struct par_checkpoint *checkpoint, enum par_state_kind kind,
                                       struct tri_error *error);
 
-enum par_carrying { PAR_WRITE, PAR_CHECK, PAR_READ };
-
-/* A state's file on its way: the same walk writes it, checks it, and reads it. */
+/* A state's file on its way: the same walk writes it and reads it. */
 struct par_state_file {
     int file;
-    enum par_carrying way;
-    int64_t place;
-    uint64_t hash;
+    bool reads;
     bool failed;   /* it could not be written or read; whoever walks need not ask */
-    const struct tri_stop *stop; /* asked while it is checked; NULL: nobody */
-    bool stopped;
-    char *waiting; /* PAR_WRITE: what is on its way */
+    int64_t place;
+    uint64_t hash; /* of what has been written */
+    char *waiting; /* what is on its way to be */
 };
 
-/* The next bytes of it; not touched where it is only checked. */
+/* The next bytes of it. */
 void par_carry(struct par_state_file *file, void *bytes, size_t n);
-
-/* The same for what says how much follows: it is read to be checked, too. */
-void par_carry_head(struct par_state_file *file, void *bytes, size_t n);
 
 /* Carries all of a state. file->failed may be set: then nothing more is carried. */
 typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, struct tri_error *error);
 
 /* The state is on disk afterwards, and the tiles so far. TRI_CANNOT_WRITE, or what the walk says: then the last state
  * counts. */
-enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t triangles,
-                                     par_state_walk *walk, void *user, struct tri_error *error);
+enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t n_ranks,
+                                     int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error);
 
-/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, TRI_STOPPED: somebody asks for the end, and the
- * walk has only been asked to check; or what the walk says. */
+/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, TRI_STOPPED: somebody asks for the end, before
+ * anything has been read; or what the walk says. */
 enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par_state_walk *walk, void *user,
                                     struct tri_error *error);
 

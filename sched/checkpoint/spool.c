@@ -1,29 +1,20 @@
 /* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
 #include "sched/checkpoint/spool.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static const uint64_t TILE = UINT64_C(0x31656c6974697274); /* a version as well */
+static const uint64_t TILE = UINT64_C(0x32656c6974697274); /* a version as well */
 
 struct head {
     uint64_t word;
-    uint64_t hash;     /* of the head without this and the one before, and of the arrays */
-    int64_t bytes;     /* of the arrays */
-    int64_t first_vertex, first_triangle, first_segment;
-    int32_t column, row;
-    int32_t n_vertices, n_triangles, n_segments;
-    int32_t n_attributes;
-};
-
-/* Arrays one after the other, each from a multiple of eight bytes on. */
-struct packed {
-    char *bytes;
-    size_t n;
+    uint64_t hash;   /* of what follows, and of the arrays */
+    int64_t bytes;   /* of the arrays, each from a multiple of eight on */
+    struct tri_tile tile; /* its pointers NULL */
+    int32_t n_attributes, none;
 };
 
 static inline uint64_t mixed(uint64_t hash, uint64_t word)
@@ -89,61 +80,36 @@ bool par_read_at(int file, void *bytes, size_t n, int64_t place)
 
 static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
 
-/* --- arrays of a tile, packed; the same walk for both ways */
+/* --- arrays of a tile, packed */
 
-/* Room for one more array. */
-static void *next(struct packed *p, size_t n)
+enum { CORNERS = 3, ENDS = 5, ARRAYS = 7 };
+
+struct array {
+    const void *at;
+    size_t bytes; /* packed */
+};
+
+/* In the order in which they are packed. */
+static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct array array[ARRAYS])
 {
-    char *at = p->bytes + p->n;
-    memset(at + padded(n) - (padded(n) > 0 ? 8 : 0), 0, padded(n) > 0 ? 8 : 0);
-    p->n += padded(n);
-    return at;
+    const size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
+    array[0] = (struct array){tile->points, 16 * v};
+    array[1] = (struct array){tile->point_markers, 4 * v};
+    array[2] = (struct array){tile->attributes, 8 * v * (size_t)n_attributes};
+    array[CORNERS] = (struct array){tile->corners, 12 * t};
+    array[4] = (struct array){tile->regions, 4 * t};
+    array[ENDS] = (struct array){tile->ends, 8 * s};
+    array[6] = (struct array){tile->segment_markers, 4 * s};
 }
 
-static void put(struct packed *p, const void *array, size_t n)
+static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
 {
-    void *at = next(p, n);
-    if (n > 0)
-        memcpy(at, array, n);
-}
-
-/* Vertices below `end`, counted back from there. */
-static bool put_numbers(struct packed *p, const int64_t *number, size_t n, int64_t end)
-{
-    char *at = next(p, 4 * n);
-    bool fits = true;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t back = (uint64_t)(end - number[i]);
-        uint32_t short_back = (uint32_t)back;
-        fits = fits && back == short_back;
-        memcpy(at + 4 * i, &short_back, 4);
-    }
-    return fits;
-}
-
-static size_t bytes_of(const struct head *h)
-{
-    size_t v = (size_t)h->n_vertices, t = (size_t)h->n_triangles, s = (size_t)h->n_segments;
-    return 16 * v + padded(4 * v) + 8 * v * (size_t)h->n_attributes + padded(12 * t) + padded(4 * t) + padded(8 * s) +
-           padded(4 * s);
-}
-
-static struct head head_of(const struct tri_tile *tile, int32_t n_attributes)
-{
-    struct head h;
-    memset(&h, 0, sizeof h); /* what lies between fields is written, too */
-    h.word = TILE;
-    h.first_vertex = tile->first_vertex;
-    h.first_triangle = tile->first_triangle;
-    h.first_segment = tile->first_segment;
-    h.column = tile->column;
-    h.row = tile->row;
-    h.n_vertices = tile->n_vertices;
-    h.n_triangles = tile->n_triangles;
-    h.n_segments = tile->n_segments;
-    h.n_attributes = n_attributes;
-    h.bytes = (int64_t)bytes_of(&h);
-    return h;
+    struct array array[ARRAYS];
+    size_t sum = 0;
+    arrays_of(tile, n_attributes, array);
+    for (int k = 0; k < ARRAYS; k++)
+        sum += padded(array[k].bytes);
+    return sum;
 }
 
 static uint64_t hash_of(const struct head *h, const char *arrays)
@@ -152,18 +118,32 @@ static uint64_t hash_of(const struct head *h, const char *arrays)
     return par_hash(hash, arrays, (size_t)h->bytes);
 }
 
-/* False: a tile reaches back too far. */
-static bool pack(struct packed *p, const struct tri_tile *tile, int32_t n_attributes)
+/* Vertices below `end`, counted back from there. False: one is too far. */
+static bool pack_numbers(char *to, const int64_t *number, size_t n, int64_t end)
 {
-    size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
-    int64_t end = tile->first_vertex + tile->n_vertices;
-    put(p, tile->points, 16 * v);
-    put(p, tile->point_markers, 4 * v);
-    put(p, tile->attributes, 8 * v * (size_t)n_attributes);
-    bool fits = put_numbers(p, (const int64_t *)tile->corners, 3 * t, end);
-    put(p, tile->regions, 4 * t);
-    fits = put_numbers(p, (const int64_t *)tile->ends, 2 * s, end) && fits;
-    put(p, tile->segment_markers, 4 * s);
+    bool fits = true;
+    for (size_t i = 0; i < n; i++) {
+        const uint64_t back = (uint64_t)(end - number[i]);
+        const uint32_t short_back = (uint32_t)back;
+        fits = fits && back == short_back;
+        memcpy(to + 4 * i, &short_back, 4);
+    }
+    return fits;
+}
+
+/* False: a tile reaches back too far. `to` is zero before. */
+static bool pack(char *to, const struct tri_tile *tile, int32_t n_attributes)
+{
+    struct array array[ARRAYS];
+    bool fits = true;
+    arrays_of(tile, n_attributes, array);
+    for (int k = 0; k < ARRAYS; k++) {
+        if (k == CORNERS || k == ENDS)
+            fits = pack_numbers(to, array[k].at, array[k].bytes / 4, tile->first_vertex + tile->n_vertices) && fits;
+        else if (array[k].bytes > 0)
+            memcpy(to, array[k].at, array[k].bytes);
+        to += padded(array[k].bytes);
+    }
     return fits;
 }
 
@@ -190,27 +170,31 @@ static void send_off(struct par_spool *spool)
 
 static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
 {
-    struct head h = head_of(tile, spool->n_attributes);
-    struct packed p = {malloc(sizeof h + (size_t)h.bytes), sizeof h};
+    const size_t n = bytes_of(tile, spool->n_attributes);
+    struct head *h = calloc(1, sizeof *h + n);
+    char *arrays = (char *)(h + 1);
     enum tri_status status = TRI_OK;
-    if (!p.bytes)
+    if (!h)
         return no_memory(spool, error);
-    if (!pack(&p, tile, spool->n_attributes))
+    *h = (struct head){.word = TILE, .bytes = (int64_t)n, .n_attributes = spool->n_attributes};
+    h->tile = (struct tri_tile){.column = tile->column, .row = tile->row, .first_vertex = tile->first_vertex,
+                                .first_triangle = tile->first_triangle, .first_segment = tile->first_segment,
+                                .n_vertices = tile->n_vertices, .n_triangles = tile->n_triangles,
+                                .n_segments = tile->n_segments};
+    if (!pack(arrays, tile, spool->n_attributes))
         status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
-    assert(p.n == sizeof h + (size_t)h.bytes);
-    h.hash = hash_of(&h, p.bytes + sizeof h);
-    memcpy(p.bytes, &h, sizeof h);
-    if (!status && !par_write_at(spool->file, p.bytes, p.n, spool->length))
+    h->hash = hash_of(h, arrays);
+    if (!status && !par_write_at(spool->file, h, sizeof *h + n, spool->length))
         status = fail_writing(spool, error);
-    spool->length += status ? 0 : (int64_t)p.n;
+    spool->length += status ? 0 : (int64_t)(sizeof *h + n);
     send_off(spool);
-    free(p.bytes);
+    free(h);
     return status;
 }
 
 /* --- all of them again */
 
-static int64_t *numbers(const char *at, size_t n, int64_t end)
+static int64_t *unpacked(const char *at, size_t n, int64_t end)
 {
     int64_t *number = malloc((n + 1) * sizeof *number);
     for (size_t i = 0; number && i < n; i++) {
@@ -222,28 +206,24 @@ static int64_t *numbers(const char *at, size_t n, int64_t end)
 }
 
 /* Hands out one tile from its arrays. */
-static enum tri_status hand_out(const struct par_spool *spool, const struct head *h, char *arrays,
+static enum tri_status hand_out(const struct par_spool *spool, const struct head *h, const char *arrays,
                                 struct tri_error *error)
 {
-    size_t v = (size_t)h->n_vertices, t = (size_t)h->n_triangles, s = (size_t)h->n_segments;
-    int64_t end = h->first_vertex + h->n_vertices;
-    struct packed p = {arrays, 0};
-    struct tri_tile tile = {h->column, h->row, h->first_vertex, h->first_triangle, h->first_segment,
-                            h->n_vertices, h->n_triangles, h->n_segments, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
-    const void *at[7];
-    const size_t bytes[7] = {16 * v, 4 * v, 8 * v * (size_t)h->n_attributes, 12 * t, 4 * t, 8 * s, 4 * s};
-    for (int k = 0; k < 7; k++) {
-        at[k] = p.bytes + p.n;
-        p.n += padded(bytes[k]);
-    }
-    int64_t *corners = numbers(at[3], 3 * t, end), *ends = numbers(at[5], 2 * s, end);
-    tile.points = (const double(*)[2])at[0];
-    tile.point_markers = at[1];
-    tile.attributes = at[2];
+    struct tri_tile tile = h->tile;
+    struct array array[ARRAYS];
+    const int64_t end = tile.first_vertex + tile.n_vertices;
+    arrays_of(&tile, h->n_attributes, array);
+    for (int k = 0; k < ARRAYS; arrays += padded(array[k++].bytes))
+        array[k].at = arrays;
+    int64_t *corners = unpacked(array[CORNERS].at, array[CORNERS].bytes / 4, end);
+    int64_t *ends = unpacked(array[ENDS].at, array[ENDS].bytes / 4, end);
+    tile.points = (const double(*)[2])array[0].at;
+    tile.point_markers = array[1].at;
+    tile.attributes = array[2].at;
     tile.corners = (const int64_t(*)[3])corners;
-    tile.regions = at[4];
+    tile.regions = array[4].at;
     tile.ends = (const int64_t(*)[2])ends;
-    tile.segment_markers = at[6];
+    tile.segment_markers = array[6].at;
     enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(corners);
     free(ends);
@@ -262,14 +242,13 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
     if (left < 0 || !par_read_at(spool->file, h, sizeof *h, place) || h->word != TILE || h->bytes < 0 ||
-        h->bytes > left || h->n_vertices < 0 || h->n_triangles < 0 || h->n_segments < 0 ||
-        h->n_attributes != spool->n_attributes || (size_t)h->bytes != bytes_of(h))
+        h->bytes > left || h->n_attributes != spool->n_attributes)
         return fail_damaged(spool, place, error);
     *arrays = malloc((size_t)h->bytes + 1);
     if (!*arrays)
         return no_memory(spool, error);
     if (!par_read_at(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
-        h->hash != hash_of(h, *arrays))
+        h->hash != hash_of(h, *arrays) || (size_t)h->bytes != bytes_of(&h->tile, h->n_attributes))
         return fail_damaged(spool, place, error);
     return TRI_OK;
 }

@@ -5,13 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/carry_halt.h"
 #include "sched/schedule/phase.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
-#include "triangle/refine/pause.h"
-
-static const uint64_t STATE = UINT64_C(0x3865746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -51,288 +47,174 @@ uint64_t par_state_run(const struct par_state *state)
     return hash_mesh(hash_options(hash, state->options), state->mesh);
 }
 
-/* --- a head, and then arrays */
+/* --- what is carried, to a file and from there */
 
-struct cells {
-    int64_t n_columns, n_rows; /* 0: none */
-    struct tri_point low, high;
-    double estimate;
+struct cargo {
+    struct par_state *state;
+    struct par_tiles *tiles; /* NULL: a mesh as a whole */
+    bool memory;             /* there has been enough */
 };
 
-struct head {
-    uint64_t word;
-    int64_t odd, stage, amid, paused, round, phase, numbered; /* the first: 0, or the column of a sweep */
-    int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
-    int64_t n_halted; /* blocks of a phase that has been halted; 0: none has */
-    int64_t tiles_vertices, tiles_triangles, tiles_segments;
-    int64_t counts_remaining, n_remaining, remained[TRI_EXCUSES + 1];
-    int64_t n_schedules, rounds, levels, schedule, prerefined, pauses, most_live, deferred, left_over;
-    double radius, radius_measured, radius_lemma7, radius_theory;
-    struct cells cells, first; /* of the schedule; of the first of the whole mesh, which is told of */
-    struct tri_refine_report total;
-};
+#define CARRY(file, field) par_carry(file, &(field), sizeof(field))
 
-static struct cells cells_of(const struct par_partition *p)
+static void carry_place(struct par_state_file *f, struct par_state *state)
 {
-    return (struct cells){p->x ? p->n_columns : 0, p->x ? p->n_rows : 0, p->low, p->high, p->estimate};
+    CARRY(f, state->next);
+    CARRY(f, state->round);
+    CARRY(f, state->phase);
+    CARRY(f, state->end);
+    CARRY(f, state->n_schedules);
+    CARRY(f, state->radius);
 }
 
-static void set_report(struct head *h, const struct par_report *r)
+static void carry_report(struct par_state_file *f, struct par_report *r)
 {
-    h->rounds = r->rounds;
-    h->levels = r->levels;
-    h->schedule = r->schedule;
-    h->prerefined = r->prerefined;
-    h->pauses = r->pauses;
-    h->most_live = r->most_live;
-    h->deferred = r->deferred;
-    h->left_over = r->left_over;
-    h->radius_measured = r->radius_measured;
-    h->radius_lemma7 = r->radius_lemma7;
-    h->radius_theory = r->radius_theory;
-    h->total = r->total;
+    CARRY(f, r->rounds);
+    CARRY(f, r->levels);
+    CARRY(f, r->schedule);
+    CARRY(f, r->columns);
+    CARRY(f, r->rows);
+    CARRY(f, r->prerefined);
+    CARRY(f, r->pauses);
+    CARRY(f, r->most_live);
+    CARRY(f, r->deferred);
+    CARRY(f, r->left_over);
+    CARRY(f, r->radius_measured);
+    CARRY(f, r->radius_lemma7);
+    CARRY(f, r->radius_theory);
+    CARRY(f, r->total);
 }
 
-/* Lists are of use within a schedule alone. */
-static struct head head_of(const struct par_state *state, const struct par_tiles *tiles, int32_t odd)
+static void carry_list(struct cargo *cargo, struct par_state_file *f, struct par_ids *list)
 {
-    const struct tri_mesh *m = state->mesh;
-    const bool lists = tiles || state->amid;
-    struct head h = {.word = STATE, .odd = odd, .stage = state->stage, .amid = state->amid,
-                     .paused = state->paused != NULL, .round = state->round,
-                     .phase = state->phase, .numbered = state->end == PAR_NUMBERED,
-                     .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
-                     .n_worklist = lists ? state->worklist.n : 0, .n_keys = lists ? state->key.n : 0,
-                     .n_schedules = state->n_schedules, .radius = state->radius};
-    set_report(&h, state->report);
-    for (int k = 0; k < PAR_KINDS; k++) {
-        assert(state->spare.ranges[k].dealt == 0 || state->halt.n_blocks > 0); /* no block is at work */
-        h.n_spare[k] = state->spare.ranges[k].n;
+    int32_t n = list->n;
+    CARRY(f, n);
+    cargo->memory = cargo->memory && tri_grow(&list->item, &list->capacity, n, sizeof *list->item);
+    list->n = cargo->memory ? n : 0;
+    par_carry(f, list->item, (size_t)list->n * sizeof *list->item);
+}
+
+static void carry_keys(struct cargo *cargo, struct par_state_file *f, struct par_keys *keys)
+{
+    int32_t n = keys->n;
+    CARRY(f, n);
+    cargo->memory = cargo->memory && tri_grow(&keys->item, &keys->capacity, n, sizeof *keys->item);
+    keys->n = cargo->memory ? n : 0;
+    par_carry(f, keys->item, (size_t)keys->n * sizeof *keys->item);
+}
+
+static void carry_ranges(struct cargo *cargo, struct par_state_file *f, struct par_ranges *ranges)
+{
+    int32_t n = ranges->n;
+    assert(ranges->dealt == 0); /* no block is at work */
+    CARRY(f, n);
+    cargo->memory = cargo->memory && par_ranges_reserve(ranges, n);
+    ranges->n = cargo->memory ? n : 0;
+    par_carry(f, ranges->item, (size_t)ranges->n * sizeof *ranges->item);
+}
+
+static void carry_partition(struct cargo *cargo, struct par_state_file *f, struct par_partition *p)
+{
+    struct par_partition as = *p;
+    CARRY(f, as.n_columns);
+    CARRY(f, as.n_rows);
+    CARRY(f, as.low);
+    CARRY(f, as.high);
+    CARRY(f, as.estimate);
+    const size_t n_x = (size_t)as.n_columns, n_y = n_x * (size_t)as.n_rows;
+    if (f->reads && n_x > 0) {
+        par_partition_free(p);
+        as.x = malloc(n_x * sizeof *p->x);
+        as.y = malloc(n_y * sizeof *p->y);
+        cargo->memory = cargo->memory && as.x && as.y;
+        *p = as;
     }
-    h.n_halted = state->halt.n_blocks;
-    if (!tiles) {
-        h.cells = cells_of(&state->cells);
-        h.first = cells_of(&state->report->partition);
-        return h;
+    if (cargo->memory) {
+        par_carry(f, p->x, n_x * sizeof *p->x);
+        par_carry(f, p->y, n_y * sizeof *p->y);
     }
-    h.counts_remaining = state->counts_remaining;
-    h.n_remaining = state->counts_remaining ? state->remaining.n : 0;
-    memcpy(h.remained, state->remained, sizeof h.remained);
-    h.n_held = tiles->held.n;
-    h.tiles_vertices = tiles->n_vertices;
-    h.tiles_triangles = tiles->n_triangles;
-    h.tiles_segments = tiles->n_segments;
-    return h;
 }
 
-static void carry_cells(struct par_state_file *f, const struct cells *cells, struct par_partition *p)
+static int32_t more(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
+
+static void carry_counts(struct cargo *cargo, struct par_state_file *f, struct tri_mesh *m)
 {
-    const size_t n_x = (size_t)cells->n_columns, n_y = n_x * (size_t)cells->n_rows;
-    par_carry(f, p->x, n_x * sizeof *p->x);
-    par_carry(f, p->y, n_y * sizeof *p->y);
+    int32_t v = m->n_vertices, t = m->n_triangles, s = m->n_subs;
+    CARRY(f, v);
+    CARRY(f, t);
+    CARRY(f, s);
+    cargo->memory = cargo->memory && tri_mesh_reserve_vertices(m, more(v, m->n_vertices), NULL) == TRI_OK &&
+                    tri_mesh_reserve_triangles(m, more(t, m->n_triangles), NULL) == TRI_OK &&
+                    tri_mesh_reserve_subs(m, more(s, m->n_subs), NULL) == TRI_OK;
+    if (cargo->memory) {
+        m->n_vertices = v;
+        m->n_triangles = t;
+        m->n_subs = s;
+    }
 }
 
-static void carry_mesh(struct par_state_file *f, const struct head *h, struct tri_mesh *m)
+static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
 {
-    const size_t v = (size_t)h->n_vertices;
+    const size_t v = (size_t)m->n_vertices;
     par_carry(f, m->xy, v * sizeof *m->xy);
     par_carry(f, m->on, v * sizeof *m->on);
     par_carry(f, m->vertex_markers, v * sizeof *m->vertex_markers);
     par_carry(f, m->feature, v * sizeof *m->feature);
     par_carry(f, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
-    par_carry(f, m->tri, (size_t)h->n_triangles * sizeof *m->tri);
-    par_carry(f, m->sub, (size_t)h->n_subs * sizeof *m->sub);
+    par_carry(f, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
+    par_carry(f, m->sub, (size_t)m->n_subs * sizeof *m->sub);
 }
 
-static struct par_carried_counts counts_of(const struct head *h, const struct par_tiles *tiles)
+/* What a sweep has beside that. */
+static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 {
-    return (struct par_carried_counts){h->n_triangles, h->n_subs,
-                                       tiles ? par_blocks(tiles->partition) : h->cells.n_columns * h->cells.n_rows};
+    struct par_state *state = cargo->state;
+    struct par_tiles *tiles = cargo->tiles;
+    CARRY(f, state->column);
+    CARRY(f, state->counts_remaining);
+    CARRY(f, state->remained);
+    CARRY(f, tiles->n_vertices);
+    CARRY(f, tiles->n_triangles);
+    CARRY(f, tiles->n_segments);
+    state->gone = tiles->n_triangles;
+    cargo->memory = cargo->memory && par_tiles_reserve(tiles);
+    if (cargo->memory)
+        par_carry(f, tiles->number, (size_t)state->mesh->n_vertices * sizeof *tiles->number);
+    carry_list(cargo, f, &tiles->held);
+    carry_list(cargo, f, &state->remaining);
 }
 
-/* Where the call at hand is. */
-static enum tri_status carry_call(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                  struct tri_error *error)
+static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
 {
-    const struct par_carried_counts counts = counts_of(h, NULL);
-    const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
-    return h->paused ? par_carry_pause(f, &state->paused, &counts, listed, error) : TRI_OK;
-}
-
-/* Where the phase at hand is. */
-static enum tri_status carry_halt(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                  const struct par_tiles *tiles, struct tri_error *error)
-{
-    const struct par_carried_counts counts = counts_of(h, tiles);
-    return h->n_halted > 0 ? par_carry_halt(f, &state->halt, &state->spare, &counts, h->n_halted, error) : TRI_OK;
-}
-
-/* tiles: NULL, or those of a sweep. */
-static void carry_arrays(struct par_state_file *f, const struct head *h, struct par_state *state,
-                         struct par_tiles *tiles)
-{
-    carry_mesh(f, h, state->mesh);
-    par_carry(f, state->worklist.item, (size_t)h->n_worklist * sizeof *state->worklist.item);
-    par_carry(f, state->key.item, (size_t)h->n_keys * sizeof *state->key.item);
+    struct cargo *cargo = user;
+    struct par_state *state = cargo->state;
+    carry_place(f, state);
+    carry_report(f, state->report);
+    carry_list(cargo, f, &state->worklist);
+    carry_keys(cargo, f, &state->key);
+    carry_list(cargo, f, &state->done);
     for (int k = 0; k < PAR_KINDS; k++)
-        par_carry(f, state->spare.ranges[k].item, (size_t)h->n_spare[k] * sizeof *state->spare.ranges[k].item);
-    if (tiles) {
-        par_carry(f, tiles->number, (size_t)h->n_vertices * sizeof *tiles->number);
-        par_carry(f, tiles->held.item, (size_t)h->n_held * sizeof *tiles->held.item);
-        par_carry(f, state->remaining.item, (size_t)h->n_remaining * sizeof *state->remaining.item);
-        return;
-    }
-    carry_cells(f, &h->cells, &state->cells);
-    carry_cells(f, &h->first, &state->report->partition);
+        carry_ranges(cargo, f, &state->spare.ranges[k]);
+    carry_partition(cargo, f, &state->cells);
+    carry_partition(cargo, f, &state->report->partition);
+    carry_counts(cargo, f, state->mesh);
+    if (cargo->memory)
+        carry_mesh(f, state->mesh);
+    if (cargo->tiles)
+        carry_sweep(cargo, f);
+    return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 
-/* --- writing */
-
-/* What is carried. */
-struct cargo {
-    struct par_state *state;
-    struct par_tiles *tiles; /* NULL: a mesh as a whole */
-    int32_t *odd;
-};
-
-static enum tri_status put(struct par_state_file *f, void *user, struct tri_error *error)
+static enum tri_status save(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+                            struct tri_error *error)
 {
-    const struct cargo *cargo = user;
-    struct head h = head_of(cargo->state, cargo->tiles, *cargo->odd);
-    par_carry_head(f, &h, sizeof h);
-    enum tri_status status = carry_call(f, &h, cargo->state, error);
-    carry_arrays(f, &h, cargo->state, cargo->tiles);
-    return status ? status : carry_halt(f, &h, cargo->state, cargo->tiles, error);
-}
-
-static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
-                            int32_t odd, struct tri_error *error)
-{
-    struct cargo cargo = {(struct par_state *)state, (struct par_tiles *)tiles, &odd}; /* which it only reads, but: */
+    struct cargo cargo = {state, tiles, true};
     const double began = tri_seconds();
-    if (tiles && !par_tiles_reserve(cargo.tiles)) /* vertices are new, amid a column */
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of vertices");
-    enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, par_triangles(state),
-                                                  put, &cargo, error);
+    enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, 0,
+                                                  par_triangles(state), carry, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
     return status;
-}
-
-/* --- going on */
-
-static bool is_count(int64_t n, int64_t least) { return n >= least && n <= INT32_MAX; }
-
-static bool are_cells(const struct cells *c)
-{
-    const bool none = c->n_columns == 0 && c->n_rows == 0;
-    return none || (is_count(c->n_columns, 3) && is_count(c->n_rows, 3) && is_count(c->n_columns * c->n_rows, 9));
-}
-
-static bool is_place(const struct head *h, const struct par_tiles *tiles)
-{
-    const bool amid = h->phase >= 0 && h->phase < PAR_PHASES && (h->n_halted == 0 || h->amid);
-    if (tiles)
-        return amid && h->odd % 2 == 1 && h->odd >= (h->amid ? 1 : 3) && h->odd <= tiles->partition->n_columns + 2;
-    return amid && h->odd == 0 && h->stage >= 0 && h->stage <= PAR_FINISHED && h->round >= 0 &&
-           (!h->amid || h->cells.n_columns > 0);
-}
-
-/* Could this be the head of a state of this run? */
-static bool is_head(const struct head *h, const struct par_state *state, const struct par_tiles *tiles)
-{
-    const struct tri_mesh *m = state->mesh;
-    bool counts = is_count(h->n_vertices, m->n_vertices) && is_count(h->n_triangles, 0) &&
-                  is_count(h->n_subs, m->n_subs) && is_count(h->n_worklist, 0) && is_count(h->n_held, 0) &&
-                  is_count(h->n_remaining, 0) && is_count(h->n_halted, 0) &&
-                  (h->n_keys == 0 || h->n_keys == h->n_worklist);
-    for (int k = 0; k < PAR_KINDS; k++)
-        counts = counts && is_count(h->n_spare[k], 0);
-    return counts && h->word == STATE && are_cells(&h->cells) && are_cells(&h->first) && is_place(h, tiles);
-}
-
-static int32_t more(int64_t wanted, int32_t there) { return wanted > there ? (int32_t)wanted - there : 0; }
-
-static enum tri_status reserve_mesh(const struct head *h, struct tri_mesh *m, struct tri_error *error)
-{
-    enum tri_status status = tri_mesh_reserve_vertices(m, more(h->n_vertices, m->n_vertices), error);
-    status = status ? status : tri_mesh_reserve_triangles(m, more(h->n_triangles, m->n_triangles), error);
-    return status ? status : tri_mesh_reserve_subs(m, more(h->n_subs, m->n_subs), error);
-}
-
-static bool reserve_cells(const struct cells *cells, struct par_partition *p)
-{
-    const size_t n_x = (size_t)cells->n_columns, n_y = n_x * (size_t)cells->n_rows;
-    par_partition_free(p);
-    if (n_x == 0)
-        return true;
-    *p = (struct par_partition){(int32_t)cells->n_columns, (int32_t)cells->n_rows, malloc(n_x * sizeof *p->x),
-                                malloc(n_y * sizeof *p->y), cells->low, cells->high, cells->estimate};
-    if (!p->x || !p->y)
-        par_partition_free(p);
-    return p->x;
-}
-
-static bool reserve_lists(const struct head *h, struct par_state *state, struct par_tiles *tiles)
-{
-    bool memory = tri_grow(&state->worklist.item, &state->worklist.capacity, (int32_t)h->n_worklist,
-                           sizeof *state->worklist.item) &&
-                  tri_grow(&state->key.item, &state->key.capacity, (int32_t)h->n_keys, sizeof *state->key.item);
-    for (int k = 0; memory && k < PAR_KINDS; k++)
-        memory = par_ranges_reserve(&state->spare.ranges[k], (int32_t)h->n_spare[k]);
-    if (!tiles)
-        return memory && reserve_cells(&h->cells, &state->cells) && reserve_cells(&h->first, &state->report->partition);
-    return memory && par_tiles_reserve(tiles) &&
-           tri_grow(&state->remaining.item, &state->remaining.capacity, (int32_t)h->n_remaining,
-                    sizeof *state->remaining.item) &&
-           tri_grow(&tiles->held.item, &tiles->held.capacity, (int32_t)h->n_held, sizeof *tiles->held.item);
-}
-
-static void get_report(const struct head *h, struct par_report *r)
-{
-    r->rounds = (int)h->rounds;
-    r->levels = (int)h->levels;
-    r->schedule = (int32_t)h->schedule;
-    r->columns = r->partition.n_columns;
-    r->rows = r->partition.n_rows;
-    r->prerefined = h->prerefined;
-    r->pauses = h->pauses;
-    r->most_live = h->most_live;
-    r->deferred = h->deferred;
-    r->left_over = h->left_over;
-    r->radius_measured = h->radius_measured;
-    r->radius_lemma7 = h->radius_lemma7;
-    r->radius_theory = h->radius_theory;
-    r->total = h->total;
-}
-
-static void set_counts(const struct head *h, struct par_state *state, struct par_tiles *tiles)
-{
-    state->mesh->n_vertices = (int32_t)h->n_vertices;
-    state->mesh->n_triangles = (int32_t)h->n_triangles;
-    state->mesh->n_subs = (int32_t)h->n_subs;
-    state->worklist.n = (int32_t)h->n_worklist;
-    state->key.n = (int32_t)h->n_keys;
-    state->n_schedules = (int32_t)h->n_schedules;
-    state->stage = (enum par_stage)h->stage;
-    state->amid = h->amid != 0;
-    state->round = (int)h->round;
-    state->phase = (int)h->phase;
-    state->end = h->numbered != 0 ? PAR_NUMBERED : PAR_UNFINISHED;
-    state->radius = h->radius;
-    for (int k = 0; k < PAR_KINDS; k++)
-        state->spare.ranges[k].n = (int32_t)h->n_spare[k];
-    get_report(h, state->report);
-    if (!tiles)
-        return;
-    state->counts_remaining = h->counts_remaining != 0;
-    state->remaining.n = (int32_t)h->n_remaining;
-    memcpy(state->remained, h->remained, sizeof state->remained);
-    tiles->held.n = (int32_t)h->n_held;
-    tiles->n_vertices = h->tiles_vertices;
-    tiles->n_triangles = h->tiles_triangles;
-    tiles->n_segments = h->tiles_segments;
-    state->gone = h->tiles_triangles;
 }
 
 #ifndef NDEBUG
@@ -350,43 +232,19 @@ static bool is_state_sound(const struct par_state *state)
 }
 #endif
 
-/* Nothing that counts changes before all has been checked. */
-static enum tri_status get(struct par_state_file *f, void *user, struct tri_error *error)
-{
-    const struct cargo *cargo = user;
-    struct par_state *state = cargo->state;
-    struct head h = {0};
-    par_carry_head(f, &h, sizeof h);
-    f->failed = f->failed || !is_head(&h, state, cargo->tiles);
-    enum tri_status status = f->failed ? TRI_OK : carry_call(f, &h, state, error);
-    if (!f->failed && !status && f->way == PAR_READ) {
-        status = reserve_mesh(&h, state->mesh, error);
-        if (!status && !reserve_lists(&h, state, cargo->tiles))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
-    }
-    if (f->failed || status)
-        return status;
-    carry_arrays(f, &h, state, cargo->tiles);
-    if (f->way == PAR_READ && !f->failed) {
-        set_counts(&h, state, cargo->tiles);
-        *cargo->odd = (int32_t)h.odd;
-        assert(is_state_sound(state));
-    }
-    return f->failed ? TRI_OK : carry_halt(f, &h, state, cargo->tiles, error);
-}
-
-static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
+static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
                             struct tri_error *error)
 {
-    struct cargo cargo = {state, tiles, odd};
-    return par_checkpoint_read(c, get, &cargo, error);
+    struct cargo cargo = {state, tiles, true};
+    enum tri_status status = par_checkpoint_read(c, carry, &cargo, error);
+    assert(status || is_state_sound(state));
+    return status;
 }
 
 /* --- beginning and end of a run */
 
 enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)
 {
-    int32_t odd;
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
     if (par_checkpoint_has_ranks(c)) /* whose hash of the same run is another one */
@@ -402,28 +260,30 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *stat
     if (!state->stays)
         return TRI_OK;
     state->mesh->stop = NULL;
-    return load(c, state, NULL, &odd, error);
-}
-
-void par_state_end(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
-
-/* --- a mesh that stays as a whole */
-
-enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *state, bool surely,
-                                 struct tri_error *error)
-{
-    state->mesh->stop = NULL;
-    const bool asked = tri_stop_is_asked(c->stop);
-    if (!asked && !surely && tri_seconds() - c->last < c->seconds)
-        return TRI_OK;
-    enum tri_status status = save(c, state, NULL, 0, error);
-    return status || !asked ? status : tri_fail_stopped(error);
+    return load(c, state, NULL, error);
 }
 
 void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
 
-/* Asked by refiners that may pause. It does not stay true: pauses end. */
-static bool is_pause_due(void *user)
+/* --- borders and phases */
+
+enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+                                 bool surely, struct tri_error *error)
+{
+    const bool asked = tri_stop_is_asked(c->stop), failed = tiles && c->spool.failed;
+    state->mesh->stop = NULL;
+    if (!asked && !surely && !failed && tri_seconds() - c->last < c->seconds)
+        return TRI_OK;
+    enum tri_status status = save(c, state, tiles, error);
+    if (failed && error) /* whether the state could be saved or not */
+        *error = c->spool.failure;
+    if (failed)
+        return c->spool.failed;
+    return status || !asked ? status : tri_fail_stopped(error);
+}
+
+/* Asked by blocks before they begin. It does not stay true: a halt ends. */
+static bool is_halt_due(void *user)
 {
     const struct par_checkpoint *c = user;
     const double passed = tri_seconds() - c->last;
@@ -431,53 +291,20 @@ static bool is_pause_due(void *user)
 }
 
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *state,
-                                const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
+                                const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
                                 struct tri_error *error)
 {
-    const struct tri_stop pauses = {is_pause_due, c};
+    const struct tri_stop halt = {is_halt_due, c};
     enum tri_status status;
-    state->may_halt = true;
     do {
-        state->mesh->stop = &pauses;
+        state->halt = state->options->by_block ? NULL : &halt;
         status = par_phase(state, partition, state->phase, only, error);
-        state->mesh->stop = NULL;
+        state->halt = NULL;
         if (status != TRI_STOPPED)
             break;
-        status = save(c, state, tiles, tiles ? only | 1 : 0, error); /* with the odd column beside an even one */
+        status = save(c, state, tiles, error);
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
-    } while (!status);
-    state->may_halt = false;
-    return status;
-}
-
-/* The refiner has paused: the state is kept, and it goes on unless somebody asks for the end. */
-static enum tri_status save_call(struct par_checkpoint *c, struct par_state *state,
-                                 const struct tri_refiner *refiner, struct tri_error *error)
-{
-    struct tri_pause pause;
-    tri_refiner_show(refiner, &pause);
-    state->paused = &pause;
-    enum tri_status status = save(c, state, NULL, 0, error);
-    state->paused = NULL;
-    return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
-}
-
-enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state, struct tri_refiner *refiner,
-                               struct tri_error *error)
-{
-    const struct tri_stop pauses = {is_pause_due, c};
-    enum tri_status status;
-    if (state->paused)
-        tri_refiner_go_on(refiner, state->paused);
-    tri_pause_drop(&state->paused);
-    do {
-        state->mesh->stop = &pauses;
-        status = tri_refiner_run(refiner, error);
-        state->mesh->stop = NULL;
-        if (status != TRI_STOPPED)
-            return status;
-        status = save_call(c, state, refiner, error);
     } while (!status);
     return status;
 }
@@ -485,7 +312,7 @@ enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state
 /* --- a sweep */
 
 enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
-                                      int32_t *odd, struct tri_error *error)
+                                      struct tri_error *error)
 {
     const bool again = par_checkpoint_has_state(c);
     c->spool.to = tiles->sink;
@@ -494,32 +321,7 @@ enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state
     tiles->sink = &c->sink;
     state->mesh->stop = NULL;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    return status || !again ? status : load(c, state, tiles, odd, error);
-}
-
-enum tri_status par_state_column(struct par_checkpoint *c, struct par_state *state, const struct par_tiles *tiles,
-                                 int32_t odd, struct tri_error *error)
-{
-    state->mesh->stop = NULL;
-    bool asked = tri_stop_is_asked(c->stop), failed = c->spool.failed != TRI_OK;
-    if (!asked && !failed && tri_seconds() - c->last < c->seconds)
-        return TRI_OK;
-    if (failed)
-        return par_state_last_column(c, state, tiles, odd, error);
-    enum tri_status status = save(c, state, tiles, odd, error);
-    return status || !asked ? status : tri_fail_stopped(error);
-}
-
-/* Whether the state could be saved or not, what the taker said is told. */
-enum tri_status par_state_last_column(struct par_checkpoint *c, const struct par_state *state,
-                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
-{
-    if (!c->spool.failed)
-        return TRI_OK;
-    (void)save(c, state, tiles, odd, NULL);
-    if (error)
-        *error = c->spool.failure;
-    return c->spool.failed;
+    return status || !again ? status : load(c, state, tiles, error);
 }
 
 enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)

@@ -1,13 +1,11 @@
 /* What a checkpoint keeps of a run, and when.
  *
- * Of a sweep: what is in memory, and which phase of which column is next. Of a schedule whose mesh stays as a whole, in
- * memory or parked, and of the calls beyond the schedule: all of the mesh, and which phase of which round, or which
- * call, is next; between two points of a phase (sched/schedule/halt.h) or of a call (triangle/refine/pause.h) also
- * where they are. A run that gives up its sweep goes over to the second.
+ * What comes next (sched/schedule/next.h), and of a sweep what is in memory, of a mesh that stays as a whole, in memory
+ * or parked, all of it. A run that gives up its sweep goes over to the second.
  *
  * THEOREM. A run that goes on ends with the bytes of one that was never stopped. For what is still to come depends on
  * the mesh, the lists of what is left, the free ranges of the arrays, the cells and the counts alone: all of them are
- * in the state, with the numbers by which they refer to each other, ids included; the rest of the mesh (parents,
+ * in the state, with the numbers by which they refer to each other; the rest of the mesh (parents,
  * regions, limits, the caller's order) refinement only reads, and it is made anew from the input. Tiles that are in the
  * file are handed out again as they were. So neither the number of threads nor the memory need be the same. What the
  * run is of is told by a hash over the mesh, the bounds and the options with which it begins, on which all else
@@ -20,7 +18,6 @@
 
 struct par_partition;
 struct par_state;
-struct tri_refiner;
 
 /* When a run begins, with the mesh as it came. Where there is the state of a mesh as a whole, the mesh, the lists, the
  * cells and the counts become what they were, and what is to be done next. TRI_BAD_INPUT: it is another run's, or
@@ -30,49 +27,31 @@ enum tri_status par_state_begin(struct par_checkpoint *checkpoint, struct par_st
 /* What a run is of, as far as its mesh is now: a hash. */
 uint64_t par_state_run(const struct par_state *state);
 
-/* The run has ended, in whatever way. */
-void par_state_end(struct par_checkpoint *checkpoint, struct par_state *state);
+/* Between two steps, or (tiles not NULL) two columns of a sweep, the next one being what the state says. Writes the
+ * state where it is time to, where somebody asks for the end (TRI_STOPPED then), where the tiles' taker has failed (its
+ * failure then), or, `surely`, in any case. From here on the mesh is not stopped within a step. TRI_CANNOT_WRITE,
+ * TRI_NO_MEMORY. */
+enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_state *state, struct par_tiles *tiles,
+                                 bool surely, struct tri_error *error);
 
-/* --- a mesh that stays as a whole */
+/* Runs a phase to its end, of a column of a sweep or (tiles NULL, only TRI_NONE) of the whole mesh. Keeps states of it
+ * on the way, between blocks: where it is time to, unless more than a tenth of the time would go into that, and where
+ * somebody asks for the end (TRI_STOPPED then); by_block, where ids depend on which blocks run at once, between phases
+ * alone. Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or what the phase says. */
+enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_state *state,
+                                const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
+                                struct tri_error *error);
 
-/* Between two steps, the next one being what the state says. From here on the mesh is not stopped within a step. Writes
- * the state where it is time to, where somebody asks for the end (TRI_STOPPED then), or, `surely`, in any case.
- * TRI_CANNOT_WRITE. */
-enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_state *state, bool surely,
-                                 struct tri_error *error);
-
-/* Whoever asks for the end is heard within the step at hand, too, and not only at the next border. A step that is
- * stopped is lost: the run goes on from the last state. */
+/* Whoever asks for the end is heard within the step at hand, too, and not only at the next border; or the run has
+ * ended. A step that is stopped is lost: the run goes on from the last state. */
 void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_state *state);
 
-/* Runs a phase to its end, of a column of a sweep or (tiles NULL, only TRI_NONE) of the whole mesh, or a refiner of
- * that, from where a state was amid such a one, and keeps states of it on the way: where it is time to, unless more
- * than a tenth of the time would go into that, and where somebody asks for the end (TRI_STOPPED then; a phase remains
- * halted). Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or what the phase or the refiner says. */
-enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_state *state,
-                                const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
-                                struct tri_error *error);
-enum tri_status par_state_call(struct par_checkpoint *checkpoint, struct par_state *state,
-                               struct tri_refiner *refiner, struct tri_error *error);
-
-/* --- a sweep */
-
 /* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again; then par_tiles_begin;
- * and where there is a state, *odd becomes the column that is next, or that the state is amid, and the mesh, the lists
- * and the tiles' counts what they were. From here on the mesh is stopped where a state is kept alone.
- * TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
+ * and where there is a state, the mesh, the lists, the place and the tiles' counts become what they were. From here on
+ * the mesh is stopped where a state is kept alone. TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY,
+ * TRI_CANNOT_WRITE, or what the sink says. */
 enum tri_status par_state_begin_sweep(struct par_checkpoint *checkpoint, struct par_state *state,
-                                      struct par_tiles *tiles, int32_t *odd, struct tri_error *error);
-
-/* Between two columns, `odd` being next: writes the state where it is time to, where somebody asks for the end, and
- * where the tiles' taker has failed; then returns TRI_STOPPED or that failure. Else TRI_OK, TRI_CANNOT_WRITE,
- * TRI_NO_MEMORY. */
-enum tri_status par_state_column(struct par_checkpoint *checkpoint, struct par_state *state,
-                                 const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
-
-/* The same after the last tile, where nobody is stopped any more. */
-enum tri_status par_state_last_column(struct par_checkpoint *checkpoint, const struct par_state *state,
-                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+                                      struct par_tiles *tiles, struct tri_error *error);
 
 /* The sweep has been given up: what it has done is worth nothing. TRI_CANNOT_WRITE. */
 enum tri_status par_state_give_up_sweep(struct par_checkpoint *checkpoint, struct par_state *state,

@@ -9,55 +9,40 @@
 #include "sched/schedule/room.h"
 #include "triangle/base/clock.h"
 
-static const uint64_t STATE = UINT64_C(0x3274617473746972); /* a version as well */
-
-/* The state's file: this, then struct writer of each rank. */
-struct common {
-    uint64_t word;
-    struct par_stand stand;
-    int64_t n_tiles, left_over;
-    int64_t rounds; /* that are over, of both schedules */
-    int64_t done[PAR_DONE];
-};
-
+/* What a rank has written. */
 struct writer {
     int64_t end;   /* its tiles begin where those of the rank before it end */
     uint64_t hash; /* of its file */
 };
 
-/* All of it, and how many ranks have written it. */
-struct state {
-    char *bytes; /* of struct common on */
-    int64_t n_ranks;
+/* The state's file. */
+struct kept {
+    int32_t next, round, phase, step; /* as in struct par_state */
+    int64_t left_over;
+    int64_t rounds; /* that are over, of both schedules */
+    int64_t done[PAR_DONE];
+    struct writer writer[]; /* [n_ranks] */
 };
 
-static size_t bytes_of(const struct state *s)
+/* On its way to there, or from there. */
+struct cargo {
+    struct kept *kept;
+    size_t bytes;
+};
+
+static struct cargo cargo_of(int64_t n_ranks)
 {
-    return sizeof(struct common) + (size_t)s->n_ranks * sizeof(struct writer);
+    const size_t bytes = sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer);
+    return (struct cargo){calloc(1, bytes), bytes};
 }
 
-static bool make_state(struct state *s, int64_t n_ranks)
+static enum tri_status carry(struct par_state_file *file, void *user, struct tri_error *error)
 {
-    *s = (struct state){.n_ranks = n_ranks};
-    s->bytes = calloc(1, bytes_of(s));
-    return s->bytes;
-}
-
-/* Both to the checkpoint's file and from there. */
-static enum tri_status walk(struct par_state_file *file, void *user, struct tri_error *error)
-{
-    const struct state *s = user;
+    const struct cargo *cargo = user;
     (void)error;
-    par_carry(file, s->bytes, bytes_of(s));
+    par_carry(file, cargo->kept, cargo->bytes);
     return TRI_OK;
 }
-
-static const struct writer *writers_of(const struct state *s)
-{
-    return (const struct writer *)(const void *)(s->bytes + sizeof(struct common));
-}
-
-static int32_t tiles_in_all(const struct par_ranks *r) { return r->territory.start[r->territory.n_ranks]; }
 
 /* --- going on */
 
@@ -78,16 +63,15 @@ static bool find_straddlers(struct par_ranks *r)
     return memory;
 }
 
-static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
+static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct writer *writer,
                                    struct tri_error *error)
 {
-    const struct writer *writer = writers_of(from);
     char path[PAR_CHECKPOINT_PATH];
     enum tri_status status = TRI_OK;
     forget_all(r->state, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
-    for (int p = 0; !status && p < from->n_ranks; p++) {
+    for (int p = 0; !status && p < m->n_ranks; p++) {
         const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
                                             writer[p].hash};
         if (!par_pieces_are_wanted(r, &file))
@@ -99,52 +83,35 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
 
-static bool is_state(const struct par_ranks *r, const struct common *c, const struct state *s)
-{
-    const struct writer *writer = writers_of(s);
-    bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
-                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0 &&
-                c->rounds >= c->stand.round && c->rounds < 64 &&
-                (c->stand.schedule == 0 || (c->stand.schedule == 1 && r->state->then));
-    for (int64_t p = 0; good && p < s->n_ranks; p++)
-        good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
-    return good && writer[s->n_ranks - 1].end == c->n_tiles;
-}
-
 /* Rank 0 counts what has been done for all. */
-static void go_on_from(struct par_ranks *r, const struct common *c)
+static void go_on_from(struct par_ranks *r, const struct kept *c)
 {
-    r->stand = c->stand;
-    r->state->round = c->stand.round;
+    r->state->next = (enum par_next)c->next;
+    r->state->round = c->round;
+    r->state->phase = c->phase;
+    r->state->step = c->step;
     r->state->report->rounds += (int)c->rounds;
     r->state->report->left_over += c->left_over;
     if (r->carrier->rank == 0)
         par_add_done(r, c->done);
 }
 
-static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
-                               struct tri_error *error)
+static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, struct tri_error *error)
 {
-    const struct par_checkpoint *checkpoint = r->state->options->checkpoint;
-    enum tri_status status = from->bytes ? TRI_OK : par_ranks_no_memory(error);
+    struct cargo cargo = cargo_of(m->n_ranks);
+    enum tri_status status = cargo.kept ? TRI_OK : par_ranks_no_memory(error);
     if (!status && r->carrier->rank == 0)
-        status = par_checkpoint_read(checkpoint, walk, (void *)from, error);
-    status = par_spread(r->carrier, PAR_MOVE_INPUT, from->bytes, bytes_of(from), status, error);
-    if (status)
-        return status;
-    struct common common;
-    memcpy(&common, from->bytes, sizeof common);
-    if (!is_state(r, &common, from))
-        return tri_fail(error, TRI_BAD_INPUT, checkpoint->directory, 0, "the checkpoint's state is damaged");
-    status = read_pieces(r, m, from, error);
+        status = par_checkpoint_read(r->state->options->checkpoint, carry, &cargo, error);
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, cargo.kept, cargo.bytes, status, error);
+    status = status ? status : read_pieces(r, m, cargo.kept->writer, error);
     if (!status)
-        go_on_from(r, &common);
+        go_on_from(r, cargo.kept);
+    free(cargo.kept);
     return status;
 }
 
 /* Rank 0 has read it. */
-static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct state *from,
-                                      struct tri_error *error)
+static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct tri_error *error)
 {
     struct par_checkpoint *c = r->state->options->checkpoint;
     enum tri_status status = TRI_OK;
@@ -153,33 +120,24 @@ static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *
     else if (r->carrier->rank == 0)
         status = par_checkpoint_take(c, r->run, error);
     *m = c->manifest;
-    status = par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
-    *from = (struct state){.n_ranks = (m->state_bytes - (int64_t)sizeof(struct common)) /
-                                      (int64_t)sizeof(struct writer)};
-    if (!status && m->state_bytes > 0 && (from->n_ranks < 1 || m->state_bytes != (int64_t)bytes_of(from)))
-        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's state is damaged");
-    return status;
+    return par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
 }
 
 enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *error)
 {
     struct par_checkpoint *c = r->state->options->checkpoint;
     struct par_manifest m;
-    struct state from;
     *again = false;
     if (!c)
         return TRI_OK;
     c->stop = r->state->mesh->stop;
     c->last = tri_seconds();
-    enum tri_status status = check_manifest(r, &m, &from, error);
+    enum tri_status status = check_manifest(r, &m, error);
     if (status || m.state_bytes == 0)
         return status;
     *again = true;
     r->state->mesh->stop = NULL; /* there is something to lose */
-    make_state(&from, from.n_ranks);
-    status = take_up(r, &m, &from, error);
-    free(from.bytes);
-    return status;
+    return take_up(r, &m, error);
 }
 
 /* --- keeping */
@@ -198,23 +156,22 @@ static int64_t count_triangles(const struct par_ranks *r)
 static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
                            struct tri_error *error)
 {
-    struct state state;
-    struct common common = {.word = STATE, .stand = r->stand, .n_tiles = tiles_in_all(r),
-                            .left_over = r->state->report->left_over - r->left_before,
-                            .rounds = r->state->report->rounds - r->rounds_before - 1};
+    const int n_ranks = r->carrier->n_ranks;
+    struct cargo cargo = cargo_of(n_ranks);
     int64_t triangles = 0;
-    if (!make_state(&state, r->carrier->n_ranks))
+    if (!cargo.kept)
         return par_ranks_no_memory(error);
-    memcpy(common.done, done, sizeof common.done);
-    memcpy(state.bytes, &common, sizeof common);
-    for (int p = 0; p < r->carrier->n_ranks; p++) {
-        const struct writer writer = {r->territory.start[p + 1], (uint64_t)told[2 * p]};
-        memcpy(state.bytes + sizeof common + (size_t)p * sizeof writer, &writer, sizeof writer);
+    *cargo.kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
+                                .left_over = r->state->report->left_over - r->left_before,
+                                .rounds = r->state->report->rounds - r->rounds_before - 1};
+    memcpy(cargo.kept->done, done, sizeof cargo.kept->done);
+    for (int p = 0; p < n_ranks; p++) {
+        cargo.kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
         triangles += told[2 * p + 1];
     }
-    enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, triangles, walk,
-                                                  &state, error);
-    free(state.bytes);
+    enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, n_ranks, triangles,
+                                                  carry, &cargo, error);
+    free(cargo.kept);
     return status;
 }
 

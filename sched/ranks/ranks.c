@@ -255,17 +255,17 @@ static enum tri_status refine_step(struct par_ranks *r, const struct par_partiti
 {
     struct par_state *state = r->state;
     bool any;
-    assert(!state->share && r->stand.phase >= 0 && r->stand.phase < PAR_PHASES);
-    r->shift = (struct par_shift){.partition = partition, .phase = r->stand.phase, .step = r->stand.step,
+    assert(!state->share && state->phase >= 0 && state->phase < PAR_PHASES);
+    r->shift = (struct par_shift){.partition = partition, .phase = state->phase, .step = state->step,
                                   .n_steps = steps_of(r, partition)};
     enum tri_status status = share_blocks(r, &any, error);
     struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch, .user = r};
     if (!status && any)
         status = lend(r, error);
-    par_tell(state, r->stand.phase + 1);
+    par_tell(state, state->phase + 1);
     state->share = &share;
     if (!status)
-        status = par_phase(state, partition, r->stand.phase, TRI_NONE, error);
+        status = par_phase(state, partition, state->phase, TRI_NONE, error);
     state->share = NULL;
     if (any) {
         status = serve(r, status, error);
@@ -276,12 +276,12 @@ static enum tri_status refine_step(struct par_ranks *r, const struct par_partiti
     return status;
 }
 
-static void go_on(struct par_stand *stand, int32_t n_steps)
+static void go_on(struct par_state *state, int32_t n_steps)
 {
-    if (++stand->step < n_steps)
+    if (++state->step < n_steps)
         return;
-    stand->step = 0;
-    stand->phase++;
+    state->step = 0;
+    state->phase++;
 }
 
 /* From where it stands on. How many entries all ranks have in the end: who shares one counts it, too. Collective. */
@@ -290,9 +290,9 @@ static enum tri_status refine_round(struct par_ranks *r, const struct par_partit
 {
     enum tri_status status = TRI_OK;
     r->state->report->rounds++;
-    while (!status && r->stand.phase < PAR_PHASES) {
+    while (!status && r->state->phase < PAR_PHASES) {
         status = refine_step(r, partition, error);
-        go_on(&r->stand, steps_of(r, partition));
+        go_on(r->state, steps_of(r, partition));
         status = par_keep(r, status, error);
     }
     int64_t mine = r->state->worklist.n;
@@ -382,16 +382,16 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
 static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct tri_error *error)
 {
     struct par_partition partition;
-    struct par_stand *stand = &r->stand;
+    struct par_state *state = r->state;
     enum tri_status status = par_partition_copy(&partition, r->territory.partition, error);
     status = par_agree(r->carrier, status, error);
-    for (int32_t round = 0; !status && round < stand->round; round++)
+    for (int32_t round = 0; !status && round < state->round; round++)
         par_partition_coarsen(&partition);
     status = status ? status : refine_round(r, &partition, left, error);
     while (!status && *left > 0 && par_can_coarsen(&partition)) {
         par_partition_coarsen(&partition);
-        *stand = (struct par_stand){.schedule = stand->schedule, .round = stand->round + 1};
-        r->state->round = stand->round;
+        state->round++;
+        state->phase = 0;
         status = refine_round(r, &partition, left, error);
     }
     par_partition_free(&partition);
@@ -504,9 +504,9 @@ static enum tri_status run_second(struct par_ranks *r, struct tri_error *error)
     enum tri_status status = TRI_OK;
     r->state->quality = r->state->then;
     r->state->n_schedules++;
-    if (r->stand.schedule == 0) {
-        r->stand = (struct par_stand){.schedule = 1};
-        r->state->round = 0;
+    if (r->state->next == PAR_SIZES_PHASE) {
+        r->state->next = PAR_BOUNDS_PHASE;
+        r->state->round = r->state->phase = 0;
         status = par_agree(r->carrier, find_own_work(r, error), error);
     }
     return status ? status : run_schedule(r, error);
@@ -516,7 +516,8 @@ static enum tri_status run_second(struct par_ranks *r, struct tri_error *error)
 static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, struct tri_error *error)
 {
     enum tri_status status = begin(r, error);
-    if (!status && r->stand.schedule == 0)
+    const bool is_second = r->state->then && r->state->next == PAR_BOUNDS_PHASE;
+    if (!status && !is_second)
         status = run_schedule(r, error);
     if (!status && r->state->then)
         status = run_second(r, error);
@@ -558,7 +559,8 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
 {
     struct par_carrier *carrier = state->options->carrier;
     struct par_ranks r = {.state = state, .carrier = carrier, .n_common = state->mesh->n_vertices};
-    state->round = 0;
+    state->next = state->then ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE;
+    state->round = state->phase = state->step = 0;
     state->n_schedules++;
     assert(!state->options->margin); /* fences would depend on what triangles a rank has */
     bool memory = init(&r, partition);

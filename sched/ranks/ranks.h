@@ -40,13 +40,6 @@ struct par_index {
     int32_t n, capacity;
 };
 
-/* How far the schedule is: what comes next. */
-struct par_stand {
-    int32_t schedule;     /* 0; 1: the second one, for larger angles (par_state.then) */
-    int32_t round, phase; /* phase PAR_PHASES: the round is over */
-    int32_t step;         /* of the phase */
-};
-
 enum { PAR_DONE = 3 + TRI_EXCUSES }; /* numbers that tell what has been done */
 
 struct par_ranks {
@@ -59,7 +52,6 @@ struct par_ranks {
     struct par_talk *lent, *borrowed; /* [n_ranks] */
     struct par_index places, triangles; /* of the straddlers and of what is borrowed */
     struct par_bytes *out, *in; /* [n_ranks] */
-    struct par_stand stand;
     uint64_t run;              /* a hash of what all ranks began with */
     struct tri_refine_report before; /* the report of what came before that .. */
     int64_t left_before;       /* .. its left_over .. */
@@ -79,7 +71,7 @@ void par_add_done(struct par_ranks *ranks, const int64_t done[PAR_DONE]);
 
 /* --- keep.c: checkpoints, where they are wanted (sched/checkpoint/checkpoint.h) */
 
-/* Collective. Where there is a state, *again: mesh, worklist, report and stand are what they were; what there is now
+/* Collective. Where there is a state, *again: mesh, worklist, report and place are what they were; what there is now
  * goes. TRI_BAD_INPUT: it is another run's, or damaged. */
 enum tri_status par_take_up(struct par_ranks *ranks, bool *again, struct tri_error *error);
 

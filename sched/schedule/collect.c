@@ -116,7 +116,7 @@ static bool gather_changes(const struct par_phase_run *p)
     return memory;
 }
 
-bool par_gather_given_up(const struct par_phase_run *p)
+static bool gather_given_up(const struct par_phase_run *p)
 {
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++)
@@ -130,7 +130,7 @@ static bool take_back(struct par_phase_run *p)
     struct leftovers left = {.p = p};
     bool memory = gather_left(&left) &&
                   par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
-                  par_gather_given_up(p);
+                  gather_given_up(p);
     free(left.seen);
     free(left.before);
     free(left.item);
@@ -165,13 +165,12 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
         par_add_up(&p->state->report->total, &task->report);
-        memory = memory && report_block(p, task);
+        memory = memory && (task->progress == PAR_READY || report_block(p, task));
         par_room_return(&task->view.room, &p->state->spare);
         free(task->left.item);
         free(task->given_up.item);
         free(task->changed.item);
         free(task->asked.item);
-        tri_pause_drop(&task->pause);
         tri_refiner_free(task->refiner);
     }
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");

@@ -13,6 +13,7 @@
 #include "triangle/size/estimate.h"
 
 enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
+
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
@@ -52,6 +53,8 @@ static bool is_active(void *user, const double p[2])
 static int32_t owner_now(const struct par_phase_run *p, struct par_locator *locator, tri_triangle_id t)
 {
     int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
+    if (block != TRI_NONE && p->is_done[block])
+        return TRI_NONE;
     if (p->state->share)
         return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
@@ -183,8 +186,8 @@ static bool deal_all(struct dealing *d)
     tri_execute(&state->executor, d->shares, deal_share, d);
     if (!make_tasks(d, used))
         return false;
-    free(state->worklist.item);
-    free(state->key.item);
+    d->p->given = state->worklist;
+    d->p->given_key = state->key;
     state->worklist = (struct par_ids){d->kept, d->n_kept, d->n_kept};
     state->key = (struct par_keys){d->key, d->key ? d->n_kept : 0, d->key ? d->n_kept : 0};
     d->kept = NULL;
@@ -289,13 +292,10 @@ static int32_t more_for(const struct par_task *task)
 
 static enum tri_status reserve_room(struct par_phase_run *p, struct tri_error *error)
 {
-    int64_t to_come = 0; /* who goes on has room */
     p->expected = 0;
-    for (int32_t i = 0; i < p->n_tasks; i++) {
+    for (int32_t i = 0; i < p->n_tasks; i++)
         p->expected += p->tasks[i].expected;
-        to_come += p->tasks[i].progress == PAR_NEW ? p->tasks[i].expected : 0;
-    }
-    return par_room_reserve(&p->state->spare, p->state->mesh, to_come, error);
+    return par_room_reserve(&p->state->spare, p->state->mesh, p->expected, error);
 }
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
@@ -326,7 +326,7 @@ static enum tri_status deal_room(struct par_phase_run *p, struct tri_error *erro
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
-        if (task->progress == PAR_ENDED)
+        if (task->progress == PAR_ENDED || task->progress == PAR_READY)
             continue;
         if (task->asked.n == 0)
             status = extend_room(p, task, error);
@@ -370,17 +370,6 @@ static bool watch_owners(struct par_phase_run *p)
     return true;
 }
 
-static enum tri_status new_refiner(struct par_task *task)
-{
-    enum tri_status status =
-        tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
-    if (!status && task->pause)
-        tri_refiner_go_on(task->refiner, task->pause);
-    if (!status)
-        tri_pause_drop(&task->pause); /* nothing is left in it */
-    return status;
-}
-
 static void run_task(struct par_phase_run *p, struct par_task *task)
 {
     double began = tri_seconds();
@@ -391,7 +380,7 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = new_refiner(task);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_view_end(&task->view);
@@ -405,10 +394,7 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
 
 int64_t par_triangles(const struct par_state *state)
 {
-    int64_t n = state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
-    for (int32_t i = 0; i < state->halt.n_blocks; i++)
-        n -= par_ranges_unused(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
-    return n;
+    return state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
 }
 
 /* Each thread has one at an address of its own. */
@@ -417,7 +403,7 @@ static _Thread_local char here;
 static void tell(const struct par_state *state, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = state->options;
-    const struct par_place place = {.level = state->level, .sizes = state->stage == PAR_SIZES && state->sizes_first,
+    const struct par_place place = {.level = state->level, .sizes = state->next < PAR_BOUNDS && state->sizes_first,
                                     .column = state->column, .n_columns = state->n_columns, .round = state->round,
                                     .phase = phase, .done = done, .triangles = triangles};
     if (options->progress)
@@ -432,11 +418,12 @@ static int64_t least_made_by(const struct par_task *task) { return par_inserted_
  * or, on the boundary, one: that is not less than what has been told before. */
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
-    const int64_t made = least_made_by(task) - task->made_before;
+    const int64_t made = least_made_by(task);
     const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
+    const double before = p->state->done_share, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell(p->state, p->phase + 1, (double)done / (double)p->expected, p->before + all);
+        tell(p->state, p->phase + 1, before + (1 - before) * share, p->before + all);
 }
 
 static void run_next(void *context, size_t index)
@@ -445,12 +432,15 @@ static void run_next(void *context, size_t index)
     struct par_task *task = &p->tasks[p->order[index]];
     if (task->progress != PAR_READY || tri_stop_is_asked(p->state->mesh->stop))
         return;
+    if (!task->refiner && tri_stop_is_asked(p->state->halt))
+        return;
     run_task(p, task);
     if (task->progress == PAR_ENDED)
         note_end(p, task);
 }
 
-/* Runs every task that is ready, until it has ended, is full, or somebody asks for the end. */
+/* Runs every task that is ready, until it has ended, is full, or somebody asks for the end; none begins once somebody
+ * asks for a halt. */
 static void run_tasks(struct par_phase_run *p)
 {
     double began = tri_seconds();
@@ -526,17 +516,16 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
 /* Room for those that wait, once all others have ended: so what each gets does not depend on when others stopped. */
 static enum tri_status give_room(struct par_phase_run *p, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
     double dealing = tri_seconds();
-    if (!is_any(p, PAR_READY))
-        status = deal_room(p, error);
+    enum tri_status status = deal_room(p, error);
     if (!status && !watch_owners(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
     p->state->report->seconds_room += tri_seconds() - dealing;
     return status;
 }
 
-/* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some are ready to go on. */
+/* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some have not ended; after a halt these have
+ * not begun. */
 static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *error)
 {
     double reserving = tri_seconds();
@@ -547,96 +536,60 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
         if (status)
             break;
         run_tasks(p);
-        status = is_any(p, PAR_READY) ? tri_fail_stopped(error) : fetch_more(p, error);
+        status = is_any(p, PAR_READY) && !p->state->halt ? tri_fail_stopped(error) : fetch_more(p, error);
     } while (!status && is_any(p, PAR_FULL));
     free(p->mark);
     p->mark = NULL;
-    return status;
+    return !status && is_any(p, PAR_READY) ? tri_fail_stopped(error) : status;
 }
 
-/* --- a phase that is halted, and goes on */
-
-/* The tasks of a phase that has been halted. */
-static enum tri_status take_up(struct par_phase_run *p, struct tri_error *error)
+static bool note_done(struct par_phase_run *p)
 {
-    struct par_halt *halt = &p->state->halt;
-    p->tasks = calloc((size_t)halt->n_blocks, sizeof *p->tasks);
-    if (!p->tasks)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
-    free(p->worklist);
-    p->worklist = halt->worklist;
-    for (int32_t i = 0, at = 0; i < halt->n_blocks; at += halt->block[i++].n_worklist) {
-        const struct par_halted *h = &halt->block[i];
-        p->tasks[p->n_tasks++] = (struct par_task){.block = h->block, .worklist = p->worklist + at,
-                                               .n_worklist = h->n_worklist, .expected = h->expected,
-                                               .pauses = h->pauses, .progress = h->progress, .seconds = h->seconds,
-                                               .report = h->report, .view.room = h->room, .left = h->left,
-                                               .pause = h->pause};
-        set_up(p, &p->tasks[i]);
-        p->tasks[i].made_before = least_made_by(&p->tasks[i]);
-        p->done += h->progress == PAR_ENDED ? h->expected : 0;
-    }
-    free(halt->block);
-    *halt = (struct par_halt){0};
-    return TRI_OK;
+    bool memory = true;
+    for (int32_t i = 0; memory && i < p->n_tasks; i++)
+        if (p->tasks[i].progress == PAR_ENDED) {
+            memory = par_ids_add(&p->state->done, p->tasks[i].block);
+            p->is_done[p->tasks[i].block] = true;
+        }
+    p->state->done_share += (1 - p->state->done_share) * (double)p->done / (double)p->expected;
+    return memory;
 }
 
-/* A refiner is taken apart: its task may go on in another process. */
-static bool leave_refiner(struct par_task *task)
+/* The worklist as it was, without what has gone since, or was taken by blocks that are done. */
+static void put_back(struct par_phase_run *p)
 {
-    if (!task->refiner)
-        return true;
-    assert(!task->pause);
-    task->pause = malloc(sizeof *task->pause);
-    if (!task->pause)
-        return false;
-    tri_refiner_leave(task->refiner, task->pause);
-    tri_refiner_free(task->refiner);
-    task->refiner = NULL;
-    return true;
+    struct par_ids *list = &p->given;
+    struct par_keys *key = &p->given_key;
+    int32_t n = 0;
+    for (int32_t i = 0; i < list->n; i++)
+        if (p->block_of[i] == TRI_NONE || (p->block_of[i] != GONE && !p->is_done[p->block_of[i]])) {
+            if (key->n > 0)
+                key->item[n] = key->item[i];
+            list->item[n++] = list->item[i];
+        }
+    list->n = n;
+    key->n = key->n > 0 ? n : 0;
+    free(p->state->worklist.item);
+    free(p->state->key.item);
+    p->state->worklist = *list;
+    p->state->key = *key;
+    *list = (struct par_ids){0};
+    *key = (struct par_keys){0};
 }
 
-/* Where all tasks are, for who goes on; nothing is left here. False: one has failed, or there is no memory, and it is
- * not halted. */
-static bool halt_tasks(struct par_phase_run *p)
-{
-    struct par_halt *halt = &p->state->halt;
-    struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
-    bool memory = block && par_gather_given_up(p);
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        memory = memory && !p->tasks[i].lost && !par_has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
-    if (!memory) {
-        free(block);
-        return false;
-    }
-    *halt = (struct par_halt){.block = block, .worklist = p->worklist};
-    for (int32_t i = 0; i < p->n_tasks; i++) {
-        const struct par_task *task = &p->tasks[i];
-        block[halt->n_blocks++] = (struct par_halted){task->block, task->n_worklist, task->expected, task->pauses,
-                                                      task->progress, task->seconds, task->report, task->view.room,
-                                                      task->left, task->pause};
-        halt->n_worklist += task->n_worklist;
-        free(task->given_up.item);
-    }
-    p->worklist = NULL;
-    p->n_tasks = 0;
-    return true;
-}
-
-/* Begins the phase, or goes on with it; then halts it, where it is stopped and may be kept, or collects what its tasks
- * have done. */
+/* Runs the phase, or what is left of it; then collects what its tasks have done. */
 static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *error)
 {
-    enum tri_status status = p->state->halt.n_blocks > 0 ? take_up(p, error) : begin_tasks(p, error);
+    enum tri_status status = begin_tasks(p, error);
     if (status)
         return status;
     if (!order_tasks(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
     status = status ? status : run_to_end(p, error);
-    if (status == TRI_STOPPED && p->state->may_halt) {
-        if (halt_tasks(p))
-            return status;
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for blocks that are to go on later");
+    if (status == TRI_STOPPED && p->state->halt) {
+        if (!note_done(p))
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks that are done");
+        put_back(p);
     }
     double merging = tri_seconds();
     enum tri_status collected = par_collect(p, error);
@@ -654,16 +607,26 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);
+    p.is_done = calloc((size_t)par_blocks(partition), sizeof *p.is_done);
+    for (int32_t i = 0; p.is_done && i < state->done.n; i++)
+        p.is_done[state->done.item[i]] = true;
     enum tri_status status = TRI_OK;
     if (tri_stop_is_asked(state->mesh->stop))
         status = tri_fail_stopped(error);
-    else if (!p.block_of || !p.work || !p.worklist)
+    else if (!p.block_of || !p.work || !p.worklist || !p.is_done)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
+    if (status != TRI_STOPPED) {
+        state->done.n = 0;
+        state->done_share = 0;
+    }
     free(p.block_of);
     free(p.work);
     free(p.worklist);
+    free(p.is_done);
+    free(p.given.item);
+    free(p.given_key.item);
     free(p.tasks);
     free(p.order);
     return status;

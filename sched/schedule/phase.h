@@ -11,7 +11,7 @@
 #ifndef SCHED_SCHEDULE_PHASE_H
 #define SCHED_SCHEDULE_PHASE_H
 
-#include "sched/schedule/halt.h"
+#include "sched/schedule/next.h"
 #include "sched/schedule/partition.h"
 #include "sched/schedule/room.h"
 #include "sched/schedule/schedule.h"
@@ -19,9 +19,8 @@
 
 struct par_park;
 struct par_state;
-struct tri_pause;
 
-/* The number of triangles, with those that have been handed out and those of blocks that have been halted. */
+/* The number of triangles, with those that have been handed out. */
 int64_t par_triangles(const struct par_state *state);
 
 /* Tells of the phase that begins. */
@@ -51,13 +50,6 @@ struct par_share {
     void *user;
 };
 
-/* The parts of a refinement, in their order (schedule.c). */
-enum par_stage {
-    PAR_SIZES,   /* sizes, where angles are dear */
-    PAR_BOUNDS,  /* all bounds */
-    PAR_FINISHED /* the mesh is only to be handed out */
-};
-
 /* How near a mesh is to its end. */
 enum par_end {
     PAR_UNFINISHED, /* it is being refined, or is as blocks have left it */
@@ -80,16 +72,14 @@ struct par_state {
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
-    enum par_stage stage;
+    enum par_next next;
     int level;               /* of the schedule or the call at work */
-    bool amid;               /* the run is in this stage's schedule, and `cells` are the blocks of its first round; in a
-                                sweep: in a column, whose worklist has been given */
     int round, phase;        /* of the schedule; the phase from 0 */
-    int32_t column, n_columns; /* of a sweep, the first from 1; 0: it is none */
-    struct tri_pause *paused; /* the sequential call that goes on, amid which a checkpoint's state was kept; or NULL */
-    bool may_halt;           /* a phase that is stopped is kept in `halt`, rather than ended as it is; it fails where it
-                                cannot be kept */
-    struct par_halt halt;    /* phase `phase`, which goes on from there */
+    int32_t step;            /* of the phase, on ranks */
+    int32_t column, n_columns; /* of a sweep, odd ones alone, from 1; 0: it is none */
+    struct par_ids done;     /* blocks of phase `phase` that have ended, where it has been halted */
+    double done_share;       /* of that phase, to the order */
+    const struct tri_stop *halt; /* asked by the blocks of a phase before they begin; NULL: nobody */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices that there were before refinement */
     bool sizes_first;        /* a schedule for sizes comes before the one for all bounds (tri_sizes_come_first) */
@@ -118,8 +108,12 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
  * that of the keys: by round, by the column of who left it, by phase, by row, and as they were left. Only a column or
  * its neighbours leave something for it.
  *
- * TRI_STOPPED: somebody asks for the end, between any two points; where the state may halt the phase is in its `halt`
- * then, and the next call goes on with it (sched/schedule/halt.h). */
+ * TRI_STOPPED: somebody asks for the end, between any two points, and the phase ends as it is; or for a halt, and then
+ * blocks that have begun have ended, and are `done`. The next call is for all others.
+ *
+ * THEOREM (a phase that is halted). It makes the same mesh, and leaves the same, up to ids. For it is two phases, of
+ * some of the blocks and of the others; and what a block leaves no other of its phase takes, since two corners lie in
+ * its own fence. */
 enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 

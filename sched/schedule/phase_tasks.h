@@ -6,7 +6,14 @@
 
 #include "sched/schedule/phase.h"
 #include "triangle/mesh/owners.h"
-#include "triangle/refine/pause.h"
+#include "triangle/refine/refine.h"
+
+enum par_progress {
+    PAR_NEW,   /* waits for its first room */
+    PAR_READY, /* has room, and has not begun, or has been stopped */
+    PAR_FULL,  /* waits for more room, or for what others hold */
+    PAR_ENDED
+};
 
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct par_task {
@@ -20,9 +27,7 @@ struct par_task {
     struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
-    int64_t made_before;     /* of it, in a phase that goes on */
     struct tri_refiner *refiner;
-    struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
     struct par_ids left;  /* what gate and fence left */
     struct par_ids given_up;
     struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
@@ -40,7 +45,10 @@ struct par_phase_run {
     const struct par_partition *partition;
     int phase;
     int32_t only;       /* column, or TRI_NONE */
-    int32_t *block_of;  /* [worklist.n] */
+    bool *is_done;      /* [blocks] in an earlier call */
+    struct par_ids given; /* the worklist as it was, */
+    struct par_keys given_key;
+    int32_t *block_of;  /* [given.n] who takes each */
     double *work;       /* [worklist.n] triangles that each will become, to the order */
     tri_triangle_id *worklist; /* [worklist.n] by block */
     struct par_task *tasks;
@@ -66,8 +74,5 @@ bool par_has_failed(const struct par_task *task);
 /* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
  * one that has failed says. */
 enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error);
-
-/* The triangles that tasks have given up, in their order. False: no memory. */
-bool par_gather_given_up(const struct par_phase_run *p);
 
 #endif

@@ -22,7 +22,6 @@
 #include "triangle/base/clock.h"
 #include "triangle/base/size_text.h"
 #include "triangle/refine/census.h"
-#include "triangle/refine/pause.h"
 #include "triangle/size/estimate.h"
 
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
@@ -54,17 +53,9 @@ static struct par_checkpoint *checkpoint_of(const struct par_state *state)
     return state->options->carrier ? NULL : state->options->checkpoint;
 }
 
-/* To its end. top: the mesh is the whole one, and a state may be kept between any two points. */
-static enum tri_status run_refiner(struct par_state *state, struct tri_refiner *refiner, bool top,
-                                   struct tri_error *error)
-{
-    struct par_checkpoint *checkpoint = top ? checkpoint_of(state) : NULL;
-    return checkpoint ? par_state_call(checkpoint, state, refiner, error) : tri_refiner_run(refiner, error);
-}
-
 /* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
 static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
-                                   bool top, struct tri_error *error)
+                                   struct tri_error *error)
 {
     struct tri_refine_options options = *quality;
     struct tri_refine_report report = {0};
@@ -76,7 +67,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
             return TRI_OK;
     }
     enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
-    status = status ? status : run_refiner(state, refiner, top, error);
+    status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
     assert(tri_mesh_is_sound(state->mesh));
     par_add_up(&state->report->total, &report);
@@ -141,7 +132,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
 static enum tri_status come_to_border(struct par_state *state, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(state);
-    return checkpoint ? par_state_border(checkpoint, state, false, error) : TRI_OK;
+    return checkpoint ? par_state_border(checkpoint, state, NULL, false, error) : TRI_OK;
 }
 
 /* What comes now may be stopped, though not all that has been done is in a state. */
@@ -151,24 +142,21 @@ static void let_stop(struct par_state *state)
         par_state_let_stop(checkpoint_of(state), state);
 }
 
-/* Of the whole mesh a state may be kept between any two points. */
+/* Of the whole mesh a state may be kept between any two blocks. */
 static enum tri_status run_phase(struct par_state *state, const struct par_partition *partition,
                                  struct tri_error *error)
 {
-    struct par_checkpoint *checkpoint = state->amid ? checkpoint_of(state) : NULL;
+    struct par_checkpoint *checkpoint = par_is_phase(state->next) ? checkpoint_of(state) : NULL;
     return checkpoint ? par_state_phase(checkpoint, state, partition, NULL, TRI_NONE, error)
                       : par_phase(state, partition, state->phase, TRI_NONE, error);
 }
-
-/* A phase that has been halted may have all of the worklist in its hands. */
-static bool is_work_left(const struct par_state *state) { return state->worklist.n > 0 || state->halt.n_blocks > 0; }
 
 static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (; !status && state->phase < PAR_PHASES && is_work_left(state); state->phase++) {
-        status = state->amid ? come_to_border(state, error) : TRI_OK;
+    for (; !status && state->phase < PAR_PHASES && state->worklist.n > 0; state->phase++) {
+        status = par_is_phase(state->next) ? come_to_border(state, error) : TRI_OK;
         par_tell(state, state->phase + 1);
         status = status ? status : run_phase(state, partition, error);
     }
@@ -308,25 +296,19 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     return tri_refine_check(state->mesh, state->quality, &state->executor, error);
 }
 
-/* A phase that has been halted ends as it is; a state that has been kept has what is needed to go on. */
-static void end_halt(struct par_state *state)
-{
-    for (int32_t i = 0; i < state->halt.n_blocks; i++)
-        par_add_up(&state->report->total, &state->halt.block[i].report);
-    par_halt_drop(&state->halt, &state->spare);
-}
-
 /* What no block could do, and what blocks have left unused. */
 static enum tri_status finish_schedule(struct par_state *state, const struct tri_refine_options *quality, bool top,
                                        enum tri_status status, struct tri_error *error)
 {
     double last = tri_seconds();
-    end_halt(state);
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
+        if (top)
+            state->next = state->next < PAR_BOUNDS ? PAR_SIZES_REST : PAR_BOUNDS_REST;
+        status = top ? come_to_border(state, error) : TRI_OK;
         par_room_mark(&state->spare, state->mesh, &state->executor);
-        status = refine_rest(state, quality, false, top, error);
+        status = status ? status : refine_rest(state, quality, false, error);
     }
-    state->amid = false;
+    state->worklist.n = state->key.n = 0;
     state->report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     par_forget_deferred(state->report);
@@ -353,7 +335,7 @@ static enum tri_status run_and_finish(struct par_state *state, const struct tri_
                                       struct par_partition *partition, bool top, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (!state->paused) { /* else the rounds are over */
+    if (!par_is_rest(state->next)) {
         status = run_rounds(state, partition, error);
         note_size(state);
         if (top)
@@ -380,7 +362,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         return status;
     state->n_schedules++;
     state->round = state->phase = 0;
-    state->amid = top;
+    if (top)
+        state->next = state->next < PAR_BOUNDS ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE;
     return run_and_finish(state, quality, partition, top, error);
 }
 
@@ -477,7 +460,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
     double began = tri_seconds();
-    enum tri_status status = refine_rest(state, quality, true, level == 0, error);
+    enum tri_status status = refine_rest(state, quality, true, error);
     *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += tri_seconds() - began;
     return status;
 }
@@ -509,21 +492,12 @@ static enum tri_status refine_again(struct par_state *state, const struct tri_re
     return status;
 }
 
-/* The schedule of a stage, or what of it is still to be done. */
-static enum tri_status refine_stage(struct par_state *state, const struct tri_refine_options *quality,
-                                    enum par_stage stage, struct tri_error *error)
+/* From its beginning, or from where the state is in its schedule. */
+static enum tri_status refine_to(struct par_state *state, const struct tri_refine_options *quality,
+                                 struct tri_error *error)
 {
-    if (state->stage > stage)
-        return TRI_OK;
-    if (state->amid)
+    if (par_is_phase(state->next) || par_is_rest(state->next))
         return go_on(state, quality, error);
-    if (state->paused)
-        return refine_rest(state, quality, true, true, error);
-    const bool begun = state->stage < stage;
-    state->stage = stage;
-    enum tri_status status = begun ? come_to_border(state, error) : TRI_OK;
-    if (status)
-        return status;
     return state->cells.x ? refine_again(state, quality, error) : refine_level(state, quality, 0, error);
 }
 
@@ -535,7 +509,9 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 {
     struct tri_refine_options easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
-    return refine_stage(state, &easy, PAR_SIZES, error);
+    enum tri_status status = refine_to(state, &easy, error);
+    state->next = PAR_BOUNDS;
+    return status || state->end == PAR_DELIVERED ? status : come_to_border(state, error);
 }
 
 /* What a schedule cannot do, one call does. */
@@ -551,15 +527,15 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 {
     struct tri_refine_options usual = *quality;
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
-    if (!state->sizes_first && state->stage == PAR_SIZES)
-        state->stage = PAR_BOUNDS; /* the first */
+    if (!state->sizes_first && state->next == PAR_SIZES)
+        state->next = PAR_BOUNDS;
     const bool may_number = !state->options->by_block;
     state->then = may_number ? &usual : NULL;
-    enum tri_status status = state->sizes_first ? refine_sizes_first(state, &usual, error) : TRI_OK;
+    enum tri_status status = state->next < PAR_BOUNDS ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->then = NULL;
     state->may_number = may_number;
-    if (!status && state->end != PAR_DELIVERED)
-        status = refine_stage(state, &usual, PAR_BOUNDS, error);
+    if (!status && state->end != PAR_DELIVERED && state->next != PAR_HAND_OUT)
+        status = refine_to(state, &usual, error);
     return status;
 }
 
@@ -576,7 +552,7 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
     if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
-        (void)par_state_border(state->options->checkpoint, state, true, NULL);
+        (void)par_state_border(state->options->checkpoint, state, NULL, true, NULL);
     return status;
 }
 
@@ -588,7 +564,7 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
         return TRI_OK;
     if (state->report->levels > 0 && !state->options->by_block && state->end != PAR_NUMBERED)
         status = number_mesh(state, error);
-    state->stage = PAR_FINISHED;
+    state->next = PAR_HAND_OUT;
     status = status ? status : come_to_border(state, error);
     let_stop(state);
     return !status && state->options->sink ? hand_out(state, error) : status;
@@ -606,10 +582,7 @@ static void clean_up(struct par_state *state)
     report->parked = state->park ? par_park_bytes(state->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
-    if (checkpoint_of(state))
-        par_state_end(checkpoint_of(state), state);
-    tri_pause_drop(&state->paused);
-    par_halt_drop(&state->halt, &state->spare);
+    let_stop(state);
     if (state->options->park)
         *state->options->park = state->park;
     else
@@ -619,6 +592,7 @@ static void clean_up(struct par_state *state)
     free(state->worklist.item);
     free(state->key.item);
     free(state->remaining.item);
+    free(state->done.item);
     par_partition_free(&state->cells);
     par_room_free(&state->spare);
 }
@@ -631,8 +605,8 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
     enum tri_status status = TRI_OK;
     if (!sequential)
         status = refine_by_schedule(state, quality, error);
-    else if (state->stage < PAR_FINISHED)
-        status = refine_rest(state, quality, true, true, error);
+    else if (state->next != PAR_HAND_OUT)
+        status = refine_rest(state, quality, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
     state->quality = quality; /* all that was asked for */

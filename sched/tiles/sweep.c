@@ -1,8 +1,6 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/tiles/sweep.h"
 
-#include <assert.h>
-
 #include "sched/checkpoint/state.h"
 #include "sched/tiles/ahead.h"
 #include "sched/tiles/park.h"
@@ -50,7 +48,7 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
     return status;
 }
 
-static enum tri_status refine_column(struct par_state *state, const struct par_tiles *tiles, int32_t column,
+static enum tri_status refine_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
                                      struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
@@ -58,13 +56,14 @@ static enum tri_status refine_column(struct par_state *state, const struct par_t
                       : par_phase(state, tiles->partition, state->phase, column, error);
 }
 
+/* The odd column of blocks that is the state's. */
+static int32_t odd_column(const struct par_state *state) { return 2 * state->column - 1; }
+
 /* The blocks of an odd column, and those of the even one behind it, from state->phase on. */
-static enum tri_status refine_columns(struct par_state *state, const struct par_tiles *tiles, int32_t odd,
-                                      struct tri_error *error)
+static enum tri_status refine_columns(struct par_state *state, struct par_tiles *tiles, struct tri_error *error)
 {
+    const int32_t odd = odd_column(state);
     enum tri_status status = TRI_OK;
-    assert(odd % 2 == 1);
-    state->column = odd / 2 + 1;
     for (; !status && state->phase < PAR_PHASES; state->phase += !status) {
         int32_t column = state->phase < 2 ? odd : odd - 1;
         par_tell(state, state->phase + 1);
@@ -75,68 +74,68 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
 }
 
 /* A column from its beginning, or from where the state is amid it. */
-static enum tri_status go_through(struct par_state *state, const struct par_tiles *tiles,
-                                  const struct par_ahead *ahead, int32_t odd, struct tri_error *error)
+static enum tri_status go_through(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
+                                  struct tri_error *error)
 {
-    if (!state->amid && !par_ahead_give(ahead, state, odd))
+    if (state->next != PAR_COLUMN_PHASE && !par_ahead_give(ahead, state, odd_column(state)))
         return no_memory(error);
-    state->phase = state->amid ? state->phase : 0;
-    state->amid = true;
-    enum tri_status status = refine_columns(state, tiles, odd, error);
+    state->next = PAR_COLUMN_PHASE;
+    enum tri_status status = refine_columns(state, tiles, error);
     if (status)
         return status;
-    state->amid = false;
+    state->next = PAR_COLUMN;
     state->phase = 0;
     return TRI_OK;
 }
 
-static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, int32_t odd,
-                                 struct tri_error *error)
+/* Nobody is stopped any more, but the tiles' taker may have failed. */
+static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, struct tri_error *error)
 {
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
     enum tri_status status = par_tiles_end(tiles, error);
-    if (status || !state->options->checkpoint)
-        return status;
-    return par_state_last_column(state->options->checkpoint, state, tiles, odd, error);
+    return status || !checkpoint || !checkpoint->spool.failed ? status
+                                                              : par_state_border(checkpoint, state, tiles, true, error);
 }
 
-/* From column `odd` on, until something is left behind. */
+/* From the state's column on, until something is left behind. */
 static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
-                                     int32_t odd, bool *left, struct tri_error *error)
+                                     bool *left, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
     enum tri_status status = TRI_OK;
-    for (; !status && !*left && odd <= tiles->partition->n_columns; odd += 2) {
-        status = go_through(state, tiles, ahead, odd, error);
-        if (status || odd == 1)
-            continue;
-        status = finish_column(state, tiles, odd - 2, left, error);
-        if (!status && !*left && checkpoint)
-            status = par_state_column(checkpoint, state, tiles, odd + 2, error);
+    while (!status && !*left && odd_column(state) <= tiles->partition->n_columns) {
+        status = go_through(state, tiles, ahead, error);
+        if (!status && state->column > 1)
+            status = finish_column(state, tiles, odd_column(state) - 2, left, error);
+        if (status || *left)
+            break;
+        state->column++;
+        if (checkpoint && state->column > 2)
+            status = par_state_border(checkpoint, state, tiles, false, error);
     }
-    return status || *left ? status : end_tiles(state, tiles, odd, error);
+    return status || *left ? status : end_tiles(state, tiles, error);
 }
 
-/* *odd: the column to begin with, for which the worklist is as the sweep had it then. */
+/* The state is of its first column, for which the worklist is empty; or as a checkpoint has it. */
 static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, struct par_ahead *ahead,
-                                   int32_t *odd, struct tri_error *error)
+                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    *odd = 0; /* unless there is a state */
+    state->column = 0; /* unless there is a state */
     state->n_columns = (tiles->partition->n_columns + 1) / 2;
     if (!par_ahead_make(ahead, state, tiles->partition))
         status = no_memory(error);
     else if (state->options->checkpoint)
-        status = par_state_begin_sweep(state->options->checkpoint, state, tiles, odd, error);
+        status = par_state_begin_sweep(state->options->checkpoint, state, tiles, error);
     else
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    const bool fresh = *odd == 0;
-    *odd = fresh ? 1 : *odd;
-    if (fresh)
-        state->worklist.n = 0;
-    state->counts_remaining = state->options->count_remaining && (fresh || state->counts_remaining);
-    if (!status && state->counts_remaining && fresh && !par_remain_begin(state))
-        status = no_memory(error);
-    return status;
+    state->counts_remaining = state->options->count_remaining && (state->column == 0 || state->counts_remaining);
+    if (status || state->column > 0)
+        return status;
+    state->next = PAR_COLUMN;
+    state->column = 1;
+    state->phase = state->worklist.n = 0;
+    return state->counts_remaining && !par_remain_begin(state) ? no_memory(error) : TRI_OK;
 }
 
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
@@ -145,12 +144,12 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     struct par_tiles tiles = par_tiles_of(state, partition);
     struct par_ahead ahead;
     bool left = false;
-    int32_t odd;
-    enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
-    status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    enum tri_status status = begin_sweep(state, &tiles, &ahead, error);
+    status = status ? status : sweep_columns(state, &tiles, &ahead, &left, error);
     if (!status && state->counts_remaining)
         par_remain_settle(state);
-    state->counts_remaining = state->amid = false;
+    state->counts_remaining = false;
+    state->next = PAR_BOUNDS;
     state->column = state->n_columns = 0;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)

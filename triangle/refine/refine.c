@@ -17,12 +17,8 @@
 #include <string.h>
 
 #include "triangle/refine/census.h"
-#include "triangle/refine/pause.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
-
-_Static_assert((int)LAST_STAGE == (int)TRI_PAUSE_LAST_STAGE && (int)SECOND_PASS == (int)TRI_PAUSE_LAST_STEP,
-               "pause.c compares with them");
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -147,7 +143,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 {
     struct tri_refiner *r = NULL;
     *refiner = NULL;
-    memset(report, 0, sizeof *report); /* all its bytes: a pause shows them */
+    *report = (struct tri_refine_report){0};
     enum tri_status status = options->fence || options->part ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
     if (status)
         return status;
@@ -191,55 +187,6 @@ void tri_refiner_free(struct tri_refiner *r)
     tri_bad_queue_free(&r->queue);
     free(r->encroached);
     free(r);
-}
-
-void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
-{
-    assert(!r->options->urgent);
-    memset(pause, 0, sizeof *pause);
-    memcpy(&pause->report, r->report, sizeof pause->report);
-    pause->bounds = r->criterion.bounds;
-    pause->stage = (int32_t)r->stage;
-    pause->step = (int32_t)r->step;
-    pause->limit = r->limit;
-    pause->next_listed = r->next_listed;
-    pause->n_worklist = r->n_worklist;
-    pause->in_hand = r->in_hand;
-    pause->hand = r->hand;
-    memcpy(&pause->queue, &r->queue, sizeof r->queue);
-    pause->encroached = r->encroached;
-    pause->n_encroached = r->n_encroached;
-    pause->encroached_capacity = r->encroached_capacity;
-}
-
-void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
-{
-    tri_refiner_show(r, pause);
-    r->queue = (struct tri_bad_queue){0};
-    r->encroached = NULL;
-    r->n_encroached = r->encroached_capacity = 0;
-}
-
-void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
-{
-    assert(r->step == NOT_BEGUN && r->n_encroached == 0 && !r->encroached);
-    *r->report = pause->report;
-    r->criterion.bounds = pause->bounds;
-    r->stage = (enum tri_stage)pause->stage;
-    r->step = (enum tri_step)pause->step;
-    r->limit = pause->limit;
-    r->next_listed = pause->next_listed;
-    r->n_worklist = pause->n_worklist;
-    r->in_hand = pause->in_hand != 0;
-    r->hand = pause->hand;
-    tri_bad_queue_free(&r->queue);
-    r->queue = pause->queue;
-    r->encroached = pause->encroached;
-    r->n_encroached = pause->n_encroached;
-    r->encroached_capacity = pause->encroached_capacity;
-    pause->queue = (struct tri_bad_queue){0};
-    pause->encroached = NULL;
-    pause->n_encroached = pause->encroached_capacity = 0;
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

@@ -1,5 +1,5 @@
 /* The state of a refiner, private to its three files: refine.c is the loop, feed.c fills its queue, treat.c treats one
- * bad triangle. pause.h keeps the state in files. */
+ * bad triangle. */
 #ifndef TRIANGLE_REFINE_REFINER_H
 #define TRIANGLE_REFINE_REFINER_H
 
