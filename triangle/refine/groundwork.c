@@ -64,8 +64,6 @@ static void find_acute(struct tri_mesh *mesh)
         }
 }
 
-enum { BEYOND_CACHE = 2000 }; /* parents at a hub */
-
 struct hub {
     const struct tri_mesh *mesh;
     tri_vertex_id vertex;
@@ -78,53 +76,11 @@ static bool is_before(const void *context, int32_t a, int32_t b)
                             tri_far_end(hub->mesh, b, hub->vertex));
 }
 
-/* A parent at a hub, and its other end. */
-struct spoke {
-    struct tri_point far;
-    tri_parent_id parent;
-};
-
-/* Merges from[first .. middle - 1] and from[middle .. end - 1], in order each, to the same places of `to`. */
-static void merge_spokes(struct tri_point hub, const struct spoke *from, struct spoke *to, int32_t first,
-                         int32_t middle, int32_t end)
-{
-    for (int32_t i = first, a = first, b = middle; i < end; i++) {
-        bool second = b < end && (a == middle || tri_turns_before(hub, from[b].far, from[a].far));
-        to[i] = second ? from[b++] : from[a++];
-    }
-}
-
-/* By merging, which goes through memory in order: at a hub of a million parents five times as fast as a heap, which
- * does without memory. False where there is none. */
-static bool sort_by_merging(const struct tri_mesh *mesh, tri_vertex_id hub, tri_parent_id *parent, int32_t n)
-{
-    struct spoke *all = malloc(2 * (size_t)n * sizeof *all);
-    if (!all)
-        return false;
-    struct spoke *from = all, *to = all + n;
-    for (int32_t i = 0; i < n; i++)
-        from[i] = (struct spoke){tri_far_end(mesh, parent[i], hub), parent[i]};
-    for (int32_t width = 1; width < n; width *= 2) {
-        for (int32_t first = 0; first < n; first += 2 * width) {
-            int32_t middle = first + width < n ? first + width : n, end = middle + width < n ? middle + width : n;
-            merge_spokes(mesh->xy[hub], from, to, first, middle, end);
-        }
-        struct spoke *sorted = to;
-        to = from;
-        from = sorted;
-    }
-    for (int32_t i = 0; i < n; i++)
-        parent[i] = from[i].parent;
-    free(all);
-    return true;
-}
-
 static void sort_around(const struct tri_mesh *mesh, tri_vertex_id v, tri_parent_id *parent, int32_t n)
 {
     struct hub hub = {mesh, v};
-    if (n <= TRI_MANY_PARENTS || (n > BEYOND_CACHE && sort_by_merging(mesh, v, parent, n)))
-        return;
-    tri_heap_sort(parent, n, is_before, &hub);
+    if (n > TRI_MANY_PARENTS)
+        tri_heap_sort(parent, n, is_before, &hub);
 }
 
 void tri_incidence_fill(struct tri_mesh *mesh)
