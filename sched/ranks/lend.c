@@ -1,11 +1,11 @@
-/* What is lent: rings of triangles around vertices, as far as these are own ones in the boxes of another's blocks. */
+/* What is lent: ghost layers around vertices, as far as these are own ones in the boxes of another's blocks. */
 #include <assert.h>
 #include <stdlib.h>
 
 #include "sched/ranks/ranks.h"
 
-/* Rings around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
-enum { RINGS = 2 };
+/* Layers around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
+enum { LAYERS = 2 };
 
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
@@ -20,42 +20,42 @@ static bool tell_of(struct par_talk *talk, tri_triangle_id t)
 }
 
 /* Own vertices around which a rank has to know all, each with a triangle there. */
-struct ring {
+struct layer {
     struct par_ids vertex, triangle;
 };
 
-static void free_ring(struct ring *ring)
+static void free_layer(struct layer *layer)
 {
-    free(ring->vertex.item);
-    free(ring->triangle.item);
-    *ring = (struct ring){0};
+    free(layer->vertex.item);
+    free(layer->triangle.item);
+    *layer = (struct layer){0};
 }
 
-/* A telling of so many rings to rank w. */
+/* A telling of so many layers to rank w. */
 struct telling {
     const struct par_ranks *ranks;
     int w;
-    int32_t rings;
+    int32_t layers;
 };
 
-/* A vertex joins a ring, unless all around it has been told, or is not this rank's to tell. */
-static bool join(const struct telling *telling, struct ring *ring, tri_vertex_id v, tri_triangle_id t)
+/* A vertex joins a layer, unless all around it has been told, or is not this rank's to tell. */
+static bool join(const struct telling *telling, struct layer *layer, tri_vertex_id v, tri_triangle_id t)
 {
     const struct par_ranks *r = telling->ranks;
     struct par_map *surrounded = &r->lent[telling->w].surrounded;
     struct tri_point q = r->state->mesh->xy[v];
     if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != telling->w)
         return true;
-    return par_map_put(surrounded, v, telling->rings) && par_ids_add(&ring->vertex, v) &&
-           par_ids_add(&ring->triangle, t);
+    return par_map_put(surrounded, v, telling->layers) && par_ids_add(&layer->vertex, v) &&
+           par_ids_add(&layer->triangle, t);
 }
 
-static bool join_corners(const struct telling *telling, struct ring *ring, tri_triangle_id t)
+static bool join_corners(const struct telling *telling, struct layer *layer, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = telling->ranks->state->mesh;
     const tri_vertex_id *v = mesh->tri[t].v;
     assert(tri_is_live(&mesh->tri[t]));
-    return join(telling, ring, v[0], t) && join(telling, ring, v[1], t) && join(telling, ring, v[2], t);
+    return join(telling, layer, v[0], t) && join(telling, layer, v[1], t) && join(telling, layer, v[2], t);
 }
 
 static int corner_at(const struct tri_triangle *t, tri_vertex_id v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
@@ -69,8 +69,8 @@ static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_
     return across < 0 ? TRI_NONE : tri_of(across);
 }
 
-/* Tells of all triangles around an own vertex, of which `t` is one; their corners join the next ring. */
-static bool tell_around(const struct telling *telling, tri_vertex_id v, tri_triangle_id t, struct ring *next)
+/* Tells of all triangles around an own vertex, of which `t` is one; their corners join the next layer. */
+static bool tell_around(const struct telling *telling, tri_vertex_id v, tri_triangle_id t, struct layer *next)
 {
     const struct par_ranks *r = telling->ranks;
     const struct tri_mesh *mesh = r->state->mesh;
@@ -89,20 +89,20 @@ static bool tell_around(const struct telling *telling, tri_vertex_id v, tri_tria
     return memory;
 }
 
-/* Its rings, the first of which is given. Frees that. */
-static bool tell_rings(const struct telling *telling, struct ring *ring)
+/* Its layers, the first of which is given. Frees that. */
+static bool tell_layers(const struct telling *telling, struct layer *layer)
 {
     bool memory = true;
-    for (int32_t n = 0; memory && n < telling->rings && ring->vertex.n > 0; n++) {
-        struct ring next = {0};
-        for (int32_t i = 0; memory && i < ring->vertex.n; i++)
-            memory = tell_around(telling, ring->vertex.item[i], ring->triangle.item[i], &next);
-        free_ring(ring);
-        *ring = next;
+    for (int32_t n = 0; memory && n < telling->layers && layer->vertex.n > 0; n++) {
+        struct layer next = {0};
+        for (int32_t i = 0; memory && i < layer->vertex.n; i++)
+            memory = tell_around(telling, layer->vertex.item[i], layer->triangle.item[i], &next);
+        free_layer(layer);
+        *layer = next;
     }
-    for (int32_t i = 0; memory && i < ring->vertex.n; i++) /* around these not all has been told */
-        memory = par_map_put(&telling->ranks->lent[telling->w].surrounded, ring->vertex.item[i], TRI_NONE);
-    free_ring(ring);
+    for (int32_t i = 0; memory && i < layer->vertex.n; i++) /* around these not all has been told */
+        memory = par_map_put(&telling->ranks->lent[telling->w].surrounded, layer->vertex.item[i], TRI_NONE);
+    free_layer(layer);
     return memory;
 }
 
@@ -128,17 +128,17 @@ static int taker_of(const struct par_ranks *r, int32_t i)
 
 static bool tell_surroundings(const struct par_ranks *r)
 {
-    struct ring *ring = calloc((size_t)r->carrier->n_ranks, sizeof *ring);
-    bool memory = ring;
+    struct layer *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
+    bool memory = layer;
     for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
-        const struct telling telling = {r, taker_of(r, i), RINGS};
-        memory = telling.w < 0 || join_corners(&telling, &ring[telling.w], r->state->worklist.item[i]);
+        const struct telling telling = {r, taker_of(r, i), LAYERS};
+        memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->state->worklist.item[i]);
     }
-    for (int w = 0; ring && w < r->carrier->n_ranks; w++) {
-        const struct telling telling = {r, w, memory ? RINGS : 0};
-        memory = tell_rings(&telling, &ring[w]) && memory;
+    for (int w = 0; layer && w < r->carrier->n_ranks; w++) {
+        const struct telling telling = {r, w, memory ? LAYERS : 0};
+        memory = tell_layers(&telling, &layer[w]) && memory;
     }
-    free(ring);
+    free(layer);
     return memory;
 }
 
@@ -210,20 +210,20 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
     return bad;
 }
 
-/* What is asked for: a vertex, a triangle there that has been told, and the most rings of a telling that told all
+/* What is asked for: a vertex, a triangle there that has been told, and the most layers of a telling that told all
  * around one of its neighbours. */
 struct wish {
     tri_vertex_id vertex;
     tri_triangle_id triangle;
-    int32_t rings;
+    int32_t layers;
 };
 
 static void look_at(struct wish *wish, const struct par_talk *talk, const struct tri_mesh *mesh, tri_triangle_id t)
 {
     wish->triangle = t;
     for (int k = 0; k < 3; k++) {
-        int32_t rings = par_map_get(&talk->surrounded, mesh->tri[t].v[k]);
-        wish->rings = rings > wish->rings ? rings : wish->rings;
+        int32_t layers = par_map_get(&talk->surrounded, mesh->tri[t].v[k]);
+        wish->layers = layers > wish->layers ? layers : wish->layers;
     }
 }
 
@@ -253,7 +253,7 @@ static int32_t read_wishes(const struct par_ranks *r, int w, struct wish *wish)
     return memory ? n : TRI_NONE;
 }
 
-/* Where what has been told was not enough, twice as many rings are told of: so a block that eats its way into another
+/* Where what has been told was not enough, twice as many layers are told of: so a block that eats its way into another
  * rank's part asks seldom, and one that asks a little here and there does not get that much everywhere. */
 static bool fulfil(const struct par_ranks *r, int w)
 {
@@ -262,10 +262,10 @@ static bool fulfil(const struct par_ranks *r, int w)
     bool memory = n != TRI_NONE;
     for (int32_t i = 0; memory && i < n; i++) {
         assert(wish[i].triangle != TRI_NONE); /* vertices are told as corners */
-        const struct telling telling = {r, w, wish[i].rings > 0 ? 2 * wish[i].rings : RINGS};
-        struct ring ring = {0};
-        memory = join(&telling, &ring, wish[i].vertex, wish[i].triangle);
-        memory = tell_rings(&telling, &ring) && memory;
+        const struct telling telling = {r, w, wish[i].layers > 0 ? 2 * wish[i].layers : LAYERS};
+        struct layer layer = {0};
+        memory = join(&telling, &layer, wish[i].vertex, wish[i].triangle);
+        memory = tell_layers(&telling, &layer) && memory;
     }
     free(wish);
     return memory;

@@ -35,7 +35,7 @@ struct par_talk {
     struct par_ids vertex, triangle, sub; /* ids here; of triangles and subsegments that are no more TRI_NONE */
     struct par_ids sub_end;               /* where each subsegment ended when it was told */
     struct par_map vertex_at, triangle_at, sub_at; /* their numbers */
-    struct par_map surrounded; /* vertices of which all triangles have been told: with how many rings at once */
+    struct par_map surrounded; /* vertices of which all triangles have been told: with how many layers at once */
 };
 
 bool par_talk_add_vertex(struct par_talk *talk, tri_vertex_id v);
