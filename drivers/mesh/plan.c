@@ -247,9 +247,6 @@ struct disk_place {
     double bytes;     /* that will be needed there */
 };
 
-/* Bytes left where the place is; HUGE_VAL: not known. */
-static double disk_left(const struct disk_place *place) { return resources_disk(place->path); }
-
 static bool device_of(const struct disk_place *place, dev_t *device)
 {
     char folder[RESOURCES_PATH];
@@ -273,7 +270,7 @@ static const struct disk_place *too_small(const struct disk_place places[DISK_PL
         *needed = 0;
         for (int k = 0; places[i].bytes > 0 && k < DISK_PLACES; k++)
             *needed += places[k].bytes > 0 && are_on_one_disk(&places[i], &places[k]) ? places[k].bytes : 0;
-        if (*needed > 0 && *needed > disk_left(&places[i]))
+        if (*needed > 0 && *needed > resources_disk(places[i].path))
             return &places[i];
     }
     return NULL;
@@ -312,11 +309,12 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
-                        tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
+                        tri_size_text(needed).text, tri_size_text(resources_disk(place->path)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;
     if (place)
         console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
-                     place->path, place->what, tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
+                     place->path, place->what, tri_size_text(needed).text,
+                     tri_size_text(resources_disk(place->path)).text);
     return TRI_OK;
 }
 
@@ -453,10 +451,10 @@ void plan_print(const struct run *run, const struct estimate *e)
         printf("  Way: %s\n", way_of(run, e));
     const double used = resources_memory_used();
     print_bytes("Memory", fmax(used + more, input_bytes(run)), used + left, "in all");
-    print_bytes("Disk", n->files, disk_left(&places[0]), "left");
+    print_bytes("Disk", n->files, resources_disk(places[0].path), "left");
     if (places[1].bytes > 0)
-        print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]), "left");
+        print_bytes("Disk for what does not fit in memory", places[1].bytes, resources_disk(places[1].path), "left");
     if (places[2].bytes > 0)
-        print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]), "left");
+        print_bytes("Disk for the checkpoint", places[2].bytes, resources_disk(places[2].path), "left");
     print_seconds(e->seconds, threads);
 }

@@ -13,8 +13,6 @@
 #include "triangle/text/stream.h"
 #include "triangle/text/tile_store.h"
 
-enum { STREAMS_MOST = 4 };
-
 /* One HDF5 file and the text beside it. */
 struct stream {
     struct tri_h5_options options;
@@ -23,7 +21,7 @@ struct stream {
 
 struct streams {
     int n;
-    struct stream stream[STREAMS_MOST];
+    struct stream stream[LONG_OPTIONS_MOST_EXPORTS];
     struct tri_text_options text_options;
     struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
     int n_exports;
@@ -32,7 +30,7 @@ struct streams {
     bool markers;                  /* are written */
     const struct tri_executor *executor;
     int n_sinks;
-    struct tri_sink sink[STREAMS_MOST + 2]; /* of the HDF5 files, of the texts, of the store */
+    struct tri_sink sink[LONG_OPTIONS_MOST_EXPORTS + 2]; /* of the HDF5 files, of the texts, of the store */
     int64_t vertices, triangles, segments; /* taken so far */
 };
 

@@ -120,7 +120,7 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
     bool done = array->dataset >= 0 && (!in_chunks || resize(array, n));
     done = array->dataset >= 0 && H5Dclose(array->dataset) >= 0 && done;
     array->dataset = -1;
-    return done ? TRI_OK : tri_h5_fail(array->file, array->name, error);
+    return done && array->file->failure == 0 ? TRI_OK : tri_h5_fail(array->file, array->name, error);
 }
 
 /* --- wider numbers */

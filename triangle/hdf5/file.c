@@ -100,9 +100,9 @@ static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_
     }
     if (driven->written < place + size)
         driven->written = place + size;
-    if (driven->file->failure != 0)
-        return 0;
-    return note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
+    if (driven->file->failure == 0)
+        (void)note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
+    return 0; /* where HDF5 learns of a failure it does not let go of all that it has */
 }
 
 /* The file ends where what has been allocated ends. */

@@ -136,26 +136,17 @@ static enum tri_status read_sized(struct load *load, const struct tri_executor *
     return TRI_OK;
 }
 
-/* Doubles the room for data; one byte of it is kept for a final newline. */
-static bool grow_data(struct tri_text *text, size_t *room)
-{
-    const size_t larger = *room ? 2 * *room : (size_t)1 << 16;
-    if (!tri_resize(&text->data, larger, 1))
-        return false;
-    *room = larger;
-    return true;
-}
-
 /* A pipe, or a file that does not say its size, to its end. */
 static enum tri_status read_stream(struct tri_text *text, int file, struct tri_error *error)
 {
-    size_t room = 0;
+    enum { PIECE = 1 << 16 };
+    int64_t room = 0;
     for (;;) {
-        if (text->size + 1 >= room && !grow_data(text, &room))
+        if (!tri_grow_far(&text->data, &room, (int64_t)text->size + PIECE, 1)) /* a byte is for a final newline */
             return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the file");
         if (tri_stop_is_asked(text->stop))
             return tri_fail_stopped(error);
-        const ssize_t got = read(file, text->data + text->size, room - 1 - text->size);
+        const ssize_t got = read(file, text->data + text->size, (size_t)room - 1 - text->size);
         if (got == 0)
             return TRI_OK;
         if (got < 0 && errno != EINTR)

@@ -77,7 +77,7 @@ static void format_chunk(struct table *table, size_t i)
 static void table_task(void *context, size_t i)
 {
     struct table *const table = context;
-    if (i < table->n_waiting)
+    if (i < table->n_waiting && tri_output_has_places(table->output))
         write_chunk(table, i);
     if (i < table->n_new)
         format_chunk(table, i);
@@ -92,27 +92,18 @@ static enum tri_status conclude_wave(struct table *table, struct tri_error *erro
     return TRI_OK;
 }
 
-static enum tri_status write_in_order(struct table *table, struct tri_error *error)
+/* The chunks that were formatted get their places, or are written now, as long as that goes well. */
+static void place_wave(struct table *table)
 {
+    int result = 0;
     for (size_t i = 0; i < table->n_new; i++) {
-        write_chunk(table, i);
-        if (table->chunks[i].result != 0)
-            return tri_output_conclude(table->output, table->chunks[i].result, error);
-    }
-    return TRI_OK;
-}
-
-/* The chunks that were formatted get their places, or are written now. */
-static enum tri_status place_wave(struct table *table, struct tri_error *error)
-{
-    if (!tri_output_has_places(table->output)) {
-        table->n_waiting = 0;
-        return write_in_order(table, error);
-    }
-    for (size_t i = 0; i < table->n_new; i++)
         table->chunks[i].place = tri_output_reserve(table->output, table->chunks[i].length);
+        if (!tri_output_has_places(table->output) && result == 0) {
+            write_chunk(table, i);
+            result = table->chunks[i].result;
+        }
+    }
     table->n_waiting = table->n_new;
-    return TRI_OK;
 }
 
 static enum tri_status run_table(struct table *table, size_t wave_chunks, const struct tri_executor *executor,
@@ -124,7 +115,8 @@ static enum tri_status run_table(struct table *table, size_t wave_chunks, const 
         table->n_new = left < wave_chunks ? left : wave_chunks;
         tri_execute(executor, table->n_new > table->n_waiting ? table->n_new : table->n_waiting, table_task, table);
         status = conclude_wave(table, error);
-        status = status ? status : place_wave(table, error);
+        if (!status)
+            place_wave(table);
         table->begin = table->n_new == left ? table->n_rows : table->begin + table->n_new * table->chunk_rows;
     }
     return status;
