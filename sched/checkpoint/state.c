@@ -195,13 +195,15 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     carry_list(cargo, f, &state->done);
     for (int k = 0; k < PAR_KINDS; k++)
         carry_ranges(cargo, f, &state->spare.ranges[k]);
-    carry_partition(cargo, f, &state->cells);
-    carry_partition(cargo, f, &state->report->partition);
     carry_counts(cargo, f, state->mesh);
     if (cargo->memory)
         carry_mesh(f, state->mesh);
-    if (cargo->tiles)
+    if (cargo->tiles) { /* whose cells have been made anew */
         carry_sweep(cargo, f);
+    } else {
+        carry_partition(cargo, f, &state->cells);
+        carry_partition(cargo, f, &state->report->partition);
+    }
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 

@@ -5,43 +5,45 @@
 
 #include <stdbool.h>
 
-/* The mesh has been triangulated, and angles are dear; else the run begins with PAR_BOUNDS.
+/*              angles are dear          else
+ *                     |                  |
+ *                 PAR_SIZES              |          PAR_SIZES: coarse mesh, schedule; or one call, if small
+ *                     v                  |
+ *      .------- PAR_SIZES_PHASE          |          rounds of four phases
+ *      |              v something left   |
+ *      |        PAR_SIZES_REST           |          one call
+ *      v              v                  |
+ *      '--------> PAR_BOUNDS <-----------' <------------------------------------------.
+ *                  |  |  \                                                            |
+ *         one call |  |   '-- too large for memory --> PAR_COLUMN <----.              |
+ *                  |  v                                    v           | next column  |
+ *      .---------- | PAR_BOUNDS_PHASE               PAR_COLUMN_PHASE --'              |
+ *      |           |  v something left                     |  |                       |
+ *      |           | PAR_BOUNDS_REST         last column   |  '-- something left, for later rounds:
+ *      v           v  v                                    |      the mesh as it was, not to be swept again
+ *      '------> PAR_HAND_OUT                               |
+ *                     v                                    v
+ *                    end                                  end
  *
- *     PAR_SIZES --------------------.
- *        | coarse mesh              | one call, where the mesh is small
- *     PAR_SIZES_PHASE --.           |
- *        | rounds       | nothing   |
- *     PAR_SIZES_REST    | is left   |
- *        | last call    |           |
- *     PAR_BOUNDS <------'-----------' <-----------------------------------------------.
- *        | coarse mesh, or that of the sizes   |  \                                   |
- *        |                                     |   \ too large for memory             |
- *        |                                     |    PAR_COLUMN <--. the column's      | blocks leave something
- *        |                        one call, if |     | its list   | tiles             | over: from its mesh on,
- *     PAR_BOUNDS_PHASE --.  small, -S, ...     |    PAR_COLUMN_PHASE                  | and never swept again
- *        | rounds        | nothing             |     |   '------------------------------'
- *     PAR_BOUNDS_REST    | is left             |     | last tiles
- *        | last call     |                     |     '-> the end
- *     PAR_HAND_OUT <-----'---------------------'
- *        | tiles, or none
- *     the end
+ * refine_by_schedule (schedule.c) chooses the first; run_schedule goes to .._PHASE, finish_schedule to .._REST,
+ * refine_sizes_first to BOUNDS, deliver to HAND_OUT; begin_sweep and go_through (sched/tiles/sweep.c) to .._COLUMN and
+ * .._COLUMN_PHASE, par_sweep back to BOUNDS. On ranks only .._PHASE is taken, by sched/ranks/ranks.c: the phase may be
+ * PAR_PHASES, a round that is over.
  *
- * A state may be kept at each of these but for the first, where nothing has been done. Made by, in schedule.c:
- * refine_by_schedule (SIZES to BOUNDS), run_schedule (to .._PHASE), finish_schedule (to .._REST), deliver (to
- * HAND_OUT); in sched/tiles/sweep.c: sweep_columns, go_through; leave_memory goes back to BOUNDS. In a state:
+ * A state may be kept at all but PAR_SIZES, and at PAR_BOUNDS where something has been done before. In it:
  *
- *     PAR_BOUNDS    the mesh, and its tiles where a schedule has made it: no lists
- *     .._PHASE      worklist and keys, free ranges, blocks that are done; the mesh has free places
- *     .._REST       the same, and the round is the last
- *     PAR_COLUMN    the mesh holds columns from here on; tiles before them have been handed out
- *     PAR_HAND_OUT  the mesh is finished, and numbered unless that is left out */
+ *     .._PHASE       the mesh, with places that nobody uses; these; worklist, keys, cells, blocks that are done
+ *     .._REST        the same; the worklist is for the call
+ *     PAR_BOUNDS, PAR_HAND_OUT   the mesh, without gaps; the cells that made it, if any; no lists
+ *     PAR_COLUMN     the mesh from this column on, and its worklist; tiles before it have been handed out
+ *     PAR_COLUMN_PHASE   the same amid the column, whose list from the coarse mesh has joined the worklist */
 enum par_next {
-    PAR_SIZES,        /* sizes, from the beginning */
-    PAR_SIZES_PHASE,  /* phase `phase` of round `round` of the schedule for sizes, but for blocks that are done */
+    PAR_SIZES,        /* the first step for sizes alone */
+    PAR_SIZES_PHASE,  /* phase `phase` of round `round` of that schedule, but for the blocks that are `done` */
     PAR_SIZES_REST,   /* the call for what no block could do */
-    PAR_BOUNDS,       /* all bounds, from the beginning */
-    PAR_COLUMN,       /* of a sweep: a column, from its beginning */
-    PAR_COLUMN_PHASE, /* phase `phase` of this column, but for blocks that are done */
+    PAR_BOUNDS,       /* the first step for all bounds */
+    PAR_COLUMN,       /* `column` of a sweep */
+    PAR_COLUMN_PHASE, /* phase `phase` of this column, but for the blocks that are `done` */
     PAR_BOUNDS_PHASE,
     PAR_BOUNDS_REST,
     PAR_HAND_OUT      /* nothing is refined any more */

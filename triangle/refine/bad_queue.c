@@ -34,7 +34,7 @@ static int32_t take_block(struct tri_bad_queue *queue)
              tri_grow(&queue->block, &queue->block_capacity, queue->n_blocks + 1, sizeof *queue->block))
         block = queue->n_blocks++;
     if (block != NIL)
-        queue->block[block] = (struct tri_block){.next = NIL}; /* all its bytes: a pause shows them */
+        queue->block[block].next = NIL;
     return block;
 }
 
