@@ -100,7 +100,6 @@ static void test_runs(void **state)
     assert_true(ranges.item[1].next == 30 && ranges.item[1].end == 40);
     free(list.item);
     free(ranges.item);
-    free(ranges.below);
 }
 
 int main(void)
