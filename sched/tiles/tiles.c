@@ -34,24 +34,6 @@ struct par_column {
 
 /* --- what belongs to the column */
 
-/* The tile of places that mostly lie in the same one as the last. */
-struct place_finder {
-    struct tri_fence fence;
-    int32_t tile;
-};
-
-static const struct place_finder LOST = {.fence = {1, 1, 0, 0}};
-
-static int32_t find_tile(struct place_finder *f, const struct par_partition *p, struct tri_point q)
-{
-    if (!tri_fence_holds(&f->fence, q)) {
-        f->tile = par_block_at(p, 0, q);
-        f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
-    }
-    assert(tri_fence_holds(&f->fence, q));
-    return f->tile;
-}
-
 /* Vertices that have no number. */
 static void find_vertices(void *context, size_t share)
 {
@@ -59,13 +41,13 @@ static void find_vertices(void *context, size_t share)
     struct par_tiles *tiles = c->tiles;
     const struct tri_mesh *mesh = tiles->mesh;
     struct tri_range range = par_finds_share(share, mesh->n_vertices);
-    struct place_finder place = LOST;
+    struct par_locator place = PAR_LOST;
     struct par_finder finder = par_finder_of(&c->vertices, share);
     for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
         if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
             mesh->xy[v].x < c->begin)
             continue;
-        par_find(&finder, v, find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile);
+        par_find(&finder, v, par_locate(&place, tiles->partition, 0, mesh->xy[v]) - c->first_tile);
     }
     c->no_memory[share] = !par_finder_end(&finder);
 }
@@ -217,9 +199,9 @@ static void place_kept(void *context, size_t share)
 {
     struct par_tiles *tiles = context;
     struct tri_range range = tri_share(share, tiles->n_kept);
-    struct place_finder place = LOST;
+    struct par_locator place = PAR_LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++)
-        tiles->kept_tile[v] = find_tile(&place, tiles->partition, tiles->mesh->xy[v]);
+        tiles->kept_tile[v] = par_locate(&place, tiles->partition, 0, tiles->mesh->xy[v]);
 }
 
 static bool know_kept(struct par_tiles *tiles)
