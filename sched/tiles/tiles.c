@@ -290,9 +290,9 @@ static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struc
     const struct par_column *c = context;
     struct par_tile_job *job = &c->tiles->job[slot];
     job->tile = tile_of(c, row);
-    const int32_t *first = c->triangles.first_piece + row;
-    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.piece + first[0],
-                                     first[1] - first[0], c->subs.item + c->subs.start[row]};
+    const int32_t first = c->triangles.start[row];
+    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.item + first,
+                                     c->triangles.note + first, c->subs.item + c->subs.start[row]};
     return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
 }
 
@@ -445,7 +445,7 @@ static enum tri_status hand_out_column(struct par_column *c, struct tri_error *e
         return no_memory(error);
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
-    if (!memory_has_lasted(c) || !par_finds_sort(&c->triangles) || !par_finds_deal(&c->subs, executor))
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, executor) || !par_finds_deal(&c->subs, executor))
         return no_memory(error);
     struct par_pipeline pipeline = pipeline_of(c);
     pipeline.make = fill_tile;
