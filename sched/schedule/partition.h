@@ -104,7 +104,7 @@ static inline int32_t par_locate(struct par_locator *locator, const struct par_p
     return locator->block;
 }
 
-/* The tile, as a block of phase 0, that n vertices share belongs to: the last one that holds one of them. */
+/* The last tile, as a block of phase 0, that holds one of n vertices: those of a triangle, or of a subsegment. */
 int32_t par_last_tile(const struct par_partition *partition, const struct tri_mesh *mesh, const tri_vertex_id *v,
                       int n);
 
