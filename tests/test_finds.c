@@ -1,4 +1,4 @@
-/* What shares find, row by row: dealt, or left where it is, as a naive list has it; and runs of ids. */
+/* What shares find, row by row, as a naive list has it; and runs of ids. */
 #include "sched/tiles/finds.h"
 
 #include <setjmp.h>
@@ -55,32 +55,10 @@ static void test_deal(void **state)
         assert_int_equal(finds.start[row], at);
         assert_int_equal(finds.start[row + 1], at + n);
         assert_memory_equal(finds.item + at, list, (size_t)n * sizeof *list);
+        for (int32_t i = 0; i < n; i++)
+            assert_int_equal(finds.note[at + i], note_of(list[i]));
         at += n;
     }
-    par_finds_free(&finds);
-}
-
-static void test_sort(void **state)
-{
-    (void)state;
-    struct par_finds finds;
-    find_all(&finds);
-    assert_true(par_finds_sort(&finds));
-    assert_int_equal(finds.first_piece[0], 0);
-    for (int32_t row = 0, sum = 0; row < ROWS; row++) {
-        int32_t list[IDS], n = list_row(row, list), at = 0;
-        for (int32_t p = finds.first_piece[row]; p < finds.first_piece[row + 1]; p++)
-            for (int32_t i = 0; i < finds.piece[p].n; i++, at++) {
-                assert_true(at < n);
-                assert_int_equal(finds.piece[p].item[i], list[at]);
-                assert_int_equal(finds.piece[p].note[i], note_of(list[at]));
-            }
-        assert_int_equal(at, n);
-        assert_int_equal(finds.start[row], sum);
-        sum += n;
-        assert_int_equal(finds.start[row + 1], sum);
-    }
-    assert_int_equal(finds.first_piece[EMPTY_ROW], finds.first_piece[EMPTY_ROW + 1]);
     par_finds_free(&finds);
 }
 
@@ -100,14 +78,12 @@ static void test_runs(void **state)
     assert_true(ranges.item[1].next == 30 && ranges.item[1].end == 40);
     free(list.item);
     free(ranges.item);
-    free(ranges.below);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_deal),
-        cmocka_unit_test(test_sort),
         cmocka_unit_test(test_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

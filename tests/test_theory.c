@@ -7,6 +7,16 @@
 
 static const double RADIAN = 3.14159265358979324 / 180;
 
+/* Equation (2): the area bound of a pre-refinement after which no circumradius exceeds r. */
+static double area_for_radius(double radius, double rho) { return radius * radius / (4 * rho * rho * rho); }
+
+/* Definition 3: the buffer zone of p holds the triangles whose circumcentre c is nearer to p than 2 r; its cavity lies
+ * within. */
+static bool in_buffer_zone(struct tri_point p, struct tri_point c, double radius)
+{
+    return (p.x - c.x) * (p.x - c.x) + (p.y - c.y) * (p.y - c.y) < 4 * radius * radius;
+}
+
 static void assert_near(double a, double b) { assert_true(fabs(a - b) <= 1e-12 * fabs(b)); }
 
 static void test_rho_is_the_inverse_of_the_angle(void **state)
@@ -79,7 +89,7 @@ static void test_area_for_radius_is_the_inverse_of_lemma_7(void **state)
     (void)state;
     for (double angle = 1; angle <= 34; angle++)
         for (double radius = 1e-6; radius < 1e6; radius *= 7) {
-            double area = par_area_for_radius(radius, par_rho(angle));
+            double area = area_for_radius(radius, par_rho(angle));
             assert_near(par_radius_lemma7(area, par_rho(angle)), radius);
             assert_true(par_radius_tight(area, angle) <= radius); /* so a mesh within this area has radii below */
         }
@@ -92,8 +102,8 @@ static void test_distances_decide(void **state)
     assert_true(par_independent(o, four, 1) && par_independent(four, o, 1));
     assert_false(par_independent(o, less, 1));
     assert_false(par_independent(o, four, 1.0001));
-    assert_true(par_in_buffer_zone(o, within, 1));
-    assert_false(par_in_buffer_zone(o, two, 1));
+    assert_true(in_buffer_zone(o, within, 1));
+    assert_false(in_buffer_zone(o, two, 1));
 }
 
 /* A mesh with radii of about one size, or (graded) of several. */
@@ -266,7 +276,7 @@ static void test_cavities_lie_in_the_buffer_zone(void **state)
             if (!find_cavity(&p, &mesh, &random, &t))
                 continue;
             for (int32_t k = 0; k < p.n_tri; k++) {
-                assert_true(par_in_buffer_zone(p.p, centre_of(&mesh, p.tri[k]), radius));
+                assert_true(in_buffer_zone(p.p, centre_of(&mesh, p.tri[k]), radius));
                 for (int c = 0; c < 3; c++)
                     assert_true(tri_relative(&mesh.xy[mesh.tri[p.tri[k]].v[c]], p.p).l < 4 * radius * radius);
             }

@@ -35,29 +35,16 @@ static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->fi
 
 static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 {
-    int32_t last = tile_of(h, v[0]);
-    for (int k = 1; k < n; k++) {
-        int32_t tile = tile_of(h, v[k]);
-        last = tile > last ? tile : last;
-    }
-    return last;
+    return par_last_tile(h->tiles->partition, h->mesh, v, n);
 }
 
 /* --- counting */
-
-static int64_t unused(const struct par_ranges *ranges)
-{
-    int64_t n = 0;
-    for (int32_t i = 0; i < ranges->n; i++)
-        n += ranges->item[i].end - ranges->item[i].next;
-    return n;
-}
 
 /* All triangles but the straddlers that belong to later tiles. */
 static int64_t count_triangles(const struct handing *h)
 {
     const struct par_ranks *r = h->ranks;
-    int64_t n = h->mesh->n_triangles - unused(&r->state->spare.ranges[PAR_TRIANGLES]);
+    int64_t n = h->mesh->n_triangles - par_ranges_unused(&r->state->spare.ranges[PAR_TRIANGLES]);
     for (int32_t i = 0; i < r->straddlers.n; i++)
         n -= !is_own(h, last_tile(h, h->mesh->tri[r->straddlers.item[i]].v, 3));
     assert(n >= 0);

@@ -432,6 +432,16 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
     return column * p->n_rows + row;
 }
 
+int32_t par_last_tile(const struct par_partition *p, const struct tri_mesh *mesh, const tri_vertex_id *v, int n)
+{
+    int32_t last = -1;
+    for (int k = 0; k < n; k++) {
+        int32_t tile = par_block_at(p, 0, mesh->xy[v[k]]);
+        last = tile > last ? tile : last;
+    }
+    return last;
+}
+
 int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, tri_triangle_id t)
 {
     struct par_locator locator = PAR_LOST;

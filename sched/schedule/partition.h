@@ -104,6 +104,10 @@ static inline int32_t par_locate(struct par_locator *locator, const struct par_p
     return locator->block;
 }
 
+/* The last tile, as a block of phase 0, that holds one of n vertices: those of a triangle, or of a subsegment. */
+int32_t par_last_tile(const struct par_partition *partition, const struct tri_mesh *mesh, const tri_vertex_id *v,
+                      int n);
+
 /* The block of a phase that holds all corners of triangle t, or TRI_NONE. O(log blocks); or O(1). */
 int32_t par_owner_of(const struct par_partition *partition, int phase, const struct tri_mesh *mesh, tri_triangle_id t);
 int32_t par_locate_owner(struct par_locator *locator, const struct par_partition *partition, int phase,

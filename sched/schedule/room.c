@@ -21,9 +21,7 @@ static enum tri_status no_memory(struct tri_error *error)
 
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
 {
-    const struct tri_growing arrays[] = {{&ranges->below, sizeof *ranges->below},
-                                         {&ranges->item, sizeof *ranges->item}};
-    return tri_grow_together(arrays, 2, &ranges->capacity, need, 0);
+    return tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
 }
 
 int64_t par_ranges_unused(const struct par_ranges *ranges)
@@ -231,10 +229,8 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 
 void par_room_free(struct par_room *room)
 {
-    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
         free(room->ranges[kind].item);
-        free(room->ranges[kind].below);
-    }
     *room = (struct par_room){0};
 }
 
@@ -287,74 +283,27 @@ static int by_start(const void *left, const void *right)
     return (a->next > b->next) - (a->next < b->next);
 }
 
-/* Brings the gaps in order, and counts what lies below each. */
-static void sort_gaps(struct par_ranges *gaps)
+/* Calls move for each item that lies above the new end of an array: from the old end downwards they go to the unused
+ * places from the beginning upwards. Returns the new end. */
+static int32_t move_items(struct par_ranges *gaps, int32_t count, struct tri_mesh *mesh,
+                          void (*move)(struct tri_mesh *mesh, int32_t from, int32_t to))
 {
-    int32_t below = 0;
-    if (gaps->n)
+    const int32_t kept = count - (int32_t)par_ranges_unused(gaps);
+    struct par_range *into = gaps->item;
+    if (gaps->n > 0)
         qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
-    for (int32_t i = 0; i < gaps->n; i++) {
-        assert(i == 0 || gaps->item[i - 1].end <= gaps->item[i].next);
-        gaps->below[i] = below;
-        below += gaps->item[i].end - gaps->item[i].next;
-    }
-}
-
-/* An array whose gaps are being closed. The items from the end downwards go to the unused places from the beginning
- * upwards. So it can be calculated where an item goes, and no table is needed, for which there might be no memory. */
-struct closing {
-    const struct par_ranges *gaps; /* in order */
-    int32_t count; /* items and unused places */
-    int32_t kept;  /* items at the end: those that lie above it move */
-};
-
-static struct closing closing_of(struct par_ranges *gaps, int32_t count)
-{
-    sort_gaps(gaps);
-    const struct par_range *last = gaps->n > 0 ? &gaps->item[gaps->n - 1] : NULL;
-    int32_t unused = last ? gaps->below[gaps->n - 1] + last->end - last->next : 0;
-    assert(!last || last->end <= count);
-    return (struct closing){gaps, count, count - unused};
-}
-
-/* The last of some ascending numbers that is not above this one; -1: none. */
-static int32_t last_up_to(const struct par_ranges *gaps, bool by_place, int32_t number)
-{
-    int32_t low = 0, high = gaps->n;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if ((by_place ? gaps->item[middle].next : gaps->below[middle]) <= number)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low - 1;
-}
-
-/* Where an item goes that lies above the new end. O(log gaps). */
-static int32_t place_of(const struct closing *c, int32_t item)
-{
-    const int32_t gap = last_up_to(c->gaps, true, item);
-    assert(c->kept <= item && item < c->count && gap >= 0 && c->gaps->item[gap].end <= item);
-    int32_t unused_below = c->gaps->below[gap] + c->gaps->item[gap].end - c->gaps->item[gap].next;
-    int32_t used_above = c->count - 1 - item - (c->count - c->kept - unused_below);
-    int32_t into = last_up_to(c->gaps, false, used_above);
-    int32_t place = c->gaps->item[into].next + used_above - c->gaps->below[into];
-    assert(c->gaps->item[into].next <= place && place < c->gaps->item[into].end && place < c->kept);
-    return place;
-}
-
-/* Calls move for each item that lies above the new end, from the end downwards. */
-static void move_items(const struct closing *c, struct tri_mesh *mesh,
-                       void (*move)(struct tri_mesh *mesh, int32_t from, int32_t to))
-{
-    int32_t end = c->count;
-    for (int32_t gap = c->gaps->n; end > c->kept; end = c->gaps->item[gap].next) {
+    for (int32_t gap = gaps->n, end = count; end > kept; end = gaps->item[gap].next) {
         gap--;
-        int32_t first = c->gaps->item[gap].end > c->kept ? c->gaps->item[gap].end : c->kept;
-        for (int32_t item = end - 1; item >= first; item--)
-            move(mesh, item, place_of(c, item));
+        assert(gaps->item[gap].end <= end);
+        int32_t first = gaps->item[gap].end > kept ? gaps->item[gap].end : kept;
+        for (int32_t item = end - 1; item >= first; item--) {
+            while (into->next == into->end)
+                into++;
+            assert(into->next < kept);
+            move(mesh, item, into->next++);
+        }
     }
+    return kept;
 }
 
 static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_triangle_id to)
@@ -366,13 +315,6 @@ static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_trian
         tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(to, e));
 }
 
-static void close_triangles(struct par_ranges *gaps, struct tri_mesh *mesh)
-{
-    const struct closing closing = closing_of(gaps, mesh->n_triangles);
-    move_items(&closing, mesh, move_triangle);
-    mesh->n_triangles = closing.kept;
-}
-
 static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
 {
     struct tri_subsegment *s = &mesh->sub[to];
@@ -382,13 +324,7 @@ static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
             *tri_link_at(mesh, s->side[side]) = ~to;
 }
 
-static void close_subs(struct par_ranges *gaps, struct tri_mesh *mesh)
-{
-    const struct closing closing = closing_of(gaps, mesh->n_subs);
-    move_items(&closing, mesh, move_sub);
-    mesh->n_subs = closing.kept;
-}
-
+/* Where the vertex was it leaves where it is now. */
 static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to)
 {
     size_t n = (size_t)mesh->n_attributes;
@@ -398,41 +334,34 @@ static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id
     mesh->feature[to] = mesh->feature[from];
     if (n)
         memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
+    mesh->on[from] = to;
 }
 
 /* Corners learn where vertices have gone. */
-struct renaming {
-    const struct tri_mesh *mesh;
-    const struct closing *vertices;
-};
-
 static void rename_corners(void *context, size_t share)
 {
-    const struct renaming *r = context;
-    const struct tri_range range = tri_share(share, r->mesh->n_triangles);
+    const struct tri_mesh *mesh = context;
+    const struct tri_range range = tri_share(share, mesh->n_triangles);
     for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
-            if (r->mesh->tri[t].v[k] >= r->vertices->kept)
-                r->mesh->tri[t].v[k] = place_of(r->vertices, r->mesh->tri[t].v[k]);
+            if (mesh->tri[t].v[k] >= mesh->n_vertices)
+                mesh->tri[t].v[k] = mesh->on[mesh->tri[t].v[k]];
 }
 
 static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    const struct closing closing = closing_of(gaps, mesh->n_vertices);
-    struct renaming renaming = {mesh, &closing};
-    move_items(&closing, mesh, move_vertex);
-    tri_execute(executor, tri_shares(mesh->n_triangles), rename_corners, &renaming);
+    mesh->n_vertices = move_items(gaps, mesh->n_vertices, mesh, move_vertex);
+    tri_execute(executor, tri_shares(mesh->n_triangles), rename_corners, mesh);
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
-            if (mesh->sub[s].v[k] >= closing.kept)
-                mesh->sub[s].v[k] = place_of(&closing, mesh->sub[s].v[k]);
-    mesh->n_vertices = closing.kept;
+            if (mesh->sub[s].v[k] >= mesh->n_vertices)
+                mesh->sub[s].v[k] = mesh->on[mesh->sub[s].v[k]];
 }
 
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
 {
-    close_triangles(&spare->ranges[PAR_TRIANGLES], shared);
-    close_subs(&spare->ranges[PAR_SUBS], shared);
+    shared->n_triangles = move_items(&spare->ranges[PAR_TRIANGLES], shared->n_triangles, shared, move_triangle);
+    shared->n_subs = move_items(&spare->ranges[PAR_SUBS], shared->n_subs, shared, move_sub);
     close_vertices(&spare->ranges[PAR_VERTICES], shared, executor);
     par_room_free(spare);
 }

@@ -19,7 +19,6 @@ struct par_range {
 
 struct par_ranges {
     struct par_range *item;
-    int32_t *below;        /* [n] while gaps are closed: items in the ranges before each; as much room as item has */
     int32_t n, capacity;
     int32_t dealt; /* of spare: ranges that blocks have and will return; there is always room for them here */
 };

@@ -1,4 +1,4 @@
-/* Radius bound, independence, buffer zone. */
+/* Radius bound, independence. */
 #include "sched/schedule/theory.h"
 
 #include <assert.h>
@@ -27,8 +27,6 @@ double par_radius_tight(double max_area, double min_angle)
     return sqrt(max_area / (2 * s * s * sine(2 * min_angle)));
 }
 
-double par_area_for_radius(double radius, double rho) { return radius * radius / (4 * rho * rho * rho); }
-
 static double distance2(struct tri_point p, struct tri_point q)
 {
     double x = p.x - q.x, y = p.y - q.y;
@@ -38,11 +36,6 @@ static double distance2(struct tri_point p, struct tri_point q)
 bool par_independent(struct tri_point p, struct tri_point q, double radius)
 {
     return distance2(p, q) >= 16 * radius * radius;
-}
-
-bool par_in_buffer_zone(struct tri_point p, struct tri_point c, double radius)
-{
-    return distance2(p, c) < 4 * radius * radius;
 }
 
 double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c)

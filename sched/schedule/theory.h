@@ -1,4 +1,4 @@
-/* The theory of the paper in functions: radius bound, independence, buffer zone.
+/* The theory of the paper in functions: radius bound, independence.
  *
  * Source: A. N. Chernikov and N. P. Chrisochoides, "Practical and Efficient Point Insertion Scheduling Method for
  * Parallel Guaranteed Quality Delaunay Refinement", ICS 2004. Notation: r is an upper bound on the circumradii in the
@@ -21,15 +21,8 @@ double par_radius_lemma7(double max_area, double rho);
  * 0.73 of Lemma 7 at 20 degrees, 0.76 at 30. */
 double par_radius_tight(double max_area, double min_angle);
 
-/* Equation (2): the area bound of a pre-refinement after which no circumradius exceeds r. */
-double par_area_for_radius(double radius, double rho);
-
 /* Lemma 2: circumcentres at least 4 r apart have cavities without a common triangle or edge. Constant time. */
 bool par_independent(struct tri_point p, struct tri_point q, double radius);
-
-/* Definition 3: the buffer zone of p holds the triangles whose circumcentre c is nearer to p than 2 r; its cavity lies
- * within. */
-bool par_in_buffer_zone(struct tri_point p, struct tri_point c, double radius);
 
 /* Square of the circumradius of a triangle. */
 double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c);

@@ -28,8 +28,7 @@ void par_finds_forget(struct par_finds *finds)
     }
     free(finds->count);
     free(finds->item);
-    free(finds->piece);
-    free(finds->first_piece);
+    free(finds->note);
     *finds = kept;
 }
 
@@ -39,74 +38,37 @@ void par_finds_free(struct par_finds *finds)
     free(finds->start);
 }
 
-static void add_up(struct par_finds *finds)
-{
-    finds->n = par_add_up_counts(finds->count, PAR_FIND_SHARES, finds->n_rows, finds->start);
-}
-
 static void deal_share(void *context, size_t share)
 {
     struct par_finds *finds = context;
     const struct par_runs *runs = &finds->runs[share];
-    const int32_t *from = finds->found[share].item;
+    const int32_t *from = finds->found[share].item, *note = finds->notes[share].item;
     int32_t *at = finds->count + share * (size_t)finds->n_rows;
+    assert(!note || finds->notes[share].n == finds->found[share].n);
     for (int32_t i = 0; i < runs->n; i++) {
         const struct par_run run = runs->item[i];
         memcpy(finds->item + at[run.row], from, (size_t)run.n * sizeof *from);
+        if (note)
+            memcpy(finds->note + at[run.row], note, (size_t)run.n * sizeof *note);
         at[run.row] += run.n;
         from += run.n;
+        note += note ? run.n : 0;
     }
+    free(finds->notes[share].item);
+    finds->notes[share] = (struct par_ids){0};
 }
 
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor)
 {
-    add_up(finds);
+    int32_t noted = 0;
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
+        noted += finds->notes[share].n;
+    finds->n = par_add_up_counts(finds->count, PAR_FIND_SHARES, finds->n_rows, finds->start);
     finds->item = malloc(((size_t)finds->n + 1) * sizeof *finds->item);
-    if (finds->item)
-        tri_execute(executor, PAR_FIND_SHARES, deal_share, finds);
-    return finds->item;
-}
-
-static void count_pieces(const struct par_finds *finds)
-{
-    int32_t *count = finds->first_piece + 1;
-    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
-        for (int32_t i = 0; i < finds->runs[share].n; i++)
-            count[finds->runs[share].item[i].row]++;
-    for (int32_t row = 1; row < finds->n_rows; row++)
-        count[row] += count[row - 1];
-}
-
-/* From the last to the first, so that each row's beginning is found where its end was. */
-static void sort_pieces(const struct par_finds *finds)
-{
-    int32_t *end = finds->first_piece + 1;
-    for (size_t share = PAR_FIND_SHARES; share-- > 0;) {
-        const struct par_runs *runs = &finds->runs[share];
-        int32_t at = finds->found[share].n;
-        for (int32_t i = runs->n; i-- > 0;) {
-            const struct par_run run = runs->item[i];
-            at -= run.n;
-            finds->piece[--end[run.row]] =
-                (struct par_piece){finds->found[share].item + at, finds->notes[share].item + at, run.n};
-        }
-        assert(at == 0 && finds->notes[share].n == finds->found[share].n);
-    }
-}
-
-bool par_finds_sort(struct par_finds *finds)
-{
-    int32_t n = 0, *first = finds->first_piece = calloc((size_t)finds->n_rows + 2, sizeof *first);
-    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
-        n += finds->runs[share].n;
-    finds->piece = malloc(((size_t)n + 1) * sizeof *finds->piece);
-    if (!first || !finds->piece)
+    finds->note = malloc(((size_t)noted + 1) * sizeof *finds->note);
+    if (!finds->item || !finds->note)
         return false;
-    add_up(finds);
-    count_pieces(finds);
-    sort_pieces(finds);
-    memmove(first, first + 1, (size_t)finds->n_rows * sizeof *first);
-    first[finds->n_rows] = n;
+    tri_execute(executor, PAR_FIND_SHARES, deal_share, finds);
     return true;
 }
 

@@ -1,6 +1,5 @@
 /* What shares of the mesh find of one kind in a column of tiles: lists of ids, ascending, that are dealt to the tiles
- * and in the end become ranges of free ids. Ids may come with notes; these stay where they are, and each tile is told
- * where its own lie. */
+ * and in the end become ranges of free ids. Ids may come with notes. */
 #ifndef SCHED_TILES_FINDS_H
 #define SCHED_TILES_FINDS_H
 
@@ -16,12 +15,6 @@ struct par_run {
     int32_t row, n;
 };
 
-/* Ids of one row that a share has found one after the other, and their notes. */
-struct par_piece {
-    const int32_t *item, *note; /* [n] */
-    int32_t n;
-};
-
 struct par_runs {
     struct par_run *item;
     int32_t n, capacity;
@@ -34,10 +27,9 @@ struct par_finds {
     int32_t n_rows;
     int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
     int32_t *item;  /* [n] row by row, each in the order of ids */
+    int32_t *note;  /* [n] of these, where they have any */
     int32_t *start; /* [n_rows + 1] */
     int32_t n;
-    struct par_piece *piece; /* row by row, each in the order of ids */
-    int32_t *first_piece;    /* [n_rows + 1] */
 };
 
 /* False: no memory. To be freed in any case. */
@@ -116,11 +108,8 @@ static inline bool par_finder_end(struct par_finder *f)
     return !f->no_memory;
 }
 
-/* Deals what has been found to the rows: item and start. False: no memory. */
+/* Deals what has been found to the rows: item, note and start. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
-
-/* The same, but ids with notes stay where they are: piece, first_piece and start. O(runs). False: no memory. */
-bool par_finds_sort(struct par_finds *finds);
 
 /* Replaces a list of ids, ascending, by its runs: first and end of one, then of the next. Short ones are left out, so
  * that the runs take no more room than the ids did: no memory is asked for, and each share does it by itself. */

@@ -17,23 +17,9 @@
 
 /* --- vertices */
 
-/* The tile of places that mostly lie in the same one as the last. */
-struct tile_finder {
-    struct par_locator locator;
-    int32_t block, tile;
-};
-
-static const struct tile_finder LOST = {{{1, 1, 0, 0}, TRI_NONE}, TRI_NONE, TRI_NONE};
-
-static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, struct tri_point q)
+static int32_t find_tile(struct par_locator *last, const struct par_partition *p, struct tri_point q)
 {
-    int32_t block = par_locate(&f->locator, p, 0, q);
-    if (block != f->block) {
-        f->block = block;
-        f->tile = par_tile_of_block(p, block);
-    }
-    assert(tri_fence_holds(&f->locator.fence, q));
-    return f->tile;
+    return par_tile_of_block(p, par_locate(last, p, 0, q));
 }
 
 static void count_vertices(void *context, size_t share)
@@ -42,7 +28,7 @@ static void count_vertices(void *context, size_t share)
     const struct tri_mesh *mesh = n->mesh;
     struct tri_range range = par_deal_share(&n->vertices, share);
     int32_t *count = par_deal_at(&n->vertices, share);
-    struct tile_finder finder = LOST;
+    struct par_locator finder = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_vertex_id v = n->n_kept + i;
         n->tile_of[v] = TRI_NONE;
@@ -74,7 +60,7 @@ static void find_kept(void *context, size_t share)
 {
     const struct par_numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
-    struct tile_finder finder = LOST;
+    struct par_locator finder = PAR_LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++) {
         n->number[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);

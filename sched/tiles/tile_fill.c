@@ -137,13 +137,12 @@ static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
 /* What of a tile's triangles is where: the slot of each is its place in the tile, but for the order within a fan. */
 struct fans {
     const struct tri_tile *tile;
-    struct tri_triangle *tri;      /* of the mesh */
-    const struct par_piece *piece; /* [n_pieces] */
-    int32_t n_pieces;
-    int32_t *slot;                 /* [n_triangles] in each a triangle */
-    int32_t *end;                  /* [n_vertices] of each fan; before its slots are filled, the next free one */
-    int32_t others;                /* triangles of no fan, which come before all of them */
-    bool *has_input;               /* [n_vertices] a corner in the fan is one of the caller's points */
+    struct tri_triangle *tri; /* of the mesh */
+    const int32_t *triangles, *notes; /* [n_triangles] */
+    int32_t *slot;            /* [n_triangles] in each a triangle */
+    int32_t *end;             /* [n_vertices] of each fan; before its slots are filled, the next free one */
+    int32_t others;           /* triangles of no fan, which come before all of them */
+    bool *has_input;          /* [n_vertices] a corner in the fan is one of the caller's points */
 };
 
 /* What they take of 8 bytes. */
@@ -159,28 +158,22 @@ static int32_t *fan_words(int32_t **at, int32_t n)
     return words;
 }
 
-static void count_piece(struct fans *f, const struct par_piece *piece)
-{
-    for (int32_t i = 0; i < piece->n; i++) {
-        const int32_t own = piece->note[i] >> 1; /* TRI_NONE stays so */
-        assert(TRI_NONE <= own && own < f->tile->n_vertices);
-        if (own == TRI_NONE) {
-            f->others++;
-            continue;
-        }
-        f->end[own]++;
-        if (piece->note[i] & 1)
-            f->has_input[own] = true;
-    }
-}
-
 /* Where each fan begins. */
 static void count_fans(struct fans *f)
 {
     const int32_t n = f->tile->n_vertices;
     memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
-    for (int32_t p = 0; p < f->n_pieces; p++)
-        count_piece(f, &f->piece[p]);
+    for (int32_t i = 0; i < f->tile->n_triangles; i++) {
+        const int32_t own = f->notes[i] >> 1; /* TRI_NONE stays so */
+        assert(TRI_NONE <= own && own < n);
+        if (own == TRI_NONE) {
+            f->others++;
+            continue;
+        }
+        f->end[own]++;
+        if (f->notes[i] & 1)
+            f->has_input[own] = true;
+    }
     for (int32_t v = 0, sum = f->others; v < n; v++) {
         int32_t count = f->end[v];
         f->end[v] = sum;
@@ -194,9 +187,8 @@ static int32_t begin_of(const struct fans *f, int32_t v) { return v > 0 ? f->end
 static void fill_slots(const struct fans *f)
 {
     int32_t other = 0;
-    for (const struct par_piece *p = f->piece; p < f->piece + f->n_pieces; p++)
-        for (int32_t i = 0; i < p->n; i++)
-            f->slot[p->note[i] != TRI_NONE ? f->end[p->note[i] >> 1]++ : other++] = p->item[i];
+    for (int32_t i = 0; i < f->tile->n_triangles; i++)
+        f->slot[f->notes[i] != TRI_NONE ? f->end[f->notes[i] >> 1]++ : other++] = f->triangles[i];
 }
 
 /* A fan of up to four, by the second corner, without a branch that depends on it: four are put, and those that are not
@@ -269,9 +261,9 @@ static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh
 {
     const struct tri_tile *tile = &job->tile;
     int32_t *at = (int32_t *)(void *)job->scratch;
-    struct fans fans = {.tile = tile, .tri = mesh->tri, .piece = ids->triangles,
-                        .n_pieces = ids->n_pieces, .slot = fan_words(&at, tile->n_triangles),
-                        .end = fan_words(&at, tile->n_vertices), .has_input = (bool *)at};
+    struct fans fans = {.tile = tile, .tri = mesh->tri, .triangles = ids->triangles, .notes = ids->notes,
+                        .slot = fan_words(&at, tile->n_triangles), .end = fan_words(&at, tile->n_vertices),
+                        .has_input = (bool *)at};
     count_fans(&fans);
     fill_slots(&fans);
     return put_all(&fans, &job->copy, mesh);

@@ -2,7 +2,6 @@
 #ifndef SCHED_TILES_TILE_FILL_H
 #define SCHED_TILES_TILE_FILL_H
 
-#include "sched/tiles/finds.h"
 #include "sched/tiles/tile_copy.h"
 
 /* Whoever fills tiles has one, for one tile after the other: all of it is used again. */
@@ -24,10 +23,9 @@ int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], i
 
 /* What is in a tile. */
 struct par_tile_ids {
-    const int32_t *vertices;           /* in their order */
-    const struct par_piece *triangles; /* [n_pieces] final, with their notes, in any order */
-    int32_t n_pieces;
-    const int32_t *subs; /* in any order */
+    const int32_t *vertices;          /* in their order */
+    const int32_t *triangles, *notes; /* final, and what par_final_make said of each, in any order */
+    const int32_t *subs;              /* in any order */
 };
 
 /* Fills the arrays of job->tile, of which the numbers are known. The triangles' ids are free afterwards. number: of

@@ -90,24 +90,19 @@ enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
 
 /* --- the whole mesh */
 
-static int32_t last_tile(const struct par_tiles *tiles, const tri_vertex_id *vertex, int n)
+static int32_t tile_of_vertex(const struct par_tiles *tiles, tri_vertex_id v)
 {
-    int32_t last = -1;
-    for (int k = 0; k < n; k++) {
-        int32_t tile = par_block_at(tiles->partition, 0, tiles->mesh->xy[vertex[k]]);
-        last = tile > last ? tile : last;
-    }
-    return last;
+    return par_block_at(tiles->partition, 0, tiles->mesh->xy[v]);
 }
 
-static int32_t tile_of_vertex(const struct par_tiles *tiles, tri_vertex_id v) { return last_tile(tiles, &v, 1); }
 static int32_t tile_of_triangle(const struct par_tiles *tiles, tri_triangle_id t)
 {
-    return last_tile(tiles, tiles->mesh->tri[t].v, 3);
+    return par_last_tile(tiles->partition, tiles->mesh, tiles->mesh->tri[t].v, 3);
 }
+
 static int32_t tile_of_sub(const struct par_tiles *tiles, tri_sub_id s)
 {
-    return last_tile(tiles, tiles->mesh->sub[s].v, 2);
+    return par_last_tile(tiles->partition, tiles->mesh, tiles->mesh->sub[s].v, 2);
 }
 
 /* The first of items low .. high - 1, which are sorted by tile, that lies in a later one. */

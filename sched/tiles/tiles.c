@@ -34,24 +34,6 @@ struct par_column {
 
 /* --- what belongs to the column */
 
-/* The tile of places that mostly lie in the same one as the last. */
-struct place_finder {
-    struct tri_fence fence;
-    int32_t tile;
-};
-
-static const struct place_finder LOST = {.fence = {1, 1, 0, 0}};
-
-static int32_t find_tile(struct place_finder *f, const struct par_partition *p, struct tri_point q)
-{
-    if (!tri_fence_holds(&f->fence, q)) {
-        f->tile = par_block_at(p, 0, q);
-        f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
-    }
-    assert(tri_fence_holds(&f->fence, q));
-    return f->tile;
-}
-
 /* Vertices that have no number. */
 static void find_vertices(void *context, size_t share)
 {
@@ -59,13 +41,13 @@ static void find_vertices(void *context, size_t share)
     struct par_tiles *tiles = c->tiles;
     const struct tri_mesh *mesh = tiles->mesh;
     struct tri_range range = par_finds_share(share, mesh->n_vertices);
-    struct place_finder place = LOST;
+    struct par_locator place = PAR_LOST;
     struct par_finder finder = par_finder_of(&c->vertices, share);
     for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
         if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
             mesh->xy[v].x < c->begin)
             continue;
-        par_find(&finder, v, find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile);
+        par_find(&finder, v, par_locate(&place, tiles->partition, 0, mesh->xy[v]) - c->first_tile);
     }
     c->no_memory[share] = !par_finder_end(&finder);
 }
@@ -217,9 +199,9 @@ static void place_kept(void *context, size_t share)
 {
     struct par_tiles *tiles = context;
     struct tri_range range = tri_share(share, tiles->n_kept);
-    struct place_finder place = LOST;
+    struct par_locator place = PAR_LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++)
-        tiles->kept_tile[v] = find_tile(&place, tiles->partition, tiles->mesh->xy[v]);
+        tiles->kept_tile[v] = par_locate(&place, tiles->partition, 0, tiles->mesh->xy[v]);
 }
 
 static bool know_kept(struct par_tiles *tiles)
@@ -308,9 +290,9 @@ static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struc
     const struct par_column *c = context;
     struct par_tile_job *job = &c->tiles->job[slot];
     job->tile = tile_of(c, row);
-    const int32_t *first = c->triangles.first_piece + row;
-    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.piece + first[0],
-                                     first[1] - first[0], c->subs.item + c->subs.start[row]};
+    const int32_t first = c->triangles.start[row];
+    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.item + first,
+                                     c->triangles.note + first, c->subs.item + c->subs.start[row]};
     return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
 }
 
@@ -463,7 +445,7 @@ static enum tri_status hand_out_column(struct par_column *c, struct tri_error *e
         return no_memory(error);
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
-    if (!memory_has_lasted(c) || !par_finds_sort(&c->triangles) || !par_finds_deal(&c->subs, executor))
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, executor) || !par_finds_deal(&c->subs, executor))
         return no_memory(error);
     struct par_pipeline pipeline = pipeline_of(c);
     pipeline.make = fill_tile;
