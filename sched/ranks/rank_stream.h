@@ -5,17 +5,9 @@
 #include "ptriangle/tiles.h"
 #include "sched/ranks/carrier.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Collective: as par_stream_on (ptriangle/mpi.h). */
 enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_figure *figure,
                                 const struct tri_settings *settings, const struct tri_sink *sink,
                                 struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

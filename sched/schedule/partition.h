@@ -18,10 +18,6 @@
 #include "triangle/mesh/fence.h"
 #include "triangle/refine/refine.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { PAR_PHASES = 4 };
 
 struct par_partition {
@@ -115,9 +111,5 @@ int32_t par_locate_owner(struct par_locator *locator, const struct par_partition
 
 /* The smaller side of the cell that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

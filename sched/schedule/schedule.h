@@ -14,10 +14,6 @@
 #include "triangle/refine/generate.h"
 #include "triangle/refine/refine.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct par_carrier;
 struct par_checkpoint;
 struct par_park;
@@ -141,9 +137,5 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase);
 
 void par_report_free(struct par_report *report);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

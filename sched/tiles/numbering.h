@@ -13,10 +13,6 @@
 #include "triangle/base/executor.h"
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Numbers a mesh. Free triangle numbers, subsegments with v[0] == TRI_NONE and vertices that are TRI_VERTEX_NONE, which
  * nothing refers to, are gone afterwards. The first n_kept vertices keep their numbers: those that parents end at (the
  * first tri_mesh.incidence.n_vertices), or more; none of them is free.
@@ -32,9 +28,5 @@ static inline size_t par_number_bytes(const struct tri_mesh *mesh)
 {
     return 28 * (size_t)mesh->n_triangles + 8 * (size_t)mesh->n_vertices + 28 * (size_t)mesh->n_subs;
 }
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

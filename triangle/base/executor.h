@@ -8,10 +8,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_executor {
     /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads, and returns
      * when all have returned; what they wrote is then visible to the caller. Tasks do not fail and do not call run. */
@@ -53,9 +49,5 @@ static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
 
 /* The items of share i < tri_shares(n). */
 static inline struct tri_range tri_share(size_t i, int32_t n) { return tri_share_of(i, tri_shares(n), n); }
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

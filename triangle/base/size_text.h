@@ -2,10 +2,6 @@
 #ifndef TRIANGLE_BASE_SIZE_TEXT_H
 #define TRIANGLE_BASE_SIZE_TEXT_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Bytes in three digits: "62 B", "151 kB", "90 MB", "1.87 GB". */
 struct tri_size_text {
     char text[24];
@@ -16,9 +12,5 @@ struct tri_size_text tri_size_text(double bytes);
 
 /* How many there are, n >= 0, or +oo: "57", "45.2 thousand", "1.87 million", "over 1000 trillion". */
 struct tri_size_text tri_count_text(double n);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

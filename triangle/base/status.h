@@ -7,19 +7,11 @@
 
 #include "ptriangle/tri.h" /* enum tri_status, struct tri_error */
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Fills *error (unless NULL) from a printf format and returns status, so that failing is one statement. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 5, 6)))
 #endif
 enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
                          const char *format, ...);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -11,10 +11,6 @@
 
 #include "triangle/base/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_stop {
     /* Is the work to end? Called often and from several threads at once: it should do no more than look at a flag. Once
      * true, it stays true. */
@@ -38,9 +34,5 @@ static inline enum tri_status tri_fail_stopped(struct tri_error *error)
 {
     return tri_fail(error, TRI_STOPPED, NULL, 0, "stopped before the work was done");
 }
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

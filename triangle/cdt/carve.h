@@ -5,10 +5,6 @@
 #include "triangle/cdt/why_empty.h"
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_carve_report {
     int32_t between;       /* hole points that lie between faces */
     struct tri_empty why;  /* nothing is left */
@@ -45,9 +41,5 @@ void tri_mark_vertices(struct tri_mesh *mesh);
 
 /* Marker 1 for every boundary subsegment and boundary vertex that has marker 0. */
 void tri_mark_boundary(struct tri_mesh *mesh);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -5,10 +5,6 @@
 #include "triangle/mesh/mesh.h"
 #include "triangle/tunables.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_constrain_report {
     int32_t crossings; /* vertices made where segments cross */
     int32_t bent;      /* times a segment runs through a vertex within rounding of it, or of a crossing */
@@ -25,9 +21,5 @@ struct tri_constrain_report {
  * at one place). Expected near O(crossed edges) per segment. */
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

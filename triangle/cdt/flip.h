@@ -4,10 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
  * stays as it is. Regions stay on their ground: a triangle that was flipped has the one in which its centroid lay in
  * the mesh as it was; ground too narrow for any centroid gives its region up. O(triangles) where little is to do, and
@@ -36,9 +32,5 @@ bool tri_flip_touch(struct tri_flips *flips, tri_triangle_id t);
 
 /* Lawson: flips what is not Delaunay until everything touched is. False: out of memory; the mesh is valid then. */
 bool tri_flip_legalise(struct tri_flips *flips);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

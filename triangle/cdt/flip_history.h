@@ -4,10 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_flip_record;
 
 /* All flips since regions were last right, so that regions can stay where they were: 4 bytes a triangle and 24 a flip,
@@ -29,9 +25,5 @@ bool tri_flip_history_add(struct tri_flip_history *history, struct tri_mesh *mes
 /* Every flipped triangle gets the region in which its centroid lay before the flips; the history begins anew.
  * O(triangles), and for each that was flipped as many steps as flips at that place. */
 void tri_flip_history_settle(struct tri_flip_history *history, struct tri_mesh *mesh);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -4,10 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_used; /* triangle/mesh/topology.h */
 
 struct tri_reconstruct_options {
@@ -52,9 +48,5 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
  * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
                               bool jettison, struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -10,10 +10,6 @@
 #include "triangle/base/executor.h"
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Sorts the vertices of a mesh without triangles along the curve, equal ones by index, and sets mesh->origin.
  * (*place)[n_input], malloc'ed, tells where each point went. O(n). TRI_NO_MEMORY: nothing has changed. */
 enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const struct tri_executor *executor,
@@ -23,9 +19,5 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const st
  * TRI_NO_MEMORY: nothing has changed. */
 enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_executor *executor,
                                    struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -4,10 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum tri_empty_reason {
     TRI_EMPTY_NOT,
     TRI_EMPTY_LINE,      /* all points lie on one line */
@@ -45,9 +41,5 @@ struct tri_notes {
 /* The PSLG is the caller's, of whose segments so many are skipped; numbers in the sentences count from base. */
 void tri_notes_make(struct tri_notes *notes, const struct tri_empty *why, const struct tri_pslg *pslg,
                     int32_t n_skipped, int32_t base);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -5,10 +5,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_point {
     double x, y;
 };
@@ -49,9 +45,5 @@ static inline double tri_distance2(struct tri_point p, struct tri_point q)
     double x = q.x - p.x, y = q.y - p.y;
     return x * x + y * y;
 }
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

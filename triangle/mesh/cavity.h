@@ -20,10 +20,6 @@
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/owners.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */
 };
@@ -120,9 +116,5 @@ static inline void tri_make_fan_triangle(struct tri_mesh *mesh, tri_vertex_id v,
 
 /* Twice the area of the triangle p, a, b. */
 static inline double tri_cross(struct tri_relative a, struct tri_relative b) { return a.x * b.y - a.y * b.x; }
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -10,10 +10,6 @@
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_grid_point {
     double at[2]; /* the caller's coordinates */
     int32_t marker;
@@ -86,9 +82,5 @@ void tri_grid_free(struct tri_grid *grid);
 /* The Voronoi diagram as a grid of points and edges, rays included, without markers: point t is the circumcentre of
  * triangle t, edge i is dual to edge i. Valid as long as `grid`, which was made with edges; not to be freed. */
 struct tri_grid tri_grid_voronoi(const struct tri_grid *grid);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

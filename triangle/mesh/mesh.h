@@ -30,10 +30,6 @@
 #include "triangle/mesh/pslg.h"
 #include "triangle/refine/groundwork.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
     TRI_BEYOND = INT32_MIN /* a link, or a side of a subsegment, to a triangle in another address space: see above */
@@ -290,9 +286,5 @@ enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error 
 /* For asserts where a stage ends: are counts within capacities and, in a mesh so small that it takes no time, the
  * invariants of the links kept? */
 bool tri_mesh_is_sound(const struct tri_mesh *mesh);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

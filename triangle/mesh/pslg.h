@@ -11,10 +11,6 @@
 
 #include "triangle/base/status.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_pslg {
     int32_t n_points;
     double *points;         /* [n_points][2]: x, y; finite */
@@ -58,9 +54,5 @@ struct tri_elements {
 
 /* Frees the arrays and zeroes the struct. */
 void tri_elements_free(struct tri_elements *elements);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

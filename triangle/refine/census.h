@@ -4,10 +4,6 @@
 
 #include "triangle/refine/refine.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
  * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -60,9 +56,5 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
  * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           tri_triangle_id *found);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

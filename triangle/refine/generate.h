@@ -19,10 +19,6 @@
 #include "triangle/mesh/pslg.h"
 #include "triangle/refine/refine.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* In their order; with tri_options.elements REBUILD stands in place of the first three. QUALITY begins in any case,
  * with a mesh that keeps no bounds yet. */
 enum tri_stage {
@@ -74,9 +70,5 @@ struct tri_options tri_defaults(void);
  * tri_reconstruct. The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

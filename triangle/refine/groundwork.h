@@ -11,10 +11,6 @@
 #include "triangle/base/status.h"
 #include "triangle/geometry/point.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct tri_mesh;
 
 /* Which parents end at each vertex that there was when they were listed. The parents at vertex v are
@@ -51,9 +47,5 @@ bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b
 
 /* The end of a parent that is not vertex v. */
 struct tri_point tri_far_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

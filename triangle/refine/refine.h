@@ -16,10 +16,6 @@
 #include "triangle/mesh/owners.h"
 #include "triangle/tunables.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule/schedule.h). */
 typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
@@ -123,9 +119,5 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
                                 struct tri_error *error);
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

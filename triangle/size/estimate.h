@@ -5,10 +5,6 @@
 #include "triangle/refine/refine.h"
 #include "triangle/tunables.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
  * mesh can hold. *sure: the part of it that is no guess: the triangles that there are, and those that areas and
@@ -35,9 +31,5 @@ typedef bool tri_take_work(void *user, struct tri_point q, double work);
  * gathered. False: `take` said so. O(triangles + pieces). */
 bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
                      const struct tri_executor *executor, tri_take_work *take, void *user);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
