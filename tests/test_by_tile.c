@@ -16,7 +16,7 @@ struct world {
     struct par_partition tiles;
     struct par_options options;
     struct par_report report;
-    struct par_state state;
+    struct par_run state;
 };
 
 static void begin(struct world *w)
@@ -28,7 +28,7 @@ static void begin(struct world *w)
     w->mesh = support_generate(&pslg, &options, &report);
     tri_pslg_free(&pslg);
     assert_int_equal(par_partition_make(&w->tiles, &w->mesh, &w->quality, 1e5, 2000, NULL, NULL), TRI_OK);
-    w->state = (struct par_state){.mesh = &w->mesh, .quality = &w->quality, .options = &w->options,
+    w->state = (struct par_run){.mesh = &w->mesh, .quality = &w->quality, .options = &w->options,
                                   .executor = support_backwards, .report = &w->report};
     for (int32_t t = 0; t < w->mesh.n_triangles; t++)
         assert_true(par_ids_add(&w->state.worklist, t));

@@ -163,7 +163,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     struct tri_error error = {0};
     struct par_report report = {0};
     int threads = options->threads;
-    struct par_state state = {.mesh = mesh, .quality = quality, .options = options,
+    struct par_run state = {.mesh = mesh, .quality = quality, .options = options,
                               .executor = par_executor(&threads), .report = &report};
     int32_t n_old = mesh->n_triangles;
     struct tri_triangle *old = malloc((size_t)n_old * sizeof *old);
@@ -235,7 +235,7 @@ static void test_four_phases_in_turn(void **state)
         struct par_report report = {0};
         struct tri_mesh mesh = start_of(&trials[i], &quality);
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
-        struct par_state phases = {
+        struct par_run phases = {
             .mesh = &mesh, .quality = &quality, .options = &options, .executor = par_executor(&options.threads),
             .report = &report};
         phases.worklist = bad_triangles(&mesh, &quality);
@@ -278,7 +278,7 @@ static void test_margin_keeps_cavities_inside(void **state)
             struct par_options options = {.threads = 2, .margin = margin};
             struct par_report report = {0};
             struct tri_mesh mesh = support_generate(&pslg, &fine, NULL);
-            struct par_state lone = {.mesh = &mesh, .quality = &quality, .options = &options,
+            struct par_run lone = {.mesh = &mesh, .quality = &quality, .options = &options,
                                       .executor = par_executor(&options.threads), .report = &report,
                                       .radius = sqrt(largest2)};
             lone.worklist = bad_triangles(&mesh, &quality);

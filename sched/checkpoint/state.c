@@ -40,7 +40,7 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
     return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
 }
 
-uint64_t par_state_run(const struct par_state *state)
+uint64_t par_state_run(const struct par_run *state)
 {
     uint64_t hash = hash_bounds(0, state->quality);
     hash = state->then ? hash_bounds(hash, state->then) : hash;
@@ -50,14 +50,14 @@ uint64_t par_state_run(const struct par_state *state)
 /* --- what is carried, to a file and from there */
 
 struct cargo {
-    struct par_state *state;
+    struct par_run *state;
     struct par_tiles *tiles; /* NULL: a mesh as a whole */
     bool memory;             /* there has been enough */
 };
 
 #define CARRY(file, field) par_carry(file, &(field), sizeof(field))
 
-static void carry_place(struct par_state_file *f, struct par_state *state)
+static void carry_place(struct par_state_file *f, struct par_run *state)
 {
     CARRY(f, state->next);
     CARRY(f, state->round);
@@ -168,7 +168,7 @@ static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
 /* What a sweep has beside that. */
 static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 {
-    struct par_state *state = cargo->state;
+    struct par_run *state = cargo->state;
     struct par_tiles *tiles = cargo->tiles;
     CARRY(f, state->column);
     CARRY(f, state->counts_remaining);
@@ -187,7 +187,7 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
 {
     struct cargo *cargo = user;
-    struct par_state *state = cargo->state;
+    struct par_run *state = cargo->state;
     carry_place(f, state);
     carry_report(f, state->report);
     carry_list(cargo, f, &state->worklist);
@@ -207,7 +207,7 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 
-static enum tri_status save(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+static enum tri_status save(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                             struct tri_error *error)
 {
     struct cargo cargo = {state, tiles, true};
@@ -222,7 +222,7 @@ static enum tri_status save(struct par_checkpoint *c, struct par_state *state, s
 #ifndef NDEBUG
 /* Do the lists of what has been read name triangles that are there, by keys that ascend? Links are not looked at: free
  * triangles are not marked yet. */
-static bool is_state_sound(const struct par_state *state)
+static bool is_state_sound(const struct par_run *state)
 {
     const struct par_ids *list = &state->worklist;
     bool sound = state->mesh->n_vertices >= state->n_kept && (state->key.n == 0 || state->key.n == list->n);
@@ -234,7 +234,7 @@ static bool is_state_sound(const struct par_state *state)
 }
 #endif
 
-static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+static enum tri_status load(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                             struct tri_error *error)
 {
     struct cargo cargo = {state, tiles, true};
@@ -245,7 +245,7 @@ static enum tri_status load(struct par_checkpoint *c, struct par_state *state, s
 
 /* --- beginning and end of a run */
 
-enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)
+enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *state, struct tri_error *error)
 {
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
@@ -265,11 +265,11 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *stat
     return load(c, state, NULL, error);
 }
 
-void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
+void par_state_let_stop(struct par_checkpoint *c, struct par_run *state) { state->mesh->stop = c->stop; }
 
 /* --- borders and phases */
 
-enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error)
 {
     const bool asked = tri_stop_is_asked(c->stop), failed = tiles && c->spool.failed;
@@ -292,7 +292,7 @@ static bool is_halt_due(void *user)
     return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= 9 * c->cost);
 }
 
-enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *state,
+enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *state,
                                 const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
                                 struct tri_error *error)
 {
@@ -313,7 +313,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *stat
 
 /* --- a sweep */
 
-enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
+enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                                       struct tri_error *error)
 {
     const bool again = par_checkpoint_has_state(c);
@@ -326,7 +326,7 @@ enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state
     return status || !again ? status : load(c, state, tiles, error);
 }
 
-enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_state *state, struct tri_error *error)
+enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_run *state, struct tri_error *error)
 {
     state->mesh->stop = c->stop;
     return par_checkpoint_forget(c, PAR_WHOLE_STATE, error);

@@ -147,7 +147,7 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
  * subsegment of which one corner lies outside its box: that one's owner may know nothing of the block. */
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
-    struct par_state *state = r->state;
+    struct par_run *state = r->state;
     bool memory = true, has_own, *keep = malloc((size_t)state->worklist.n + 1);
     int owner[3] = {0};
     assert(state->key.n == state->worklist.n);
@@ -221,7 +221,7 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
     return memory;
 }
 
-static bool leave_sub(struct par_state *state, tri_sub_id s, tri_halfedge code)
+static bool leave_sub(struct par_run *state, tri_sub_id s, tri_halfedge code)
 {
     struct tri_subsegment *sub = &state->mesh->sub[s];
     for (int side = 0; side < 2; side++)

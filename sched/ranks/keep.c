@@ -17,7 +17,7 @@ struct writer {
 
 /* The state's file. */
 struct kept {
-    int32_t next, round, phase, step; /* as in struct par_state */
+    int32_t next, round, phase, step; /* as in struct par_run */
     int64_t left_over;
     int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];
@@ -47,7 +47,7 @@ static enum tri_status carry(struct par_state_file *file, void *user, struct tri
 /* --- going on */
 
 /* The mesh is empty but for the vertices that all ranks have: what follows tells of all others. */
-static void forget_all(struct par_state *state, int32_t n_common)
+static void forget_all(struct par_run *state, int32_t n_common)
 {
     state->mesh->n_vertices = n_common;
     state->mesh->n_triangles = state->mesh->n_subs = 0;

@@ -145,7 +145,7 @@ static bool tell_surroundings(const struct par_ranks *r)
 /* Whether the taker has an entry already is not known here: it finds the same key. */
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
-    struct par_state *state = r->state;
+    struct par_run *state = r->state;
     bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
     assert(state->key.n == state->worklist.n);
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {

@@ -34,7 +34,7 @@ int32_t par_block_here(const struct par_ranks *r, struct tri_point q)
 
 /* --- the worklist */
 
-void par_worklist_keep(struct par_state *state, const bool *keep)
+void par_worklist_keep(struct par_run *state, const bool *keep)
 {
     int32_t kept = 0;
     assert(state->key.n == state->worklist.n);
@@ -47,7 +47,7 @@ void par_worklist_keep(struct par_state *state, const bool *keep)
 }
 
 /* From behind, in place. Who is on both sides is the same, told by several ranks. */
-bool par_merge_entries(struct par_state *state, const struct par_message *m, const struct par_talk *talk)
+bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
 {
     int32_t n = state->worklist.n, all = n + m->n_entries, kept = 0;
     assert(state->key.n == n);
@@ -80,7 +80,7 @@ static int32_t *count_of(struct tri_mesh *mesh, enum par_kind kind)
     return kind == PAR_VERTICES ? &mesh->n_vertices : kind == PAR_TRIANGLES ? &mesh->n_triangles : &mesh->n_subs;
 }
 
-static int32_t take_id(struct par_state *state, enum par_kind kind)
+static int32_t take_id(struct par_run *state, enum par_kind kind)
 {
     struct par_ranges *spare = &state->spare.ranges[kind];
     if (spare->n > 0) {
@@ -91,7 +91,7 @@ static int32_t take_id(struct par_state *state, enum par_kind kind)
     return (*count_of(state->mesh, kind))++;
 }
 
-bool par_release(struct par_state *state, enum par_kind kind, int32_t id)
+bool par_release(struct par_run *state, enum par_kind kind, int32_t id)
 {
     struct par_ranges *spare = &state->spare.ranges[kind];
     if (spare->n > 0 && spare->item[spare->n - 1].end == id && spare->item[spare->n - 1].next < id) {
@@ -104,7 +104,7 @@ bool par_release(struct par_state *state, enum par_kind kind, int32_t id)
     return true;
 }
 
-bool par_remove_triangle(struct par_state *state, tri_triangle_id t)
+bool par_remove_triangle(struct par_run *state, tri_triangle_id t)
 {
     struct tri_mesh *mesh = state->mesh;
     struct tri_triangle *triangle = &mesh->tri[t];
@@ -121,7 +121,7 @@ bool par_remove_triangle(struct par_state *state, tri_triangle_id t)
     return par_release(state, PAR_TRIANGLES, t);
 }
 
-bool par_remove_sub(struct par_state *state, tri_sub_id s)
+bool par_remove_sub(struct par_run *state, tri_sub_id s)
 {
     par_room_mark_sub(state->mesh, s);
     return par_release(state, PAR_SUBS, s);

@@ -80,7 +80,7 @@ static void free_sorting(struct sorting *s)
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
 {
     const struct par_territory *territory = &r->territory;
-    const struct par_state *state = r->state;
+    const struct par_run *state = r->state;
     *s = (struct sorting){.ranks = r};
     s->n_tiles = territory->start[territory->rank + 1] - territory->start[territory->rank];
     s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
@@ -117,7 +117,7 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
-    const struct par_state *state = s->ranks->state;
+    const struct par_run *state = s->ranks->state;
     const struct lists *triangles = &s->triangles, *entries = &s->entries;
     bool memory = true;
     for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)

@@ -77,7 +77,7 @@ static bool find_borders(struct par_ranks *r)
 /* One bit for each block at a border that has something to do. */
 static void find_work(struct par_ranks *r, int64_t *word)
 {
-    const struct par_state *state = r->state;
+    const struct par_run *state = r->state;
     struct par_shift *s = &r->shift;
     struct par_locator locator = PAR_LOST;
     for (int32_t i = 0; i < state->worklist.n; i++) {
@@ -253,7 +253,7 @@ static int32_t steps_of(const struct par_ranks *r, const struct par_partition *p
 static enum tri_status refine_step(struct par_ranks *r, const struct par_partition *partition,
                                    struct tri_error *error)
 {
-    struct par_state *state = r->state;
+    struct par_run *state = r->state;
     bool any;
     assert(!state->share && state->phase >= 0 && state->phase < PAR_PHASES);
     r->shift = (struct par_shift){.partition = partition, .phase = state->phase, .step = state->step,
@@ -276,7 +276,7 @@ static enum tri_status refine_step(struct par_ranks *r, const struct par_partiti
     return status;
 }
 
-static void go_on(struct par_state *state, int32_t n_steps)
+static void go_on(struct par_run *state, int32_t n_steps)
 {
     if (++state->step < n_steps)
         return;
@@ -341,7 +341,7 @@ static enum tri_status run_last_call(struct last_call *call, struct tri_refiner 
 /* One call without fences, as of one process, for what the worklist holds. */
 static enum tri_status call_last(struct last_call *call, struct tri_error *error)
 {
-    struct par_state *state = call->ranks->state;
+    struct par_run *state = call->ranks->state;
     struct tri_refine_options options = *state->quality;
     const struct tri_part part = {note_changes, ask_for, call};
     struct tri_refine_report report = {0};
@@ -382,7 +382,7 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
 static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct tri_error *error)
 {
     struct par_partition partition;
-    struct par_state *state = r->state;
+    struct par_run *state = r->state;
     enum tri_status status = par_partition_copy(&partition, r->territory.partition, error);
     status = par_agree(r->carrier, status, error);
     for (int32_t round = 0; !status && round < state->round; round++)
@@ -401,7 +401,7 @@ static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct 
 /* --- all together */
 
 /* Writes out the keys of a worklist that no block has had. False: no memory. */
-static bool tell_keys(struct par_state *state)
+static bool tell_keys(struct par_run *state)
 {
     struct par_keys *key = &state->key;
     if (key->n == state->worklist.n)
@@ -486,7 +486,7 @@ static enum tri_status run_schedule(struct par_ranks *r, struct tri_error *error
  * of the others some are. */
 static enum tri_status find_own_work(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_state *state = r->state;
+    struct par_run *state = r->state;
     const struct par_territory *t = &r->territory;
     par_room_mark(&state->spare, state->mesh, &state->executor);
     enum tri_status status = par_worklist_fill(&state->worklist, state->mesh, state->quality, false, &state->executor,
@@ -554,7 +554,7 @@ static void clean_up(struct par_ranks *r)
     free(r->in);
 }
 
-enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+enum tri_status par_refine_on_ranks(struct par_run *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error)
 {
     struct par_carrier *carrier = state->options->carrier;

@@ -43,7 +43,7 @@ struct par_index {
 enum { PAR_DONE = 3 + TRI_EXCUSES }; /* numbers that tell what has been done */
 
 struct par_ranks {
-    struct par_state *state;
+    struct par_run *state;
     struct par_carrier *carrier;
     struct par_territory territory;
     struct par_ids straddlers;
@@ -62,7 +62,7 @@ struct par_ranks {
  * the same tiles, and hands each rank its own: the sink of rank 0 gets the vertices that there were before, too. *tiles
  * is as par_tiles_begin takes it. Afterwards the state's mesh is to be freed and no more. All ranks return the same
  * status: TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED, or what a sink says. */
-enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+enum tri_status par_refine_on_ranks(struct par_run *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error);
 
 /* What this rank has done since its ranks began; the same of others joins its report. */
@@ -116,17 +116,17 @@ enum tri_status par_paste(struct par_ranks *ranks, struct par_talk *talk, const 
 bool par_index_straddlers(struct par_ranks *ranks);
 
 /* A message's entries join the worklist. False: no memory. */
-bool par_merge_entries(struct par_state *state, const struct par_message *message, const struct par_talk *talk);
+bool par_merge_entries(struct par_run *state, const struct par_message *message, const struct par_talk *talk);
 
 /* A triangle goes, a subsegment that has no triangle any more, a vertex: what leads to it leads beyond. */
-bool par_remove_triangle(struct par_state *state, tri_triangle_id t);
-bool par_remove_sub(struct par_state *state, tri_sub_id s);
-bool par_release(struct par_state *state, enum par_kind kind, int32_t id);
+bool par_remove_triangle(struct par_run *state, tri_triangle_id t);
+bool par_remove_sub(struct par_run *state, tri_sub_id s);
+bool par_release(struct par_run *state, enum par_kind kind, int32_t id);
 
 static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
 
 /* The worklist without the entries for which keep[] is false. */
-void par_worklist_keep(struct par_state *state, const bool *keep);
+void par_worklist_keep(struct par_run *state, const bool *keep);
 
 /* Has the triangle a corner that is this rank's own, or one that is another's? */
 bool par_has_own(const struct par_ranks *ranks, tri_triangle_id t);

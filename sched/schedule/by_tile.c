@@ -164,7 +164,7 @@ static int32_t order(struct ordering *o, const struct tri_executor *executor)
     return atomic_load(&o->lost) ? TRI_NONE : n;
 }
 
-bool par_order_by_tile(struct par_state *state, const struct par_partition *tiles, int32_t first, int32_t end)
+bool par_order_by_tile(struct par_run *state, const struct par_partition *tiles, int32_t first, int32_t end)
 {
     struct ordering o = {.mesh = state->mesh, .tiles = tiles, .worklist = &state->worklist, .first = first, .end = end};
     assert(first >= 0 && first <= end);

@@ -76,12 +76,12 @@ static bool gather_left(struct leftovers *left)
     return memory;
 }
 
-static uint64_t key_of(const struct par_state *state, int32_t i)
+static uint64_t key_of(const struct par_run *state, int32_t i)
 {
     return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
 }
 
-bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
+bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n)
 {
     struct par_ids *list = &state->worklist;
     int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);

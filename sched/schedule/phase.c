@@ -176,7 +176,7 @@ static bool make_tasks(const struct dealing *d, int32_t used)
 
 static bool deal_all(struct dealing *d)
 {
-    struct par_state *state = d->p->state;
+    struct par_run *state = d->p->state;
     tri_execute(&state->executor, d->shares, count_share, d);
     int32_t used = add_up_shares(d);
     d->kept = malloc(((size_t)d->n_kept + 1) * sizeof *d->kept);
@@ -255,7 +255,7 @@ static bool blocks_are_independent(const struct par_phase_run *p)
 
 static void set_up(struct par_phase_run *p, struct par_task *task)
 {
-    const struct par_state *state = p->state;
+    const struct par_run *state = p->state;
     double unit = state->mesh->unit;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
     task->has_margin = state->options->margin && can_have_margin(&task->fence, state->radius);
@@ -392,7 +392,7 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->seconds += tri_seconds() - began;
 }
 
-int64_t par_triangles(const struct par_state *state)
+int64_t par_triangles(const struct par_run *state)
 {
     return state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
 }
@@ -400,7 +400,7 @@ int64_t par_triangles(const struct par_state *state)
 /* Each thread has one at an address of its own. */
 static _Thread_local char here;
 
-static void tell(const struct par_state *state, int phase, double done, int64_t triangles)
+static void tell(const struct par_run *state, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = state->options;
     const struct par_place place = {.level = state->level, .sizes = state->next < PAR_BOUNDS && state->sizes_first,
@@ -410,7 +410,7 @@ static void tell(const struct par_state *state, int phase, double done, int64_t 
         options->progress(options->progress_user, &place);
 }
 
-void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
+void par_tell(const struct par_run *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
 
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
@@ -597,7 +597,7 @@ static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *erro
     return collected ? collected : status; /* a failure is told before a stop */
 }
 
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
+enum tri_status par_phase(struct par_run *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error)
 {
     size_t n = (size_t)state->worklist.n + 1;

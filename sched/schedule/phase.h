@@ -2,7 +2,7 @@
  *
  *   par_keys    who left each triangle of the worklist, which decides on the order
  *   par_share   how several ranks divide the blocks of a phase
- *   par_state   the run: the mesh, the worklist, the place that the run has reached, what has been counted
+ *   par_run     the run: the mesh, the worklist, the place that the run has reached, what has been counted
  *   par_phase   runs a phase, of all blocks or of one column
  *
  * THEOREM (triangle/refine/refine.h, serialisation; docs/theory.md, cells and phases). The fences of a phase are
@@ -18,13 +18,13 @@
 #include "sched/schedule/worklist.h"
 
 struct par_park;
-struct par_state;
+struct par_run;
 
 /* The number of triangles, with those that have been handed out. */
-int64_t par_triangles(const struct par_state *state);
+int64_t par_triangles(const struct par_run *state);
 
 /* Tells of the phase that begins. */
-void par_tell(const struct par_state *state, int phase);
+void par_tell(const struct par_run *state, int phase);
 
 /* Every triangle that gates and fences have kept back has had its turn: the report's total forgets them. */
 void par_forget_deferred(struct par_report *report);
@@ -58,7 +58,7 @@ enum par_end {
 };
 
 /* What the phases of a schedule hand on. */
-struct par_state {
+struct par_run {
     struct tri_mesh *mesh;
     const struct tri_refine_options *quality;
     const struct par_options *options;
@@ -114,11 +114,11 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
  * THEOREM (a phase that is halted). It makes the same mesh, and leaves the same, up to ids. For it is two phases, of
  * some of the blocks and of the others; and what a block leaves no other of its phase takes, since two corners lie in
  * its own fence. */
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
+enum tri_status par_phase(struct par_run *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 
 /* Adds triangles to the worklist, by their keys, which ascend and are not there yet. False: no memory, and the worklist
  * is as before. */
-bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n);
+bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n);
 
 #endif

@@ -41,7 +41,7 @@ struct par_task {
 };
 
 struct par_phase_run {
-    struct par_state *state;
+    struct par_run *state;
     const struct par_partition *partition;
     int phase;
     int32_t only;       /* column, or TRI_NONE */

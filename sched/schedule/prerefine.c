@@ -62,7 +62,7 @@ struct tri_refine_options par_coarse_bounds(const struct tri_refine_options *qua
     return coarse;
 }
 
-bool par_areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
+bool par_areas_decide(const struct par_run *state, const struct tri_refine_options *quality, double estimate,
                       double cell)
 {
     struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
@@ -70,14 +70,14 @@ bool par_areas_decide(const struct par_state *state, const struct tri_refine_opt
     return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 
-enum tri_status par_fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
+enum tri_status par_fill_worklist(struct par_run *state, const struct tri_refine_options *quality, bool known,
                                   struct tri_error *error)
 {
     state->key.n = 0;
     return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
 }
 
-enum tri_status par_prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
+enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_refine_options *quality,
                                      const struct par_partition *partition, struct tri_error *error)
 {
     struct tri_refine_options coarse = *quality;

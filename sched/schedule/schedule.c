@@ -31,10 +31,10 @@ enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
-static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+static enum tri_status refine_level(struct par_run *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error);
 
-static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status prerefine_uniform(struct par_run *state, const struct tri_refine_options *quality,
                                          double cell, int level, struct tri_error *error)
 {
     struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
@@ -48,13 +48,13 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
 }
 
 /* Ranks keep states of their own. */
-static struct par_checkpoint *checkpoint_of(const struct par_state *state)
+static struct par_checkpoint *checkpoint_of(const struct par_run *state)
 {
     return state->options->carrier ? NULL : state->options->checkpoint;
 }
 
 /* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
-static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
+static enum tri_status refine_rest(struct par_run *state, const struct tri_refine_options *quality, bool all,
                                    struct tri_error *error)
 {
     struct tri_refine_options options = *quality;
@@ -74,7 +74,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
     return status;
 }
 
-/* How long stages work in shares: the executor of a struct par_state. */
+/* How long stages work in shares: the executor of a struct par_run. */
 struct timed {
     struct tri_executor executor;
     double *seconds; /* [PAR_SHARINGS] */
@@ -94,7 +94,7 @@ static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, si
 }
 
 /* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
-static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
+static enum tri_status number_mesh(struct par_run *state, struct tri_error *error)
 {
     const struct timed *timed = state->executor.self; /* what it does in shares is told as numbering */
     double began = tri_seconds();
@@ -108,7 +108,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
 }
 
 /* Closes the gaps that blocks have left unused, by numbering if it is due now. Triangles move. */
-static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
+static enum tri_status leave_no_gaps(struct par_run *state, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     double began = tri_seconds();
@@ -129,21 +129,21 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
 }
 
 /* Between two steps of what cannot be undone: a state may be kept here. */
-static enum tri_status come_to_border(struct par_state *state, struct tri_error *error)
+static enum tri_status come_to_border(struct par_run *state, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(state);
     return checkpoint ? par_state_border(checkpoint, state, NULL, false, error) : TRI_OK;
 }
 
 /* What comes now may be stopped, though not all that has been done is in a state. */
-static void let_stop(struct par_state *state)
+static void let_stop(struct par_run *state)
 {
     if (checkpoint_of(state))
         par_state_let_stop(checkpoint_of(state), state);
 }
 
 /* Of the whole mesh a state may be kept between any two blocks. */
-static enum tri_status run_phase(struct par_state *state, const struct par_partition *partition,
+static enum tri_status run_phase(struct par_run *state, const struct par_partition *partition,
                                  struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = par_is_phase(state->next) ? checkpoint_of(state) : NULL;
@@ -151,7 +151,7 @@ static enum tri_status run_phase(struct par_state *state, const struct par_parti
                       : par_phase(state, partition, state->phase, TRI_NONE, error);
 }
 
-static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
+static enum tri_status run_phases(struct par_run *state, const struct par_partition *partition,
                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -165,7 +165,7 @@ static enum tri_status run_phases(struct par_state *state, const struct par_part
 
 /* Rounds of four phases, from state->round and phase on, until nothing is left to do, each round on blocks four times
  * as large. */
-static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
+static enum tri_status run_rounds(struct par_run *state, struct par_partition *partition, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
@@ -181,7 +181,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     return status;
 }
 
-static enum tri_status refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+static enum tri_status refine_on_ranks(struct par_run *state, const struct par_partition *partition,
                                        struct tri_error *error)
 {
     struct par_tiles tiles = par_tiles_of(state, partition);
@@ -198,7 +198,7 @@ static const double BYTES_IN_MEMORY = 74;
 static const double SURELY_ONE_MESH = 0.8;
 
 /* Would the whole mesh be too large for memory, or for one mesh? */
-static bool is_too_much(const struct par_state *state, double triangles)
+static bool is_too_much(const struct par_run *state, double triangles)
 {
     const struct par_options *options = state->options;
     return options->sink && !options->carrier &&
@@ -206,7 +206,7 @@ static bool is_too_much(const struct par_state *state, double triangles)
             (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
 }
 
-static void note_size(struct par_state *state)
+static void note_size(struct par_run *state)
 {
     struct par_report *report = state->report;
     report->most_live = state->mesh->n_triangles > report->most_live ? state->mesh->n_triangles : report->most_live;
@@ -219,7 +219,7 @@ struct before {
     struct par_report report;
 };
 
-static enum tri_status remember(const struct par_state *state, struct before *before, struct tri_error *error)
+static enum tri_status remember(const struct par_run *state, struct before *before, struct tri_error *error)
 {
     *before = (struct before){.report = *state->report};
     for (int32_t i = 0; i < state->worklist.n; i++)
@@ -229,7 +229,7 @@ static enum tri_status remember(const struct par_state *state, struct before *be
 }
 
 /* The mesh as it was, and the worklist. What the sink has taken it forgets when it is told of the beginning again. */
-static void go_back(struct par_state *state, struct before *before)
+static void go_back(struct par_run *state, struct before *before)
 {
     struct par_ids worklist = state->worklist;
     struct par_report *report = state->report;
@@ -247,7 +247,7 @@ static void go_back(struct par_state *state, struct before *before)
 }
 
 /* *done: the mesh has been handed out, and is gone. Else everything is as before. */
-static enum tri_status try_to_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+static enum tri_status try_to_sweep(struct par_run *state, const struct par_partition *partition, bool *done,
                                     struct tri_error *error)
 {
     struct before before;
@@ -265,7 +265,7 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
     return status;
 }
 
-static enum tri_status fail_without_scratch(const struct par_state *state, double triangles, struct tri_error *error)
+static enum tri_status fail_without_scratch(const struct par_run *state, double triangles, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
@@ -275,7 +275,7 @@ static enum tri_status fail_without_scratch(const struct par_state *state, doubl
 
 /* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
  * again. If that leaves something over, or cannot be, it moves to files as it grows. */
-static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
+static enum tri_status leave_memory(struct par_run *state, const struct par_partition *partition,
                                     struct tri_error *error)
 {
     const struct par_options *options = state->options;
@@ -297,7 +297,7 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
 }
 
 /* What no block could do, and what blocks have left unused. */
-static enum tri_status finish_schedule(struct par_state *state, const struct tri_refine_options *quality, bool top,
+static enum tri_status finish_schedule(struct par_run *state, const struct tri_refine_options *quality, bool top,
                                        enum tri_status status, struct tri_error *error)
 {
     double last = tri_seconds();
@@ -316,7 +316,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
 }
 
 /* What is told of the first schedule of the whole mesh. */
-static enum tri_status report_schedule(struct par_state *state, const struct par_partition *partition,
+static enum tri_status report_schedule(struct par_run *state, const struct par_partition *partition,
                                        struct tri_error *error)
 {
     struct par_report *report = state->report;
@@ -331,7 +331,7 @@ static enum tri_status report_schedule(struct par_state *state, const struct par
 }
 
 /* top: the mesh is the whole one, not what comes before its schedule. */
-static enum tri_status run_and_finish(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status run_and_finish(struct par_run *state, const struct tri_refine_options *quality,
                                       struct par_partition *partition, bool top, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -345,7 +345,7 @@ static enum tri_status run_and_finish(struct par_state *state, const struct tri_
 }
 
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
-static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status run_schedule(struct par_run *state, const struct tri_refine_options *quality,
                                     struct par_partition *partition, bool top, struct tri_error *error)
 {
     enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
@@ -368,7 +368,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
 }
 
 /* From where a checkpoint's state is, in the phases of a schedule. */
-static enum tri_status go_on(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status go_on(struct par_run *state, const struct tri_refine_options *quality,
                              struct tri_error *error)
 {
     struct par_partition partition;
@@ -383,13 +383,13 @@ static enum tri_status go_on(struct par_state *state, const struct tri_refine_op
     return status;
 }
 
-static double cell_size(const struct par_state *state, double estimate)
+static double cell_size(const struct par_run *state, double estimate)
 {
     return state->options->cell_triangles > 0 ? state->options->cell_triangles : par_triangles_in_cell(estimate);
 }
 
 /* The schedule on one level, after a pre-refinement. */
-static enum tri_status schedule_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+static enum tri_status schedule_level(struct par_run *state, const struct tri_refine_options *quality, int level,
                                       double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
@@ -417,7 +417,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
+static double estimate_of(struct par_run *state, const struct tri_refine_options *quality, double *sure)
 {
     double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
@@ -425,7 +425,7 @@ static double estimate_of(struct par_state *state, const struct tri_refine_optio
 }
 
 /* The first points of a sequential call, as many as would make this many triangles; *done: they were enough. */
-static enum tri_status refine_a_little(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_a_little(struct par_run *state, const struct tri_refine_options *quality,
                                        double triangles, bool *done, struct tri_error *error)
 {
     struct tri_refine_options options = *quality;
@@ -444,7 +444,7 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
  * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
  * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
  * what then remains is guessed better. */
-static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+static enum tri_status refine_level(struct par_run *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
     double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
@@ -467,7 +467,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
 
 /* The schedule behind that for sizes, on its cells: on ranks each has its part of the mesh by now, and nobody could cut
  * the whole of it anew. Triangles hardly larger than a share of a cell need no coarse mesh before. */
-static enum tri_status refine_again(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_again(struct par_run *state, const struct tri_refine_options *quality,
                                     struct tri_error *error)
 {
     struct par_partition partition;
@@ -493,7 +493,7 @@ static enum tri_status refine_again(struct par_state *state, const struct tri_re
 }
 
 /* From its beginning, or from where the state is in its schedule. */
-static enum tri_status refine_to(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_to(struct par_run *state, const struct tri_refine_options *quality,
                                  struct tri_error *error)
 {
     if (par_is_phase(state->next) || par_is_rest(state->next))
@@ -504,7 +504,7 @@ static enum tri_status refine_to(struct par_state *state, const struct tri_refin
 /* Triangles of different sizes meet everywhere in a mesh that comes out of a coarse one by stages. So where areas
  * decide on sizes these are brought about first, with an easy bound, and then the angles on a mesh of one size.
  * (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of 28%.) */
-static enum tri_status refine_sizes_first(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_sizes_first(struct par_run *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
     struct tri_refine_options easy = *quality;
@@ -522,7 +522,7 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
 }
 
 /* Refines by schedules: two where angles are dear. */
-static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_by_schedule(struct par_run *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
@@ -540,7 +540,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 }
 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */
-static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
+static enum tri_status hand_out(struct par_run *state, struct tri_error *error)
 {
     struct par_tiles tiles = par_tiles_of(state, state->end == PAR_NUMBERED ? &state->cells : NULL);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
@@ -557,7 +557,7 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
 }
 
 /* Numbers, and hands out, what has not gone yet. */
-static enum tri_status deliver(struct par_state *state, struct tri_error *error)
+static enum tri_status deliver(struct par_run *state, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     if (state->end == PAR_DELIVERED)
@@ -576,7 +576,7 @@ static bool is_bounded(const struct par_options *options)
     return options->memory > 0 && (options->scratch || !options->sink);
 }
 
-static void clean_up(struct par_state *state)
+static void clean_up(struct par_run *state)
 {
     struct par_report *report = state->report;
     report->parked = state->park ? par_park_bytes(state->park) : 0;
@@ -598,7 +598,7 @@ static void clean_up(struct par_state *state)
 }
 
 /* By a schedule or by one call; and to the sink. */
-static enum tri_status refine_and_deliver(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_and_deliver(struct par_run *state, const struct tri_refine_options *quality,
                                           bool sequential, struct tri_error *error)
 {
     double began = tri_seconds();
@@ -614,7 +614,7 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
 }
 
 /* On several ranks: they would wait for each other where they do not make the same mesh. */
-static enum tri_status check_ranks(const struct par_state *state, enum tri_status status, struct tri_error *error)
+static enum tri_status check_ranks(const struct par_run *state, enum tri_status status, struct tri_error *error)
 {
     struct par_carrier *carrier = state->options->carrier;
     if (!carrier)
@@ -633,7 +633,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (options->park)
         *options->park = NULL;
     struct timed timed = {par_executor(&report->threads), report->seconds_shared};
-    struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
+    struct par_run state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
                               .executor = {run_timed, &timed},
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);

@@ -26,7 +26,7 @@ static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
     return most > c ? most : c;
 }
 
-bool par_ahead_make(struct par_ahead *ahead, const struct par_state *state, const struct par_partition *partition)
+bool par_ahead_make(struct par_ahead *ahead, const struct par_run *state, const struct par_partition *partition)
 {
     const struct par_ids *list = &state->worklist;
     int32_t n_odd = (partition->n_columns - 1) / 2;
@@ -59,7 +59,7 @@ void par_ahead_free(struct par_ahead *ahead)
     *ahead = (struct par_ahead){0};
 }
 
-bool par_ahead_give(const struct par_ahead *ahead, struct par_state *state, int32_t odd)
+bool par_ahead_give(const struct par_ahead *ahead, struct par_run *state, int32_t odd)
 {
     int32_t i = odd / 2;
     if (i >= ahead->n_odd)

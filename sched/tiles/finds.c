@@ -46,7 +46,7 @@ static void deal_share(void *context, size_t share)
     int32_t *at = finds->count + share * (size_t)finds->n_rows;
     assert(!note || finds->notes[share].n == finds->found[share].n);
     for (int32_t i = 0; i < runs->n; i++) {
-        const struct par_run run = runs->item[i];
+        const struct par_span run = runs->item[i];
         memcpy(finds->item + at[run.row], from, (size_t)run.n * sizeof *from);
         if (note)
             memcpy(finds->note + at[run.row], note, (size_t)run.n * sizeof *note);

@@ -11,12 +11,12 @@
 enum { PAR_FIND_SHARES = TRI_MOST_SHARES };
 
 /* Neighbours in a list are mostly of one row. */
-struct par_run {
+struct par_span {
     int32_t row, n;
 };
 
 struct par_runs {
-    struct par_run *item;
+    struct par_span *item;
     int32_t n, capacity;
 };
 
@@ -51,7 +51,7 @@ struct par_finder {
     size_t share;
     struct par_ids list, notes;
     struct par_runs runs;
-    struct par_run last; /* the run of the last ones, which has not been counted */
+    struct par_span last; /* the run of the last ones, which has not been counted */
     bool no_memory;
 };
 

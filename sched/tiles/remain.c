@@ -7,14 +7,14 @@
 #include "triangle/refine/census.h"
 
 /* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
-static struct tri_refine_report report_of(const struct par_state *state)
+static struct tri_refine_report report_of(const struct par_run *state)
 {
     struct tri_refine_report report = state->report->total;
     report.gated = report.fenced = 0;
     return report;
 }
 
-bool par_remain_begin(struct par_state *state)
+bool par_remain_begin(struct par_run *state)
 {
     struct par_ids *list = &state->remaining;
     tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
@@ -35,7 +35,7 @@ static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, d
 }
 
 /* Those to come stay in front, those to count go behind them, and are counted by one call. */
-void par_remain_count(struct par_state *state, double x)
+void par_remain_count(struct par_run *state, double x)
 {
     const struct tri_mesh *mesh = state->mesh;
     const struct tri_refine_report report = report_of(state);
@@ -55,14 +55,14 @@ void par_remain_count(struct par_state *state, double x)
     list->n = kept;
 }
 
-void par_remain_settle(struct par_state *state)
+void par_remain_settle(struct par_run *state)
 {
     const struct tri_refine_report report = report_of(state);
     tri_settle_counts(&report, state->remained, state->report->remain);
     state->report->remain_known = true;
 }
 
-void par_remain_count_all(struct par_state *state)
+void par_remain_count_all(struct par_run *state)
 {
     const struct tri_refine_report report = report_of(state);
     tri_count_bad(state->mesh, state->quality, &report, &state->executor, state->report->remain);

@@ -12,7 +12,7 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
 }
 
-struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition)
+struct par_tiles par_tiles_of(const struct par_run *state, const struct par_partition *partition)
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
@@ -21,7 +21,7 @@ struct par_tiles par_tiles_of(const struct par_state *state, const struct par_pa
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
-static bool is_left_behind(const struct par_state *state, double x)
+static bool is_left_behind(const struct par_run *state, double x)
 {
     const struct tri_mesh *mesh = state->mesh;
     for (int32_t i = 0; i < state->worklist.n; i++) {
@@ -33,7 +33,7 @@ static bool is_left_behind(const struct par_state *state, double x)
 }
 
 /* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
-static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column, bool *left,
+static enum tri_status finish_column(struct par_run *state, struct par_tiles *tiles, int32_t column, bool *left,
                                      struct tri_error *error)
 {
     double began = tri_seconds(), end = par_fence(tiles->partition, column, 0).x_max;
@@ -48,7 +48,7 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
     return status;
 }
 
-static enum tri_status refine_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
+static enum tri_status refine_column(struct par_run *state, struct par_tiles *tiles, int32_t column,
                                      struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
@@ -57,10 +57,10 @@ static enum tri_status refine_column(struct par_state *state, struct par_tiles *
 }
 
 /* The odd column of blocks that is the state's. */
-static int32_t odd_column(const struct par_state *state) { return 2 * state->column - 1; }
+static int32_t odd_column(const struct par_run *state) { return 2 * state->column - 1; }
 
 /* The blocks of an odd column, and those of the even one behind it, from state->phase on. */
-static enum tri_status refine_columns(struct par_state *state, struct par_tiles *tiles, struct tri_error *error)
+static enum tri_status refine_columns(struct par_run *state, struct par_tiles *tiles, struct tri_error *error)
 {
     const int32_t odd = odd_column(state);
     enum tri_status status = TRI_OK;
@@ -74,7 +74,7 @@ static enum tri_status refine_columns(struct par_state *state, struct par_tiles 
 }
 
 /* A column from its beginning, or from where the state is amid it. */
-static enum tri_status go_through(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
+static enum tri_status go_through(struct par_run *state, struct par_tiles *tiles, const struct par_ahead *ahead,
                                   struct tri_error *error)
 {
     if (state->next != PAR_COLUMN_PHASE && !par_ahead_give(ahead, state, odd_column(state)))
@@ -89,7 +89,7 @@ static enum tri_status go_through(struct par_state *state, struct par_tiles *til
 }
 
 /* Nobody is stopped any more, but the tiles' taker may have failed. */
-static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, struct tri_error *error)
+static enum tri_status end_tiles(struct par_run *state, struct par_tiles *tiles, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
     enum tri_status status = par_tiles_end(tiles, error);
@@ -98,7 +98,7 @@ static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tile
 }
 
 /* From the state's column on, until something is left behind. */
-static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
+static enum tri_status sweep_columns(struct par_run *state, struct par_tiles *tiles, const struct par_ahead *ahead,
                                      bool *left, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
@@ -117,7 +117,7 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
 }
 
 /* The state is of its first column, for which the worklist is empty; or as a checkpoint has it. */
-static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, struct par_ahead *ahead,
+static enum tri_status begin_sweep(struct par_run *state, struct par_tiles *tiles, struct par_ahead *ahead,
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -138,7 +138,7 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
     return state->counts_remaining && !par_remain_begin(state) ? no_memory(error) : TRI_OK;
 }
 
-enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+enum tri_status par_sweep(struct par_run *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error)
 {
     struct par_tiles tiles = par_tiles_of(state, partition);
