@@ -33,7 +33,10 @@ enum tri_status check_both_ways(const struct tri_check_mesh *mesh, const struct 
     source.memory = 1;
     if (status == TRI_OK && mesh->n_triangles <= SMALL) {
         assert_int_equal(tri_check_from(&source, input, options, &again, error), TRI_OK);
-        assert_same_reports(report, &again);
+        if (report->item[TRI_CHECK_EDGES].state == TRI_CHECK_FAILED) /* parts may tell another kind */
+            assert_false(tri_check_passed(&again));
+        else
+            assert_same_reports(report, &again);
     }
     return status;
 }

@@ -184,7 +184,8 @@ enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_ps
                           const struct tri_check_options *options, struct tri_check_report *report,
                           struct tri_error *error);
 
-/* The same of a mesh of any size: of the arrays of a source. Whatever its memory, the report is the same. Also
+/* The same of a mesh of any size: of the arrays of a source. The memory decides nothing but, where three triangles lie
+ * on one edge, which faults are told. Also
  * TRI_CANNOT_WRITE, and what source->read returns. */
 enum tri_status tri_check_from(const struct tri_check_source *source, const struct tri_pslg *input,
                                const struct tri_check_options *options, struct tri_check_report *report,

@@ -185,8 +185,7 @@ static void note_side(struct checker *c, struct check_side *side, int32_t h)
     c->part.constrained[h >> 3] |= (uint8_t)(1u << (h & 7));
     int64_t half_edge = 3 * c->part.first + h;
     if (side->half_edge < 0)
-        *side = (struct check_side){half_edge, check_attribute(c, h / 3), false};
-    side->more = side->more || side->half_edge != half_edge;
+        *side = (struct check_side){half_edge, check_attribute(c, h / 3)};
 }
 
 /* Half-edges along listed subsegments. */

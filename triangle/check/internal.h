@@ -7,8 +7,8 @@
  * input's points are the frame, in memory as a whole, on which all other checks work. Of vertices a byte is kept. A
  * mesh of one part is that part: nothing is copied.
  *
- * THEOREM (docs/theory.md, the judge). No fault is missed over the cut into parts; only which kind of fault is told
- * could depend on them, and a second pass (tri_check_match) looks for that.
+ * THEOREM (docs/theory.md, the judge). No faulty mesh passes over the cut into parts; only which kind of fault is told
+ * may depend on them, where three half-edges lie on one edge.
  *
  * A half-edge of the mesh is named 3 * t + k, 64 bits wide: the edge of triangle t opposite its corner k, directed so
  * that t lies on its left. A corner has the same name. In a part t counts from the part's first triangle. */
@@ -47,7 +47,6 @@ struct check_edge {
 struct check_side {
     int64_t half_edge; /* the first; -1: none */
     double attribute;  /* of its triangle */
-    bool more;         /* another part has one, too */
 };
 
 /* A half-edge whose other side is not in its part. */

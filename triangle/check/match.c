@@ -7,16 +7,11 @@
 #include "triangle/base/grow.h"
 #include "triangle/check/store.h"
 
-static int compare_ends(int64_t from, int64_t to, int64_t begin, int64_t end)
-{
-    int64_t low = from < to ? from : to, other = begin < end ? begin : end;
-    int64_t high = from + to - low, far = begin + end - other;
-    return low != other ? (low < other ? -1 : 1) : (high > far) - (high < far);
-}
-
 static int compare_edges(const struct check_open *a, const struct check_open *b)
 {
-    return compare_ends(a->from, a->to, b->from, b->to);
+    int64_t low = a->from < a->to ? a->from : a->to, other = b->from < b->to ? b->from : b->to;
+    int64_t high = a->from + a->to - low, far = b->from + b->to - other;
+    return low != other ? (low < other ? -1 : 1) : (high > far) - (high < far);
 }
 
 static int compare_opens(const void *left, const void *right)
@@ -24,12 +19,6 @@ static int compare_opens(const void *left, const void *right)
     const struct check_open *a = left, *b = right;
     int order = compare_edges(a, b);
     return order != 0 ? order : (a->half_edge > b->half_edge) - (a->half_edge < b->half_edge);
-}
-
-static int compare_by_edge(const void *left, const void *right)
-{
-    const struct check_boundary_edge *a = left, *b = right;
-    return compare_ends(a->from, a->to, b->from, b->to);
 }
 
 static int compare_half_edges(const void *left, const void *right)
@@ -91,60 +80,6 @@ static enum tri_status match_all(struct checker *c, struct check_open *at, int64
     return status;
 }
 
-/* The half-edge itself, if it is of the part. */
-static enum tri_status add_again(struct checker *c, const struct check_boundary_edge *e)
-{
-    int64_t h = e->half_edge - 3 * c->part.first;
-    if (h >= 0 && h < c->part.n_half_edges)
-        return tri_check_store_add(c, tri_check_open(c, (int32_t)h));
-    return TRI_OK;
-}
-
-/* Pairs of the part that lie on the edge. */
-static enum tri_status add_pairs(struct checker *c, const struct check_boundary_edge *e)
-{
-    int32_t a = tri_check_local(c, e->from), b = a < 0 ? -1 : tri_check_local(c, e->to);
-    struct check_edge edge = b < 0 ? (struct check_edge){-1, -1, 0, 0} : tri_check_find_edge(c, a, b);
-    if (edge.there < 0 || c->part.link[edge.there] < 0)
-        return TRI_OK;
-    enum tri_status status = tri_check_store_add(c, tri_check_open(c, edge.there));
-    return status == TRI_OK ? tri_check_store_add(c, tri_check_open(c, edge.back)) : status;
-}
-
-/* Half-edges of pairs may lie on edges of the boundary, in some other part. */
-static enum tri_status match_again(struct checker *c)
-{
-    enum tri_status status = TRI_OK;
-    bool good;
-    qsort(c->boundary.at, (size_t)c->boundary.n, sizeof *c->boundary.at, compare_by_edge);
-    for (int64_t t = 0; t < c->n_triangles && status == TRI_OK; t += c->part_triangles) {
-        status = tri_check_load(c, t, &good);
-        status = status == TRI_OK ? tri_check_pair(c) : status;
-        for (int64_t i = 0; i < c->boundary.n && status == TRI_OK; i++) {
-            const struct check_boundary_edge *e = &c->boundary.at[i];
-            status = add_again(c, e);
-            if (status == TRI_OK && (i == 0 || compare_by_edge(e - 1, e) != 0))
-                status = add_pairs(c, e);
-        }
-    }
-    c->boundary.n = 0;
-    tri_check_unask(c, TRI_CHECK_EDGES);
-    tri_check_begin(c, TRI_CHECK_EDGES);
-    return status == TRI_OK ? tri_check_store_drain(c, match_all) : status;
-}
-
-/* Is an edge of the boundary no listed subsegment, or on either side of one more than once, or are none listed? Else
- * the boundary is what it should be, and a half-edge more on it would have been seen. */
-static bool is_doubtful(const struct checker *c)
-{
-    bool doubtful = !check_is_listed(c) || !check_good(c, TRI_CHECK_EDGES);
-    for (int64_t i = 0; i < c->boundary.n && !doubtful; i++)
-        doubtful = !c->boundary.at[i].constrained;
-    for (int64_t s = 0; check_is_listed(c) && s < c->source->n_segments && !doubtful; s++)
-        doubtful = c->sides[s][0].more || c->sides[s][1].more;
-    return doubtful;
-}
-
 static void count(struct checker *c)
 {
     struct tri_check_report *r = c->report;
@@ -164,8 +99,6 @@ enum tri_status tri_check_match(struct checker *c)
     if (c->whole == NULL)
         tri_check_release_part(c); /* room for the others; it comes back when asked for */
     enum tri_status status = tri_check_store_drain(c, match_all);
-    if (status == TRI_OK && c->n_triangles > c->part_triangles && c->boundary.n > 0 && is_doubtful(c))
-        status = match_again(c);
     if (status != TRI_OK)
         return status;
     if (c->boundary.n > 1)

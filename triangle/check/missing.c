@@ -1,10 +1,10 @@
 /* Missing pieces, cut where they meet.
  *
- *   1. In order of their left ends, each is compared with those that begin before it ends. Those that run along it
- *      (exactly decided) are joined to it, and cut it where they begin and end: so that many may lie upon each other.
- *   2. Of those that are left, an end of one that surely lies on the other cuts that there; where no end does, but the
- *      two cross (exactly decided), both are cut at the rounded crossing.
- *   3. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept. */
+ *   1. In order of their left ends, each is compared with those that begin before it ends. An end of one that surely
+ *      lies on the other cuts that there; where no end does, but the two cross (exactly decided), both are cut at the
+ *      rounded crossing.
+ *   2. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept: so pieces
+ *      that run along each other are one. */
 #include "triangle/check/missing.h"
 
 #include <stdlib.h>
@@ -22,7 +22,7 @@ struct cut {
 struct cutting {
     double tolerance;
     int32_t n;
-    struct check_piece *piece; /* [n] from left to right, in order; of no length: joined to another one */
+    struct check_piece *piece; /* [n] from left to right, in order */
     int64_t n_trials;
     int32_t n_cuts, capacity;
     struct cut *cut;
@@ -90,7 +90,7 @@ static struct tri_point crossing_of(const struct check_piece *s, const struct ch
     return (struct tri_point){tri_round_coordinate(s->from.x + at * x), tri_round_coordinate(s->from.y + at * y)};
 }
 
-/* Step 2. */
+/* Step 1, of two. */
 static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
 {
     const struct check_piece *s = &k->piece[i], *r = &k->piece[j];
@@ -110,38 +110,19 @@ static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
     return status == TRI_OK && tri_is_exact_point(p) ? add_cut(k, j, p) : status;
 }
 
-/* Step 1: joins piece j to i, if it runs along it for more than a point. */
-static enum tri_status join(struct cutting *k, int32_t i, int32_t j)
+/* Those that may meet piece i, and begin behind it. */
+static enum tri_status meet_others(struct cutting *k, int32_t i)
 {
-    struct check_piece *s = &k->piece[i], *r = &k->piece[j];
-    if (tri_compare_places(r->from, s->to) >= 0 || tri_orient2d(s->from, s->to, r->from) != 0 ||
-        tri_orient2d(s->from, s->to, r->to) != 0)
-        return TRI_OK;
-    const bool beyond = tri_compare_places(s->to, r->to) < 0;
-    enum tri_status status = add_cut(k, i, r->from);
-    if (status == TRI_OK)
-        status = add_cut(k, i, beyond ? s->to : r->to);
-    s->to = beyond ? r->to : s->to;
-    r->to = r->from;
-    return status;
-}
-
-/* Does `act` for all pairs that may meet. */
-static enum tri_status each_pair(struct cutting *k, enum tri_status (*act)(struct cutting *k, int32_t i, int32_t j))
-{
+    const struct check_piece *s = &k->piece[i];
     enum tri_status status = TRI_OK;
-    for (int32_t i = 0; i < k->n; i++) {
-        const struct check_piece *s = &k->piece[i];
-        for (int32_t j = i + 1; j < k->n && k->piece[j].from.x <= s->to.x + k->tolerance; j++) {
-            const struct check_piece *r = &k->piece[j];
-            if (status != TRI_OK || check_same_place(s->from, s->to) || is_too_long(k))
-                break;
-            k->n_trials++;
-            if (!check_same_place(r->from, r->to) &&
-                fmax(r->from.y, r->to.y) >= fmin(s->from.y, s->to.y) - k->tolerance &&
-                fmin(r->from.y, r->to.y) <= fmax(s->from.y, s->to.y) + k->tolerance)
-                status = act(k, i, j);
-        }
+    for (int32_t j = i + 1; j < k->n && k->piece[j].from.x <= s->to.x + k->tolerance; j++) {
+        const struct check_piece *r = &k->piece[j];
+        if (status != TRI_OK || is_too_long(k))
+            break;
+        k->n_trials++;
+        if (fmax(r->from.y, r->to.y) >= fmin(s->from.y, s->to.y) - k->tolerance &&
+            fmin(r->from.y, r->to.y) <= fmax(s->from.y, s->to.y) + k->tolerance)
+            status = meet(k, i, j);
     }
     return status;
 }
@@ -149,12 +130,13 @@ static enum tri_status each_pair(struct cutting *k, enum tri_status (*act)(struc
 /* At the ends of all pieces, and where they meet. */
 static enum tri_status find_cuts(struct cutting *k)
 {
-    enum tri_status status = each_pair(k, join);
+    enum tri_status status = TRI_OK;
     for (int32_t i = 0; i < k->n && status == TRI_OK; i++) {
         status = add_cut(k, i, k->piece[i].from);
         status = status == TRI_OK ? add_cut(k, i, k->piece[i].to) : status;
+        status = status == TRI_OK ? meet_others(k, i) : status;
     }
-    return status == TRI_OK ? each_pair(k, meet) : status;
+    return status;
 }
 
 static void measure(struct cutting *k)
@@ -167,7 +149,7 @@ static void measure(struct cutting *k)
     }
 }
 
-/* Step 3. */
+/* Step 2. */
 static enum tri_status take_between(struct cutting *k, struct check_pieces *out)
 {
     out->at = tri_check_array(k->n_cuts, sizeof *out->at);

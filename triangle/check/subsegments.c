@@ -21,7 +21,7 @@ enum tri_status tri_check_list_segments(struct checker *c)
     enum tri_status status = tri_check_read(c, TRI_CHECK_SEGMENT_ENDS, 0, n, c->listed);
     for (int64_t s = 0; s < n && status == TRI_OK; s++) {
         int64_t *v = c->listed + 2 * s;
-        c->sides[s][0] = c->sides[s][1] = (struct check_side){-1, 0, false};
+        c->sides[s][0] = c->sides[s][1] = (struct check_side){-1, 0};
         if (v[0] < 0 || v[0] >= c->n_points || v[1] < 0 || v[1] >= c->n_points || v[0] == v[1])
             v[0] = v[1] = -1;
     }
@@ -137,8 +137,8 @@ static enum tri_status translate(struct checker *c)
         for (int k = 0; k < 2; k++)
             c->own_segments[2 * s + k] = listed ? tri_check_in_frame(c, c->listed[2 * s + k]) : c->border[s][k];
         if (!listed) {
-            c->sides[s][0] = (struct check_side){c->boundary.at[s].half_edge, 0, false};
-            c->sides[s][1] = (struct check_side){-1, 0, false};
+            c->sides[s][0] = (struct check_side){c->boundary.at[s].half_edge, 0};
+            c->sides[s][1] = (struct check_side){-1, 0};
         }
     }
     for (int32_t i = 0; c->input != NULL && i < c->input->n_points; i++)

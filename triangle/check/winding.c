@@ -317,11 +317,11 @@ static void add_between(struct sweep *w, const int32_t *ends, struct check_side 
 
 static void collect(struct sweep *w, const struct check_pieces *missing)
 {
-    static const struct check_side none = {-1, 0, false};
+    static const struct check_side none = {-1, 0};
     const struct checker *c = w->c;
     for (int32_t i = 0; i < c->boundary.n; i++)
         add_between(w, c->border[i],
-                    (struct check_side){c->boundary.at[i].half_edge, c->boundary.at[i].attribute, false}, none);
+                    (struct check_side){c->boundary.at[i].half_edge, c->boundary.at[i].attribute}, none);
     for (int32_t s = 0; w->again && s < c->n_segments; s++) {
         if (c->sides[s][0].half_edge >= 0 && c->sides[s][1].half_edge >= 0)
             add_between(w, c->segments + 2 * s, c->sides[s][0], c->sides[s][1]);
