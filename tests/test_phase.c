@@ -258,50 +258,11 @@ static void test_four_phases_in_turn(void **state)
     }
 }
 
-/* The margin: each block keeps 2 r away from its fence, so that no cavity is refused. */
-static void test_margin_keeps_cavities_inside(void **state)
-{
-    (void)state;
-    struct tri_pslg pslg = support_square(1, 20, 2);
-    struct tri_options fine = support_quality(25, 4e-5);
-    struct tri_mesh coarse = support_generate(&pslg, &fine, NULL);
-    struct tri_refine_options quality = fine.quality;
-    quality.max_area = 1e-5;
-    struct par_partition partition = cut(&coarse, &quality, 8000);
-    double largest2 = 0;
-    for (int32_t t = 0; t < coarse.n_triangles; t++) {
-        const int32_t *v = coarse.tri[t].v;
-        largest2 = fmax(largest2, par_radius2(coarse.xy[v[0]], coarse.xy[v[1]], coarse.xy[v[2]]));
-    }
-    for (int phase = 0; phase < PAR_PHASES; phase++)
-        for (int margin = 0; margin < 2; margin++) {
-            struct par_options options = {.threads = 2, .margin = margin};
-            struct par_report report = {0};
-            struct tri_mesh mesh = support_generate(&pslg, &fine, NULL);
-            struct par_run lone = {.mesh = &mesh, .quality = &quality, .options = &options,
-                                      .executor = par_executor(&options.threads), .report = &report,
-                                      .radius = sqrt(largest2)};
-            lone.worklist = bad_triangles(&mesh, &quality);
-            assert_int_equal(par_phase(&lone, &partition, phase, TRI_NONE, NULL), TRI_OK);
-            assert_true(report.total.inserted_free > 1000);
-            assert_true(margin ? report.total.fenced == 0 : report.total.fenced > 0);
-            par_room_close(&lone.spare, &mesh, &lone.executor);
-            par_report_free(&report);
-            free(lone.worklist.item);
-            free(lone.key.item);
-            tri_mesh_free(&mesh);
-        }
-    par_partition_free(&partition);
-    tri_mesh_free(&coarse);
-    tri_pslg_free(&pslg);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_phase_is_its_blocks_one_by_one),
         cmocka_unit_test(test_four_phases_in_turn),
-        cmocka_unit_test(test_margin_keeps_cavities_inside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -559,7 +559,6 @@ static void test_a_sweep_holds_few_columns(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Definition 3: with the paper's margin, and fences that are wide against the radii, no cavity meets a fence. */
 /* Above 31 degrees sizes are brought about first: what comes after must not see other numbers. */
 static void test_the_way_of_numbering_moves_ids_alone(void **state)
 {
@@ -672,30 +671,6 @@ static void test_a_long_gap_costs_no_triangles(void **state)
         tri_mesh_free(&mesh);
         tri_pslg_free(&start.pslg);
     }
-}
-
-static void test_nothing_is_deferred_with_the_margin(void **state)
-{
-    (void)state;
-    struct start start = square(100, 25, 1e-4);
-    for (int margin = 0; margin < 2; margin++) {
-        struct par_options options = small_blocks(2000, 2);
-        struct tri_error error = {0};
-        struct par_report report;
-        struct tri_mesh mesh = support_generate(&start.pslg, &start.options, NULL); /* so the radii are small */
-        struct tri_refine_options finer = start.options.quality;
-        finer.max_area = 2e-5;
-        options.margin = margin;
-        assert_int_equal(par_refine(&mesh, &finer, &options, &report, &error), TRI_OK);
-        print_message("  margin %d: %d triangles, deferred %lld, left over %lld, r %g, blocks %d x %d\n", margin,
-                      (int)mesh.n_triangles, (long long)report.deferred, (long long)report.left_over,
-                      report.radius_measured, (int)report.columns, (int)report.rows);
-        assert_true(report.columns * report.rows >= 16);
-        assert_true(margin ? report.deferred == 0 : report.deferred > 0);
-        par_report_free(&report);
-        tri_mesh_free(&mesh);
-    }
-    tri_pslg_free(&start.pslg);
 }
 
 /* Blocks of the usual size: the mesh is no larger than the sequential one, but for two per cent. */
@@ -1154,7 +1129,6 @@ int main(void)
         cmocka_unit_test(test_a_mesh_lies_in_files),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
-        cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
         cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
         cmocka_unit_test(test_a_long_gap_costs_no_triangles),

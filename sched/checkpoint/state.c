@@ -20,7 +20,7 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_refine_options *q)
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
-    const int64_t others[] = {o->by_block, o->margin, o->size_test_in_parallel};
+    const int64_t others[] = {o->by_block, 0, o->size_test_in_parallel}; /* 0: as in the states that there are */
     return par_hash(par_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 

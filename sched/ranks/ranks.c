@@ -414,7 +414,6 @@ static bool tell_keys(struct par_run *state)
     return true;
 }
 
-
 void par_count_done(const struct par_ranks *r, int64_t done[PAR_DONE])
 {
     const struct tri_refine_report *total = &r->state->report->total, *before = &r->before;
@@ -451,23 +450,12 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
     return TRI_OK;
 }
 
-static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status status, struct tri_error *error)
-{
-    int64_t mine = (int64_t)r->run, *all = malloc((size_t)r->carrier->n_ranks * sizeof *all);
-    status = par_gather(r->carrier, &mine, 1, all, status ? status : all ? TRI_OK : par_ranks_no_memory(error), error);
-    for (int p = 0; !status && p < r->carrier->n_ranks; p++)
-        if (all[p] != all[0])
-            status = tri_fail(error, TRI_BAD_INPUT, NULL, 0,
-                              "the ranks have not been given the same figure and settings: see rank %d", p);
-    free(all);
-    return status;
-}
-
 /* What a rank begins with: its part of the coarse mesh, or of what has been kept. */
 static enum tri_status begin(struct par_ranks *r, struct tri_error *error)
 {
     bool again;
-    enum tri_status status = compare_meshes(r, TRI_OK, error);
+    const char *words = "the ranks have not been given the same figure and settings";
+    enum tri_status status = par_expect_same(r->carrier, r->run, words, TRI_OK, error);
     status = status ? status : par_take_up(r, &again, error);
     status = status || again ? status : par_keep_own(r, error);
     return par_agree(r->carrier, status, error);
@@ -562,7 +550,6 @@ enum tri_status par_refine_on_ranks(struct par_run *state, const struct par_part
     state->next = state->then ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE;
     state->round = state->phase = state->step = 0;
     state->n_schedules++;
-    assert(!state->options->margin); /* fences would depend on what triangles a rank has */
     bool memory = init(&r, partition);
     r.before = state->report->total;
     r.left_before = state->report->left_over;

@@ -2,12 +2,10 @@
 #include "sched/schedule/phase.h"
 
 #include <assert.h>
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sched/schedule/phase_tasks.h"
-#include "sched/schedule/theory.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
@@ -41,12 +39,6 @@ static void ask_for(void *user, const tri_vertex_id edge[2])
     struct par_task *task = user;
     if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
         task->lost = true;
-}
-
-/* The paper's test: is the new point in the cells that are active now? */
-static bool is_active(void *user, const double p[2])
-{
-    return tri_fence_holds(user, (struct tri_point){p[0], p[1]});
 }
 
 /* The block that has its turn now and owns triangle t. */
@@ -210,62 +202,12 @@ static bool deal_worklists(struct par_phase_run *p)
     return memory;
 }
 
-/* Is a fence large enough for the paper's margin? */
-static bool can_have_margin(const struct tri_fence *f, double radius)
-{
-    return f->x_max - f->x_min >= 12 * radius && f->y_max - f->y_min >= 12 * radius;
-}
-
-/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches
- * beyond the fence (Definition 3). */
-static struct tri_fence with_margin(const struct tri_fence *f, double radius)
-{
-    double margin = 2 * radius;
-    return (struct tri_fence){f->x_min + margin, f->y_min + margin, f->x_max - margin, f->y_max - margin};
-}
-
-#ifndef NDEBUG
-/* The gap between two intervals, more rather than less by what rounding of their ends may have taken. */
-static double gap(double low_a, double high_a, double low_b, double high_b)
-{
-    double before = low_b - high_a, after = low_a - high_b;
-    if (before > 0)
-        return before + 4 * DBL_EPSILON * (fabs(low_b) + fabs(high_a));
-    return after > 0 ? after + 4 * DBL_EPSILON * (fabs(low_a) + fabs(high_b)) : 0;
-}
-
-/* Lemma 2, at run time: any two points that different blocks may insert at once are independent, where both blocks are
- * large enough for a margin. */
-static bool blocks_are_independent(const struct par_phase_run *p)
-{
-    const struct tri_point origin = {0, 0};
-    double unit = p->state->mesh->unit;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        for (int32_t k = 0; k < i; k++) {
-            const struct tri_fence *a = &p->tasks[i].active, *b = &p->tasks[k].active;
-            struct tri_point apart = {gap(a->x_min, a->x_max, b->x_min, b->x_max) / unit,
-                                      gap(a->y_min, a->y_max, b->y_min, b->y_max) / unit};
-            if (p->tasks[i].has_margin && p->tasks[k].has_margin &&
-                !par_independent(origin, apart, p->state->radius * (1 - 1e-9)))
-                return false;
-        }
-    return true;
-}
-#endif
-
 static void set_up(struct par_phase_run *p, struct par_task *task)
 {
     const struct par_run *state = p->state;
-    double unit = state->mesh->unit;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
-    task->has_margin = state->options->margin && can_have_margin(&task->fence, state->radius);
-    struct tri_fence active = task->has_margin ? with_margin(&task->fence, state->radius) : task->fence;
-    task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
-                                      active.y_max * unit};
     task->options = *state->quality;
     task->options.told = NULL; /* a block is not the mesh */
-    task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
-    task->options.gate_user = &task->active;
     task->options.fence = &task->fence;
     task->part = (struct tri_part){note_changes, ask_for, task};
     task->options.part = state->share && state->share->is_border[task->block] ? &task->part : NULL;
@@ -505,7 +447,6 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
-    assert(!p->state->options->margin || blocks_are_independent(p));
     if (!memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;

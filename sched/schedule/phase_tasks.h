@@ -21,8 +21,7 @@ struct par_task {
     tri_triangle_id *worklist; /* part of the phase's list */
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
-    struct tri_fence fence, active; /* the second in the caller's coordinates */
-    bool has_margin;
+    struct tri_fence fence;
     struct par_view view;
     struct tri_owners owners;
     struct tri_refine_options options;

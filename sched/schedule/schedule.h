@@ -33,9 +33,6 @@ struct par_place {
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
-    bool margin;             /* the paper's margin: a block inserts no point within 2 r of its fence, where that leaves
-                                two thirds of it. Then no cavity is refused in a mesh of even size; without it, each
-                                is asked. Part of the decomposition */
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
                                    size test, the mesh is refined sequentially */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
