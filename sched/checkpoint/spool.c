@@ -172,10 +172,10 @@ static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile
 {
     const size_t n = bytes_of(tile, spool->n_attributes);
     struct head *h = calloc(1, sizeof *h + n);
-    char *arrays = (char *)(h + 1);
     enum tri_status status = TRI_OK;
     if (!h)
         return no_memory(spool, error);
+    char *arrays = (char *)(h + 1);
     *h = (struct head){.word = TILE, .bytes = (int64_t)n, .n_attributes = spool->n_attributes};
     h->tile = (struct tri_tile){.column = tile->column, .row = tile->row, .first_vertex = tile->first_vertex,
                                 .first_triangle = tile->first_triangle, .first_segment = tile->first_segment,
