@@ -20,7 +20,7 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_refine_options *q)
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
-    const int64_t others[] = {o->by_block, 0, o->size_test_in_parallel}; /* 0: as in the states that there are */
+    const int64_t others[] = {o->by_block, o->size_test_in_parallel};
     return par_hash(par_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
@@ -85,33 +85,21 @@ static void carry_report(struct par_state_file *f, struct par_report *r)
     CARRY(f, r->total);
 }
 
-static void carry_list(struct cargo *cargo, struct par_state_file *f, struct par_ids *list)
+/* A list of *n items: array is the address of the pointer to them. */
+static void carry_items(struct cargo *cargo, struct par_state_file *f, void *array, int32_t *n, int32_t *capacity,
+                        size_t item)
 {
-    int32_t n = list->n;
-    CARRY(f, n);
-    cargo->memory = cargo->memory && tri_grow(&list->item, &list->capacity, n, sizeof *list->item);
-    list->n = cargo->memory ? n : 0;
-    par_carry(f, list->item, (size_t)list->n * sizeof *list->item);
+    int32_t wanted = *n;
+    void *items;
+    CARRY(f, wanted);
+    cargo->memory = cargo->memory && tri_grow(array, capacity, wanted, item);
+    *n = cargo->memory ? wanted : 0;
+    memcpy(&items, array, sizeof items);
+    par_carry(f, items, (size_t)*n * item);
 }
 
-static void carry_keys(struct cargo *cargo, struct par_state_file *f, struct par_keys *keys)
-{
-    int32_t n = keys->n;
-    CARRY(f, n);
-    cargo->memory = cargo->memory && tri_grow(&keys->item, &keys->capacity, n, sizeof *keys->item);
-    keys->n = cargo->memory ? n : 0;
-    par_carry(f, keys->item, (size_t)keys->n * sizeof *keys->item);
-}
-
-static void carry_ranges(struct cargo *cargo, struct par_state_file *f, struct par_ranges *ranges)
-{
-    int32_t n = ranges->n;
-    assert(ranges->dealt == 0); /* no block is at work */
-    CARRY(f, n);
-    cargo->memory = cargo->memory && par_ranges_reserve(ranges, n);
-    ranges->n = cargo->memory ? n : 0;
-    par_carry(f, ranges->item, (size_t)ranges->n * sizeof *ranges->item);
-}
+#define CARRY_LIST(cargo, f, list) \
+    carry_items(cargo, f, &(list).item, &(list).n, &(list).capacity, sizeof *(list).item)
 
 static void carry_partition(struct cargo *cargo, struct par_state_file *f, struct par_partition *p)
 {
@@ -180,8 +168,8 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
     cargo->memory = cargo->memory && par_tiles_reserve(tiles);
     if (cargo->memory)
         par_carry(f, tiles->number, (size_t)state->mesh->n_vertices * sizeof *tiles->number);
-    carry_list(cargo, f, &tiles->held);
-    carry_list(cargo, f, &state->remaining);
+    CARRY_LIST(cargo, f, tiles->held);
+    CARRY_LIST(cargo, f, state->remaining);
 }
 
 static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
@@ -190,11 +178,13 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     struct par_run *state = cargo->state;
     carry_place(f, state);
     carry_report(f, state->report);
-    carry_list(cargo, f, &state->worklist);
-    carry_keys(cargo, f, &state->key);
-    carry_list(cargo, f, &state->done);
-    for (int k = 0; k < PAR_KINDS; k++)
-        carry_ranges(cargo, f, &state->spare.ranges[k]);
+    CARRY_LIST(cargo, f, state->worklist);
+    CARRY_LIST(cargo, f, state->key);
+    CARRY_LIST(cargo, f, state->done);
+    for (int k = 0; k < PAR_KINDS; k++) {
+        assert(state->spare.ranges[k].dealt == 0); /* no block is at work */
+        CARRY_LIST(cargo, f, state->spare.ranges[k]);
+    }
     carry_counts(cargo, f, state->mesh);
     if (cargo->memory)
         carry_mesh(f, state->mesh);
