@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
 
 enum tri_status scratch_open(struct scratch *s, const char *folder, size_t width, struct tri_error *error)
@@ -17,27 +18,16 @@ enum tri_status scratch_open(struct scratch *s, const char *folder, size_t width
 
 enum tri_status scratch_append(struct scratch *s, const void *rows, int64_t n, struct tri_error *error)
 {
-    size_t bytes = (size_t)n * s->width, done = 0;
-    while (done < bytes) {
-        ssize_t put = write(s->file, (const char *)rows + done, bytes - done);
-        if (put < 0 && errno != EINTR)
-            return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "cannot write a scratch file: %s", strerror(errno));
-        done += put > 0 ? (size_t)put : 0;
-    }
+    if (!tri_write_at(s->file, rows, (size_t)n * s->width, (uint64_t)s->n * s->width))
+        return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "cannot write a scratch file: %s", strerror(errno));
     s->n += n;
     return TRI_OK;
 }
 
 enum tri_status scratch_read(const struct scratch *s, int64_t first, int64_t n, void *rows, struct tri_error *error)
 {
-    size_t bytes = (size_t)n * s->width, done = 0;
-    while (done < bytes) {
-        off_t at = (off_t)((uint64_t)first * s->width + done);
-        ssize_t got = pread(s->file, (char *)rows + done, bytes - done, at);
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return tri_fail(error, TRI_CANNOT_READ, "", 0, "cannot read a scratch file");
-        done += got > 0 ? (size_t)got : 0;
-    }
+    if (!tri_read_again(s->file, rows, (size_t)n * s->width, (uint64_t)first * s->width))
+        return tri_fail(error, TRI_CANNOT_READ, "", 0, "cannot read a scratch file");
     return TRI_OK;
 }
 

@@ -17,6 +17,7 @@
 
 #include "sched/checkpoint/folder.h"
 #include "sched/checkpoint/spool.h"
+#include "triangle/base/at_place.h"
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
@@ -72,7 +73,7 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
     int file = par_folder_read(c->folder, manifest_name);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, directory, 0, "holds no checkpoint: %s", strerror(errno));
-    bool whole = par_read_at(file, m, sizeof *m, 0) && is_manifest(m);
+    bool whole = tri_read_again(file, m, sizeof *m, 0) && is_manifest(m);
     close(file);
     if (whole)
         return TRI_OK;
@@ -84,7 +85,7 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
     int file = par_folder_create(c->folder, fresh_name);
     m.word = MANIFEST;
     m.hash = hash_of(&m);
-    bool done = file >= 0 && par_write_at(file, &m, sizeof m, 0) && fsync(file) == 0;
+    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && fsync(file) == 0;
     if (file >= 0)
         done = close(file) == 0 && done;
     if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !par_folder_sync(c->folder))
@@ -120,7 +121,7 @@ static bool is_fresh_manifest(int folder)
     struct par_manifest m;
     int file = par_folder_read(folder, fresh_name);
     off_t length = file >= 0 ? lseek(file, 0, SEEK_END) : -1;
-    bool is = length == 0 || (length == sizeof m && par_read_at(file, &m, sizeof m, 0) && is_manifest(&m));
+    bool is = length == 0 || (length == sizeof m && tri_read_again(file, &m, sizeof m, 0) && is_manifest(&m));
     if (file >= 0)
         close(file);
     return is;
@@ -335,11 +336,11 @@ static bool write_waiting(struct par_state_file *f, size_t n)
     f->hash = par_hash(f->hash, f->waiting, n);
     if (n == WAITING && is_zero(f->waiting, n))
         return true;
-    if (n == WAITING && par_write_at(f->file, f->waiting, n, place))
+    if (n == WAITING && tri_write_at(f->file, f->waiting, n, place))
         return true;
     if (n == WAITING && !(flags & O_DIRECT))
         return false;
-    return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && par_write_at(f->file, f->waiting, n, place);
+    return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
 }
 
 static void put_bytes(struct par_state_file *f, const char *at, size_t n)
@@ -362,7 +363,7 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
         put_bytes(f, bytes, n);
         return;
     }
-    f->failed = !par_read_at(f->file, bytes, n, f->place);
+    f->failed = !tri_read_again(f->file, bytes, n, f->place);
     f->place += (int64_t)n;
 }
 
@@ -427,7 +428,7 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
     bool sound = true, stopped = false;
     for (int64_t place = 0; piece && sound && !stopped && place < all; place += WAITING) {
         const size_t n = all - place < WAITING ? (size_t)(all - place) : WAITING;
-        sound = par_read_at(file, piece, n, place);
+        sound = tri_read_again(file, piece, n, place);
         hash = sound ? par_hash(hash, piece, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }

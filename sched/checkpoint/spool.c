@@ -1,5 +1,6 @@
 /* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
 #include "sched/checkpoint/spool.h"
+#include "triangle/base/at_place.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -43,39 +44,6 @@ uint64_t par_hash(uint64_t hash, const void *bytes, size_t n)
         hash = mixed(hash, word[0]);
     }
     return hash;
-}
-
-bool par_write_at(int file, const void *bytes, size_t n, int64_t place)
-{
-    const char *at = bytes;
-    while (n > 0) {
-        ssize_t done = pwrite(file, at, n, (off_t)place);
-        if (done < 0 && errno == EINTR)
-            continue;
-        if (done <= 0)
-            return false;
-        at += done;
-        place += done;
-        n -= (size_t)done;
-    }
-    return true;
-}
-
-bool par_read_at(int file, void *bytes, size_t n, int64_t place)
-{
-    char *at = bytes;
-    while (n > 0) {
-        ssize_t done = pread(file, at, n, (off_t)place);
-        if (done < 0 && errno == EINTR)
-            continue;
-        errno = done == 0 ? 0 : errno;
-        if (done <= 0)
-            return false;
-        at += done;
-        place += done;
-        n -= (size_t)done;
-    }
-    return true;
 }
 
 static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
@@ -184,7 +152,7 @@ static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile
     if (!pack(arrays, tile, spool->n_attributes))
         status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
     h->hash = hash_of(h, arrays);
-    if (!status && !par_write_at(spool->file, h, sizeof *h + n, spool->length))
+    if (!status && !tri_write_at(spool->file, h, sizeof *h + n, spool->length))
         status = fail_writing(spool, error);
     spool->length += status ? 0 : (int64_t)(sizeof *h + n);
     send_off(spool);
@@ -241,13 +209,13 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
 {
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
-    if (left < 0 || !par_read_at(spool->file, h, sizeof *h, place) || h->word != TILE || h->bytes < 0 ||
+    if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, place) || h->word != TILE || h->bytes < 0 ||
         h->bytes > left || h->n_attributes != spool->n_attributes)
         return fail_damaged(spool, place, error);
     *arrays = malloc((size_t)h->bytes + 1);
     if (!*arrays)
         return no_memory(spool, error);
-    if (!par_read_at(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
+    if (!tri_read_again(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
         h->hash != hash_of(h, *arrays) || (size_t)h->bytes != bytes_of(&h->tile, h->n_attributes))
         return fail_damaged(spool, place, error);
     return TRI_OK;

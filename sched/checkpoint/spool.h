@@ -32,8 +32,4 @@ struct tri_sink par_spool_sink(struct par_spool *spool);
  * finding damage, not for enemies. */
 uint64_t par_hash(uint64_t hash, const void *bytes, size_t n);
 
-/* Writes or reads all of so many bytes at a place of a file; false: errno says why, 0: the file ends before. */
-bool par_write_at(int file, const void *bytes, size_t n, int64_t place);
-bool par_read_at(int file, void *bytes, size_t n, int64_t place);
-
 #endif

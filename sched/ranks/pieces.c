@@ -1,5 +1,6 @@
 /* Tile by tile: what has a corner in it, told as to another rank. */
 #include "sched/ranks/pieces.h"
+#include "triangle/base/at_place.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -163,12 +164,12 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     for (int32_t tile = 0; !status && tile < s->n_tiles; tile++) {
         if (!pack_piece(s, tile, &bytes))
             status = par_ranks_no_memory(error);
-        else if (!par_write_at(file, bytes.at, bytes.n, offset[tile]))
+        else if (!tri_write_at(file, bytes.at, bytes.n, offset[tile]))
             status = cannot_write(path, error);
         offset[tile + 1] = offset[tile] + (int64_t)bytes.n;
     }
     free(bytes.at);
-    if (!status && !(par_write_at(file, offset, n, sizeof head) && par_write_at(file, &head, sizeof head, 0) &&
+    if (!status && !(tri_write_at(file, offset, n, sizeof head) && tri_write_at(file, &head, sizeof head, 0) &&
                      fsync(file) == 0))
         status = cannot_write(path, error);
     return status;
@@ -218,7 +219,7 @@ static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t 
     struct head head;
     size_t n = ((size_t)n_tiles + 1) * sizeof(int64_t);
     int64_t *offset = malloc(n);
-    if (offset && par_read_at(file, &head, sizeof head, 0) && par_read_at(file, offset, n, sizeof head) &&
+    if (offset && tri_read_again(file, &head, sizeof head, 0) && tri_read_again(file, offset, n, sizeof head) &&
         memcmp(&head, &wanted, sizeof head) == 0 && par_hash(par_hash(0, &head, sizeof head), offset, n) == hash)
         return offset;
     free(offset);
@@ -247,7 +248,7 @@ static enum tri_status read_piece(struct par_ranks *r, int file, const char *pat
     if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
         return par_ranks_no_memory(error);
     bytes.n = (size_t)(offset[1] - offset[0]);
-    enum tri_status status = par_read_at(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
+    enum tri_status status = tri_read_again(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
     status = status ? status : paste_piece(r, &bytes, error);
     free(bytes.at);
     return status == TRI_INTERNAL ? damaged(path, error) : status;

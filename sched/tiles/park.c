@@ -24,8 +24,8 @@
 #include <malloc.h>
 #endif
 
-#include "sched/checkpoint/spool.h"
 #include "sched/schedule/threads.h"
+#include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
 #include "triangle/base/size_text.h"
 
@@ -183,7 +183,7 @@ static void *reserve(void *user, enum tri_array array, size_t bytes)
 static bool fill(void *user, enum tri_array array, const void *from, size_t bytes)
 {
     struct par_park *park = user;
-    if (par_write_at(park->sheet[array].file, from, bytes, 0))
+    if (tri_write_at(park->sheet[array].file, from, bytes, 0))
         return true;
     park->fault = errno ? errno : EIO;
     park->wanted = (size_t)bytes_now(park);
