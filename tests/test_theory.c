@@ -10,6 +10,12 @@ static const double RADIAN = 3.14159265358979324 / 180;
 /* Equation (2): the area bound of a pre-refinement after which no circumradius exceeds r. */
 static double area_for_radius(double radius, double rho) { return radius * radius / (4 * rho * rho * rho); }
 
+/* Lemma 2: circumcentres at least 4 r apart have cavities without a common triangle or edge. */
+static bool are_independent(struct tri_point p, struct tri_point q, double radius)
+{
+    return tri_distance2(p, q) >= 16 * radius * radius;
+}
+
 /* Definition 3: the buffer zone of p holds the triangles whose circumcentre c is nearer to p than 2 r; its cavity lies
  * within. */
 static bool in_buffer_zone(struct tri_point p, struct tri_point c, double radius)
@@ -99,9 +105,9 @@ static void test_distances_decide(void **state)
 {
     (void)state;
     struct tri_point o = {0, 0}, four = {0, 4}, less = {0, 3.9999}, two = {2, 0}, within = {1.9999, 0};
-    assert_true(par_independent(o, four, 1) && par_independent(four, o, 1));
-    assert_false(par_independent(o, less, 1));
-    assert_false(par_independent(o, four, 1.0001));
+    assert_true(are_independent(o, four, 1) && are_independent(four, o, 1));
+    assert_false(are_independent(o, less, 1));
+    assert_false(are_independent(o, four, 1.0001));
     assert_true(in_buffer_zone(o, within, 1));
     assert_false(in_buffer_zone(o, two, 1));
 }
@@ -231,7 +237,7 @@ static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri
     tri_mesh_free(&both);
 }
 
-/* Lemma 2: what par_independent accepts is independent. And the test says something: nearer pairs do get into each
+/* Lemma 2: what are_independent accepts is independent. And the test says something: nearer pairs do get into each
  * other's way. */
 static void test_independent_points_have_cavities_apart(void **state)
 {
@@ -248,7 +254,7 @@ static void test_independent_points_have_cavities_apart(void **state)
             bool apart = are_apart(&mesh, &p, &q);
             assert_true(apart == are_apart(&mesh, &q, &p));
             in_the_way += !apart;
-            if (!par_independent(p.p, q.p, radius))
+            if (!are_independent(p.p, q.p, radius))
                 continue;
             assert_true(apart);
             if (independent++ < 30)

@@ -1,4 +1,4 @@
-/* Radius bound, independence. */
+/* Radius bound. */
 #include "sched/schedule/theory.h"
 
 #include <assert.h>
@@ -27,19 +27,8 @@ double par_radius_tight(double max_area, double min_angle)
     return sqrt(max_area / (2 * s * s * sine(2 * min_angle)));
 }
 
-static double distance2(struct tri_point p, struct tri_point q)
-{
-    double x = p.x - q.x, y = p.y - q.y;
-    return x * x + y * y;
-}
-
-bool par_independent(struct tri_point p, struct tri_point q, double radius)
-{
-    return distance2(p, q) >= 16 * radius * radius;
-}
-
 double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     double area2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    return distance2(a, b) * distance2(b, c) * distance2(c, a) / (4 * area2 * area2);
+    return tri_distance2(a, b) * tri_distance2(b, c) * tri_distance2(c, a) / (4 * area2 * area2);
 }

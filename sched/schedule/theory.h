@@ -1,4 +1,4 @@
-/* The theory of the paper in functions: radius bound, independence.
+/* The theory of the paper in functions: radius bound.
  *
  * Source: A. N. Chernikov and N. P. Chrisochoides, "Practical and Efficient Point Insertion Scheduling Method for
  * Parallel Guaranteed Quality Delaunay Refinement", ICS 2004. Notation: r is an upper bound on the circumradii in the
@@ -6,8 +6,6 @@
  * areas. */
 #ifndef SCHED_SCHEDULE_THEORY_H
 #define SCHED_SCHEDULE_THEORY_H
-
-#include <stdbool.h>
 
 #include "triangle/mesh/mesh.h"
 
@@ -20,9 +18,6 @@ double par_radius_lemma7(double max_area, double rho);
 /* The tight bound: the extremal triangle is (theta, theta, 180 - 2 theta), r <= sqrt(A / (2 sin^2 theta sin 2 theta));
  * 0.73 of Lemma 7 at 20 degrees, 0.76 at 30. */
 double par_radius_tight(double max_area, double min_angle);
-
-/* Lemma 2: circumcentres at least 4 r apart have cavities without a common triangle or edge. Constant time. */
-bool par_independent(struct tri_point p, struct tri_point q, double radius);
 
 /* Square of the circumradius of a triangle. */
 double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c);

@@ -46,13 +46,13 @@ static void deal_share(void *context, size_t share)
     int32_t *at = finds->count + share * (size_t)finds->n_rows;
     assert(!note || finds->notes[share].n == finds->found[share].n);
     for (int32_t i = 0; i < runs->n; i++) {
-        const struct par_span run = runs->item[i];
-        memcpy(finds->item + at[run.row], from, (size_t)run.n * sizeof *from);
+        const struct par_span span = runs->item[i];
+        memcpy(finds->item + at[span.row], from, (size_t)span.n * sizeof *from);
         if (note)
-            memcpy(finds->note + at[run.row], note, (size_t)run.n * sizeof *note);
-        at[run.row] += run.n;
-        from += run.n;
-        note += note ? run.n : 0;
+            memcpy(finds->note + at[span.row], note, (size_t)span.n * sizeof *note);
+        at[span.row] += span.n;
+        from += span.n;
+        note += note ? span.n : 0;
     }
     free(finds->notes[share].item);
     finds->notes[share] = (struct par_ids){0};

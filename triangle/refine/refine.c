@@ -14,7 +14,6 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"

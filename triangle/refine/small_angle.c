@@ -14,7 +14,6 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "triangle/geometry/predicates.h"
 #include "triangle/size/feature_size.h"
