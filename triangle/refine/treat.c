@@ -439,7 +439,8 @@ bool tri_split_encroached(struct tri_refiner *r)
         const tri_triangle_id beside = tri_of(sub->side[0] == TRI_NONE ? sub->side[1] : sub->side[0]);
         enum tri_outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
-            r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
+            if (r->n_encroached < r->encroached_capacity) /* else it was split, and memory ran out for what waits */
+                r->encroached[r->n_encroached++] = s;
             return false;
         }
         if (outcome == REFUSED)
