@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
 #include "triangle/base/scratch_file.h"
 
@@ -95,6 +94,28 @@ static bool open_file(const struct checker *c, struct file *file)
     return file->descriptor >= 0;
 }
 
+static bool write_all(int descriptor, const void *data, size_t n)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t put = write(descriptor, (const char *)data + done, n - done);
+        if (put < 0 && errno != EINTR)
+            return false;
+        done += put > 0 ? (size_t)put : 0;
+    }
+    return true;
+}
+
+static bool read_all(int descriptor, void *data, size_t n)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t got = pread(descriptor, (char *)data + done, n - done, (off_t)done);
+        if (got == 0 || (got < 0 && errno != EINTR))
+            return false;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return true;
+}
+
 /* All that is in memory goes to the files. */
 static enum tri_status spill(struct checker *c)
 {
@@ -106,8 +127,7 @@ static enum tri_status spill(struct checker *c)
         struct file *file = &s->file[file_of(s, &at[i])];
         for (j = i + 1; j < s->here.n && file_of(s, &at[j]) == file_of(s, &at[i]); j++) {
         }
-        if (!open_file(c, file) || !tri_write_at(file->descriptor, at + i, (size_t)(j - i) * sizeof *at,
-                                                 (uint64_t)file->n * sizeof *at))
+        if (!open_file(c, file) || !write_all(file->descriptor, at + i, (size_t)(j - i) * sizeof *at))
             return fail(c);
         file->n += j - i;
     }
@@ -133,7 +153,7 @@ static enum tri_status fetch(struct checker *c, struct file *file)
         here->room = file->n;
     }
     here->n = file->n;
-    if (!tri_read_again(file->descriptor, here->at, (size_t)here->n * sizeof *here->at, 0))
+    if (!read_all(file->descriptor, here->at, (size_t)here->n * sizeof *here->at))
         return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was kept there");
     (void)close(file->descriptor);
     *file = (struct file){-1, 0};
