@@ -25,6 +25,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/constrain.c
     triangle/geometry/sweep_line.c
     triangle/mesh/locate.c
+    triangle/mesh/parents.c
     triangle/cdt/carve.c
     triangle/cdt/why_empty.c
     triangle/cdt/chain.c
@@ -32,11 +33,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/mesh/cavity.c
     triangle/mesh/interpolate.c
     triangle/geometry/degrees.c
-    triangle/refine/quality.c
+    triangle/refine/place.c
     triangle/refine/petal.c
     triangle/base/size_text.c
-    triangle/refine/small_angle.c
-    triangle/refine/groundwork.c
     triangle/size/feature_size.c
     triangle/refine/split.c
     triangle/refine/disk.c
@@ -47,7 +46,12 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine/treat.c
     triangle/refine/refine.c
     triangle/refine/census.c
+    triangle/size/asked.c
     triangle/size/crowd.c
+    triangle/size/gap.c
+    triangle/size/groundwork.c
+    triangle/size/hopeless.c
+    triangle/size/quality.c
     triangle/size/estimate.c
     triangle/refine/stats.c
     triangle/refine/generate.c

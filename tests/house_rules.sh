@@ -72,6 +72,10 @@ tested_by() {
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/cdt/rotation.c | triangle/cdt/laying_order.c) echo constrain ;;
+    triangle/mesh/parents.c) echo groundwork ;;
+    triangle/size/asked.c) echo criterion ;;
+    triangle/size/gap.c) echo hopeless ;;
+    triangle/refine/place.c) echo quality ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
     sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
@@ -97,14 +101,15 @@ refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper fo
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|dropin|check)/' 'includes a folder of the mesher' \
     triangle/base/*.[ch] triangle/geometry/*.[ch] triangle/mesh/*.[ch] triangle/cdt/*.[ch] triangle/refine/*.[ch] \
     triangle/size/*.[ch]
-# In the mesher base/ <- geometry/ <- mesh/ <- cdt/ <- refine/ with size/; mesh.h holds what refinement keeps with it.
+# In the mesher base/ <- geometry/ <- mesh/ <- cdt/ <- size/ <- refine/.
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(geometry|mesh|cdt|refine|size)/' 'includes an upper folder' \
     triangle/base/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(mesh|cdt|refine|size)/' 'includes an upper folder' \
     triangle/geometry/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(cdt|refine|size)/' 'includes an upper folder' \
-    $(ls triangle/mesh/*.[ch] | grep -vx -e triangle/mesh/mesh.h -e triangle/mesh/grid.h | tr '\n' ' ')
-refuse '#[[:space:]]*include[[:space:]]*"triangle/size/' 'includes an upper folder' triangle/cdt/*.[ch]
+    triangle/mesh/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(refine|size)/' 'includes an upper folder' triangle/cdt/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/refine/' 'includes an upper folder' triangle/size/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/hdf5/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|check)/' 'includes another folder' triangle/dropin/*.[ch]

@@ -354,7 +354,7 @@ struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_cons
     return mesh;
 }
 
-double support_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+double support_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     double sure;
     return tri_estimate(mesh, quality, NULL, &sure);

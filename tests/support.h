@@ -112,7 +112,7 @@ struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_cons
 struct tri_options support_quality(double min_angle, double max_area);
 
 /* tri_estimate, as one thread makes it. */
-double support_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *quality);
+double support_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality);
 
 /* A set of triangles by their vertex ids: sorted, each rotated so that its least corner comes first. */
 struct support_set {

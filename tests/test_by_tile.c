@@ -3,16 +3,16 @@
 
 #include "tests/support.h"
 
-static struct tri_refine_options bounds(void)
+static struct tri_quality bounds(void)
 {
-    struct tri_refine_options quality = tri_refine_defaults();
+    struct tri_quality quality = tri_quality_defaults();
     quality.min_angle = 25;
     return quality;
 }
 
 struct world {
     struct tri_mesh mesh;
-    struct tri_refine_options quality;
+    struct tri_quality quality;
     struct par_partition tiles;
     struct par_options options;
     struct par_report report;

@@ -161,7 +161,7 @@ static void test_check(void **state)
     struct tri_error error;
     struct tri_pslg square = support_square(1, 0, 1);
     struct tri_mesh mesh = support_generate(&square, &none, &report);
-    struct tri_refine_options quality = tri_refine_defaults();
+    struct tri_quality quality = tri_quality_defaults();
     quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* no mesh fills more of its bound than that */
     assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
     quality.max_area = 0.99 / 0.75 / TRI_MAX_TRIANGLES;
@@ -180,7 +180,7 @@ static void test_bounds_that_are_met_ask_for_nothing(void **state)
     struct tri_report report;
     struct tri_pslg square = support_square(1, 0, 1);
     struct tri_mesh mesh = support_generate(&square, &none, &report);
-    struct tri_refine_options quality = tri_refine_defaults();
+    struct tri_quality quality = tri_quality_defaults();
     assert_int_equal(mesh.n_triangles, 2);
     quality.max_area = 0.5;
     assert_true(tri_area_demand(&mesh, &quality, NULL) == 0);

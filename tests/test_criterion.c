@@ -10,13 +10,13 @@ struct setting {
     struct tri_triangle triangle;
     struct tri_region regions[2];
     struct tri_mesh mesh;
-    struct tri_refine_options options;
+    struct tri_quality options;
 };
 
 static void set_up(struct setting *s, struct tri_point a, struct tri_point b, struct tri_point c)
 {
     *s = (struct setting){.xy = {a, b, c}, .triangle = {.v = {0, 1, 2}, .region = 1}, .regions = {{0, 0}, {7, 0.25}},
-                          .options = tri_refine_defaults()};
+                          .options = tri_quality_defaults()};
     s->mesh = (struct tri_mesh){.xy = s->xy, .n_vertices = 3, .tri = &s->triangle, .n_triangles = 1,
                                 .regions = s->regions, .n_regions = 2, .unit = 1};
 }
@@ -46,8 +46,8 @@ static void test_angles_before_sizes(void **state)
 
 static double area2_bound(const struct setting *s, int32_t region)
 {
-    struct tri_criterion c = tri_criterion_for(&s->mesh, &s->options);
-    return tri_area2_bound(&c, region);
+    struct tri_asked asked = tri_asked_of(&s->mesh, &s->options);
+    return tri_area2_bound(&asked, region);
 }
 
 /* The smaller of the two bounds counts, in the caller's units, times the scale. */
@@ -101,7 +101,7 @@ static void test_protection(void **state)
 {
     (void)state;
     struct tri_subsegment boundary = {.side = {4, TRI_NONE}}, inner = {.side = {4, 9}};
-    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_quality options = tri_quality_defaults();
     assert_false(tri_is_protected(&options, &boundary));
     options.protect = 1;
     assert_true(tri_is_protected(&options, &boundary));

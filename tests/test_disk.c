@@ -14,7 +14,7 @@ static struct tri_mesh conforming(const struct tri_pslg *pslg, double angle, str
 static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_report *report)
 {
     struct tri_check_options check = {.delaunay = TRI_CHECK_CONFORMING};
-    struct tri_refine_options options = {.conforming = true};
+    struct tri_quality options = {.conforming = true};
     int64_t count[TRI_EXCUSES];
     support_judge(mesh, pslg, &check, false, NULL);
     tri_count_encroached(mesh, &options, &report->quality, count);
@@ -109,7 +109,7 @@ static void test_levels_are_level_in_spite_of_rounding(void **state)
 /* So many circles are not empty, whatever the reason. */
 static int64_t circles_left(const struct tri_mesh *mesh, const struct tri_report *report)
 {
-    struct tri_refine_options options = {.conforming = true};
+    struct tri_quality options = {.conforming = true};
     int64_t count[TRI_EXCUSES], left = 0;
     tri_count_encroached(mesh, &options, &report->quality, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -223,7 +223,7 @@ static void test_what_would_take_too_many_parts_is_counted_by_place(void **state
     struct tri_report report;
     assert_true(support_read("regress/bundle_levels.poly", &pslg));
     struct tri_mesh mesh = conforming(&pslg, 20, &report);
-    struct tri_refine_options options = {.conforming = true};
+    struct tri_quality options = {.conforming = true};
     tri_count_encroached(&mesh, &options, &report.quality, count);
     for (tri_sub_id i = 0; i < mesh.n_subs; i++) {
         struct tri_subsegment *s = &mesh.sub[i];
@@ -255,7 +255,7 @@ static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state
     struct tri_report report;
     assert_true(support_read("regress/ulps_apart.poly", &pslg));
     struct tri_mesh mesh = conforming(&pslg, 0, &report);
-    struct tri_refine_options options = {.conforming = true};
+    struct tri_quality options = {.conforming = true};
     tri_count_encroached(&mesh, &options, &report.quality, count);
     assert_true(count[TRI_EXCUSE_PRECISION] > 0);
     assert_int_equal(count[TRI_EXCUSE_PRECISION], circles_left(&mesh, &report));

@@ -26,7 +26,7 @@ static void test_areas(void **state)
     (void)state;
     for (double area = 1e-2; area > 2e-5; area /= 4) {
         struct tri_mesh mesh = coarse_square(0);
-        struct tri_refine_options quality = support_quality(20, area).quality;
+        struct tri_quality quality = support_quality(20, area).quality;
         struct tri_refine_report report;
         double sure, estimate = tri_estimate(&mesh, &quality, NULL, &sure);
         assert_true(sure > mesh.n_triangles && sure < estimate + mesh.n_triangles);
@@ -36,7 +36,7 @@ static void test_areas(void **state)
     }
 }
 
-static double sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+static double sure_work(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     double sure;
     tri_estimate(mesh, quality, NULL, &sure);
@@ -48,7 +48,7 @@ static void test_bounds_that_are_met(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
-    struct tri_refine_options quality = support_quality(20, 0.5).quality;
+    struct tri_quality quality = support_quality(20, 0.5).quality;
     assert_true(sure_work(&mesh, &quality) == mesh.n_triangles);
     quality.max_area = 1e-4;
     assert_true(sure_work(&mesh, &quality) > 1e4);
@@ -60,7 +60,7 @@ static void test_size_test_is_probed(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(8);
-    struct tri_refine_options areas = support_quality(20, 1e-4).quality, probed = support_quality(20, 0).quality;
+    struct tri_quality areas = support_quality(20, 1e-4).quality, probed = support_quality(20, 0).quality;
     double bound = 1e-4;
     probed.unsuitable = wants_smaller;
     probed.unsuitable_user = &bound;
@@ -78,7 +78,7 @@ static void test_shares(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
-    struct tri_refine_options quality = support_quality(25, 1e-3).quality;
+    struct tri_quality quality = support_quality(25, 1e-3).quality;
     double sum = 0;
     for (int32_t t = 0; t < mesh.n_triangles; t++) {
         double work = tri_work_of(&mesh, &quality, t);
@@ -118,7 +118,7 @@ static void test_samples(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
-    struct tri_refine_options quality = support_quality(25, 1e-4).quality;
+    struct tri_quality quality = support_quality(25, 1e-4).quality;
     double all = support_estimate(&mesh, &quality);
     int32_t before = 0;
     for (double grain = 2000; grain > 10; grain /= 5) {
@@ -140,7 +140,7 @@ static void test_any_threads_say_the_same(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(40000);
-    struct tri_refine_options quality = support_quality(25, 1e-5).quality;
+    struct tri_quality quality = support_quality(25, 1e-5).quality;
     double sure[2], all[2];
     struct samples s[2];
     assert_true(tri_shares(mesh.n_triangles) > 2);

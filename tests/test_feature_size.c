@@ -3,8 +3,8 @@
 #include "full.h"
 #include "support.h"
 
+#include "triangle/mesh/parents.h"
 #include "triangle/size/feature_size.h"
-#include "triangle/refine/small_angle.h"
 
 static double distance(struct tri_point a, struct tri_point b) { return hypot(b.x - a.x, b.y - a.y); }
 

@@ -235,19 +235,29 @@ static bool in_caller_units(void *user, const double p[2])
     return true;
 }
 
-/* Gates and user tests get the caller's coordinates, whatever the unit inside. */
+static double any_length(void *user, const double at[2])
+{
+    in_caller_units(user, at);
+    return HUGE_VAL;
+}
+
+/* Gates and size functions get the caller's coordinates, whatever the unit inside. */
 static void test_gate_gets_callers_coordinates(void **state)
 {
     (void)state;
-    bool seen = false;
+    bool seen = false, passed = false;
+    const struct tri_refine_hooks hooks = {.gate = in_caller_units, .gate_user = &passed};
+    struct tri_refine_report report;
     struct tri_pslg pslg = support_square(1e300, 0, 1);
     struct tri_options options = support_quality(30, 0);
-    options.quality.gate = in_caller_units;
-    options.quality.gate_user = &seen;
+    options.quality.edge_length = any_length;
+    options.quality.edge_length_user = &seen;
     support_add_segment(&pslg, 0, 2);
     pslg.points[5] = 1e298; /* a flat corner */
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_true(mesh.unit > 1 && mesh.unit < INFINITY && seen);
+    options.quality.min_angle = 33;
+    assert_int_equal(tri_refine_with(&mesh, &options.quality, &hooks, &report, NULL), TRI_OK);
+    assert_true(mesh.unit > 1 && mesh.unit < INFINITY && seen && passed);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }

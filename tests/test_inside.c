@@ -137,7 +137,7 @@ static void test_long_walls(void **state)
     struct tri_subsegment sub[] = {{.v = {0, 1}, .side = {2, TRI_NONE}}, {.v = {2, 0}, .side = {1, 5}}};
     struct tri_triangle t = {.v = {0, 1, 2}, .n = {4, 8, 12}};
     struct tri_mesh mesh = {.xy = xy, .tri = &t, .sub = sub, .n_vertices = 3, .n_triangles = 1, .n_subs = 2};
-    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_quality options = tri_quality_defaults();
     struct tri_shape shape = tri_shape_of(xy, t.v);
     assert_int_equal(tri_long_wall(&mesh, &options, 0, &shape), TRI_NONE);
     t.n[1] = ~1; /* the short edge */

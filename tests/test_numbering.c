@@ -107,7 +107,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, int32_t hubs, stru
 static struct par_partition partition_of(const struct tri_mesh *mesh)
 {
     struct par_partition partition;
-    const struct tri_refine_options none = tri_refine_defaults();
+    const struct tri_quality none = tri_quality_defaults();
     assert_int_equal(par_partition_make(&partition, mesh, &none, mesh->n_triangles, 50, NULL, NULL), TRI_OK);
     return partition;
 }

@@ -3,7 +3,7 @@
 
 #include "sched/schedule/partition.h"
 #include "triangle/size/estimate.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 /* Inputs and bounds of many kinds, degenerate ones among them. */
 struct trial {
@@ -49,7 +49,7 @@ static struct tri_mesh start_of(const struct trial *trial, struct tri_options *o
     return mesh;
 }
 
-static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_refine_options *quality, double cell)
+static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_quality *quality, double cell)
 {
     struct par_partition partition;
     struct tri_error error;
@@ -369,7 +369,7 @@ static void test_extremes(void **state)
     (void)state;
     struct tri_mesh mesh;
     struct tri_error error;
-    struct tri_refine_options quality = tri_refine_defaults();
+    struct tri_quality quality = tri_quality_defaults();
     assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
     struct par_partition p = cut(&mesh, &quality, 1000);
     assert_int_equal(par_cells(&p), 4);
@@ -435,7 +435,7 @@ static void test_columns_are_those_of_sorted_samples(void **state)
     for (size_t k = 0; k < 3; k++) {
         struct tri_options options;
         struct tri_mesh mesh = start_of(&trials[k], &options);
-        struct tri_refine_options quality = options.quality;
+        struct tri_quality quality = options.quality;
         struct par_partition p = cut(&mesh, &quality, trials[k].block);
         struct sampling s = {0};
         assert_true(tri_sample_work(&mesh, &quality, p.estimate / par_cells(&p) / 32, NULL, note_sample, &s));

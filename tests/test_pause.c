@@ -24,6 +24,8 @@ static struct tri_mesh coarse(const char *name, const struct tri_options *option
     return support_generate(pslg, &coarse, &report);
 }
 
+static const struct tri_refine_hooks no_hooks;
+
 static void compare(const char *name, const struct tri_options *options)
 {
     struct tri_pslg pslg, same;
@@ -33,7 +35,7 @@ static void compare(const char *name, const struct tri_options *options)
     enum tri_status status;
     int pauses = 0;
     assert_int_equal(tri_refine(&twin, &options->quality, &wanted, NULL), TRI_OK);
-    assert_int_equal(tri_refiner_new(&refiner, &mesh, &options->quality, &report, NULL), TRI_OK);
+    assert_int_equal(tri_refiner_new(&refiner, &mesh, &options->quality, &no_hooks, &report, NULL), TRI_OK);
     mesh.stop = &at_once;
     for (; (status = tri_refiner_run(refiner, NULL)) == TRI_STOPPED; pauses++)
         ;
@@ -96,12 +98,11 @@ static void compare_step_by_step(const char *name, const struct tri_options *opt
 {
     struct tri_pslg pslg, same;
     struct tri_mesh mesh = coarse(name, options, &pslg), twin = coarse(name, options, &same);
-    struct tri_refine_options stepping = options->quality;
+    const struct tri_refine_hooks stepping = {.more_room = not_now};
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     assert_int_equal(tri_refine(&twin, &options->quality, &report, NULL), TRI_OK);
-    stepping.more_room = not_now;
-    assert_int_equal(tri_refiner_new(&refiner, &mesh, &stepping, &report, NULL), TRI_OK);
+    assert_int_equal(tri_refiner_new(&refiner, &mesh, &options->quality, &stepping, &report, NULL), TRI_OK);
     step(refiner, &mesh);
     tri_refiner_free(refiner);
     support_assert_same_bytes(&mesh, &twin);
@@ -164,12 +165,12 @@ static void test_within_a_fence(void **state)
         assert_int_equal(tri_refine_prepare(&mesh[stepping], NULL, NULL), TRI_OK);
         const double unit = mesh[stepping].unit;
         const struct tri_fence fence = {-9 / unit, -9 / unit, 0.7 / unit, 0.7 / unit};
-        options.quality.fence = &fence;
-        options.quality.more_room = stepping ? not_now : NULL;
-        options.quality.deferred = add_deferred;
-        options.quality.deferred_user = &deferred[stepping];
+        const struct tri_refine_hooks hooks = {.fence = &fence,
+                                               .more_room = stepping ? not_now : NULL,
+                                               .deferred = add_deferred,
+                                               .deferred_user = &deferred[stepping]};
         assert_int_equal(
-            tri_refiner_new(&refiner, &mesh[stepping], &options.quality, &report[stepping], NULL), TRI_OK);
+            tri_refiner_new(&refiner, &mesh[stepping], &options.quality, &hooks, &report[stepping], NULL), TRI_OK);
         if (stepping)
             pauses = step(refiner, &mesh[stepping]);
         assert_int_equal(tri_refiner_run(refiner, NULL), TRI_OK);

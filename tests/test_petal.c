@@ -3,6 +3,8 @@
 
 #include "triangle/mesh/cavity.h"
 #include "triangle/refine/petal.h"
+#include "triangle/refine/place.h"
+#include "triangle/size/quality.h"
 
 enum { PETALS = 4000 };
 

@@ -7,7 +7,7 @@
 #include "sched/schedule/theory.h"
 #include "sched/schedule/threads.h"
 #include "triangle/size/estimate.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 struct trial {
     const char *file; /* or NULL: random points in a square */
@@ -22,7 +22,7 @@ static const struct trial trials[] = {
 
 enum { N_TRIALS = sizeof trials / sizeof *trials };
 
-static struct tri_mesh start_of(const struct trial *trial, struct tri_refine_options *quality)
+static struct tri_mesh start_of(const struct trial *trial, struct tri_quality *quality)
 {
     struct tri_pslg pslg = {0};
     struct tri_options options = support_quality(20, 8 * trial->max_area); /* half way there */
@@ -32,14 +32,14 @@ static struct tri_mesh start_of(const struct trial *trial, struct tri_refine_opt
         fail_msg("cannot read %s", trial->file);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     tri_pslg_free(&pslg);
-    *quality = tri_refine_defaults();
+    *quality = tri_quality_defaults();
     quality->min_angle = trial->angle;
     quality->max_area = trial->max_area;
     quality->conforming = trial->conforming;
     return mesh;
 }
 
-static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_refine_options *quality, double block)
+static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_quality *quality, double block)
 {
     struct par_partition partition;
     assert_int_equal(par_partition_make(&partition, mesh, quality,
@@ -48,7 +48,7 @@ static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_re
     return partition;
 }
 
-static struct par_ids bad_triangles(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+static struct par_ids bad_triangles(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     struct par_ids triangles = {malloc(((size_t)mesh->n_triangles + 1) * sizeof(int32_t)), 0,
                                      mesh->n_triangles + 1};
@@ -64,7 +64,7 @@ static bool is_in(void *user, const double p[2])
 }
 
 /* The reference: block after block, forwards or backwards, on the mesh itself. Returns the points inserted. */
-static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_quality *quality,
                               const struct par_partition *p, int phase, bool backwards)
 {
     struct par_ids worklist = bad_triangles(mesh, quality);
@@ -77,18 +77,14 @@ static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_opt
     for (int32_t k = 0; k < n; k++) {
         int32_t block = backwards ? n - 1 - k : k;
         struct tri_fence fence = par_fence(p, block / p->n_rows, block % p->n_rows);
-        struct tri_refine_options options = *quality;
+        struct tri_refine_hooks hooks = {.gate = is_in, .gate_user = &fence, .fence = &fence, .worklist = mine};
         struct tri_refine_report report;
-        options.gate = is_in;
-        options.gate_user = &fence;
-        options.fence = &fence;
-        options.worklist = mine;
         for (int32_t i = 0; i < worklist.n; i++)
             if (block_of[i] == block)
-                mine[options.n_worklist++] = worklist.item[i];
-        if (options.n_worklist > 0)
-            assert_int_equal(tri_refine(mesh, &options, &report, NULL), TRI_OK);
-        if (options.n_worklist > 0)
+                mine[hooks.n_worklist++] = worklist.item[i];
+        if (hooks.n_worklist > 0)
+            assert_int_equal(tri_refine_with(mesh, quality, &hooks, &report, NULL), TRI_OK);
+        if (hooks.n_worklist > 0)
             inserted += report.inserted_free + report.inserted_on_segments;
     }
     free(block_of);
@@ -137,7 +133,7 @@ static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, in
 }
 
 /* Whatever is bad now is in the worklist, for the phases to come; but for what was given up for good. */
-static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                                   const struct par_ids *worklist,
                                                   const struct tri_refine_report *report)
 {
@@ -157,7 +153,7 @@ static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, c
 }
 
 /* The phase itself, and what can be told from before and after. */
-static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_partition *p,
+static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *quality, const struct par_partition *p,
                          int phase, const struct par_options *options, int64_t *pauses)
 {
     struct tri_error error = {0};
@@ -199,7 +195,7 @@ static void test_a_phase_is_its_blocks_one_by_one(void **state)
     int64_t pauses = 0;
     for (int i = 0; i < N_TRIALS; i += every(2))
         for (int phase = 0; phase < PAR_PHASES; phase++) {
-            struct tri_refine_options quality;
+            struct tri_quality quality;
             struct tri_mesh first = start_of(&trials[i], &quality), second = start_of(&trials[i], &quality);
             struct par_partition partition = cut(&first, &quality, trials[i].block);
             int64_t inserted = run_one_by_one(&first, &quality, &partition, phase, false);
@@ -230,7 +226,7 @@ static void test_four_phases_in_turn(void **state)
 {
     (void)state;
     for (int i = 0; i < N_TRIALS; i++) {
-        struct tri_refine_options quality;
+        struct tri_quality quality;
         struct par_options options = {.threads = 2};
         struct par_report report = {0};
         struct tri_mesh mesh = start_of(&trials[i], &quality);

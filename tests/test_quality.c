@@ -1,6 +1,6 @@
 /* Bounds, shapes and placement against elementary geometry in long double. */
 #include "support.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 static const double RADIANS = 0.017453292519943295769;
 

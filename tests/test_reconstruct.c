@@ -75,7 +75,7 @@ static struct tri_mesh rebuild(const struct input *in, const struct tri_reconstr
 
 static void add_steiner(struct tri_mesh *mesh, double min_angle, double max_area)
 {
-    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_quality options = tri_quality_defaults();
     struct tri_refine_report report;
     struct tri_error error = {0};
     options.min_angle = min_angle;
@@ -474,7 +474,7 @@ static bool treat_garbage(struct support_random *random, double wild)
         assert_int_equal(status, TRI_BAD_INPUT);
         assert_non_null(strstr(error.text, "triangle "));
     } else {
-        struct tri_refine_options quality = tri_refine_defaults();
+        struct tri_quality quality = tri_quality_defaults();
         struct tri_refine_report report;
         quality.min_angle = 33 * support_unit(random);
         quality.max_area = 0.2 * support_unit(random);

@@ -384,10 +384,11 @@ static void test_gate_that_says_no_stops_everything(void **state)
     struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
     struct gate gate = {-1, 0, 0};
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(33, 0.05).quality;
-    options.gate = left_of;
-    options.gate_user = &gate;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    struct tri_quality options = support_quality(33, 0.05).quality;
+    struct tri_refine_hooks hooks = {0};
+    hooks.gate = left_of;
+    hooks.gate_user = &gate;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     support_assert_same_bytes(&mesh, &twin);
     assert_true(gate.asked > 0 && gate.asked == gate.refused && report.gated == gate.refused);
     assert_int_equal(report.inserted_free + report.inserted_on_segments, 0);
@@ -404,11 +405,12 @@ static void test_gate_that_says_yes_changes_nothing(void **state)
     struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
     struct gate gate = {1e9, 0, 0};
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(33, 0.05).quality;
+    struct tri_quality options = support_quality(33, 0.05).quality;
+    struct tri_refine_hooks hooks = {0};
     assert_int_equal(tri_refine(&twin, &options, &report, NULL), TRI_OK);
-    options.gate = left_of;
-    options.gate_user = &gate;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.gate = left_of;
+    hooks.gate_user = &gate;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     support_assert_same_bytes(&mesh, &twin);
     assert_true(gate.asked > 0);
     tri_mesh_free(&mesh);
@@ -425,16 +427,17 @@ static void test_gated_halves(void **state)
     struct tri_mesh mesh = coarse_square(&pslg);
     struct gate gate = {3, 0, 0};
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(30, 0.02).quality;
+    struct tri_quality options = support_quality(30, 0.02).quality;
+    struct tri_refine_hooks hooks = {0};
     int32_t before = mesh.n_vertices;
-    options.gate = left_of;
-    options.gate_user = &gate;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.gate = left_of;
+    hooks.gate_user = &gate;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     assert_true(report.gated > 0 && report.inserted_free > 100);
     for (int32_t v = before; v < mesh.n_vertices; v++)
         assert_true(mesh.on[v] != TRI_VERTEX_FREE || mesh.xy[v].x < 3);
-    options.gate = NULL;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.gate = NULL;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     struct tri_check_options check = {.max_bad = 0, .min_angle = 30, .max_area = 0.02};
     support_judge(&mesh, &pslg, &check, false, NULL);
     tri_mesh_free(&mesh);
@@ -452,9 +455,10 @@ static bool is_owned(const struct tri_fence *f, const double at[6])
 static void refine_within(struct tri_mesh *mesh, const struct tri_fence *fence, double angle, double area)
 {
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(angle, area).quality;
-    options.fence = fence;
-    assert_int_equal(tri_refine(mesh, &options, &report, NULL), TRI_OK);
+    struct tri_quality options = support_quality(angle, area).quality;
+    struct tri_refine_hooks hooks = {0};
+    hooks.fence = fence;
+    assert_int_equal(tri_refine_with(mesh, &options, &hooks, &report, NULL), TRI_OK);
     assert_true(report.inserted_free > 50 && report.fenced > 0);
 }
 
@@ -529,11 +533,12 @@ static void test_more_room_is_asked_and_may_fail(void **state)
         struct tri_mesh mesh = coarse_square(&pslg);
         struct tri_error error = {0};
         struct tri_refine_report report;
-        struct tri_refine_options options = support_quality(30, 0.02).quality;
+        struct tri_quality options = support_quality(30, 0.02).quality;
+        struct tri_refine_hooks hooks = {0};
         int left = grants;
-        options.more_room = grant_room;
-        options.more_room_user = &left;
-        enum tri_status status = tri_refine(&mesh, &options, &report, &error);
+        hooks.more_room = grant_room;
+        hooks.more_room_user = &left;
+        enum tri_status status = tri_refine_with(&mesh, &options, &hooks, &report, &error);
         assert_int_equal(status, left < 0 ? TRI_NO_MEMORY : TRI_OK);
         assert_true(status == TRI_OK || strcmp(error.text, "the view is full") == 0);
         assert_true(grants < 100 || status == TRI_OK);
@@ -558,14 +563,15 @@ static void test_pauses_change_nothing(void **state)
         struct tri_pslg pslg, same;
         struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
         struct tri_refine_report report, twin_report;
-        struct tri_refine_options options = support_quality(31, 0.02).quality;
+        struct tri_quality options = support_quality(31, 0.02).quality;
+        struct tri_refine_hooks hooks = {0};
         struct tri_refiner *refiner;
         enum tri_status status;
         int pauses = 0;
         options.conforming = conforming;
         assert_int_equal(tri_refine(&twin, &options, &twin_report, NULL), TRI_OK);
-        options.more_room = not_now;
-        assert_int_equal(tri_refiner_new(&refiner, &mesh, &options, &report, NULL), TRI_OK);
+        hooks.more_room = not_now;
+        assert_int_equal(tri_refiner_new(&refiner, &mesh, &options, &hooks, &report, NULL), TRI_OK);
         while ((status = tri_refiner_run(refiner, NULL)) == TRI_NO_ROOM) {
             struct tri_error fault = {0};
             if (tri_mesh_validate(&mesh, &fault) != TRI_OK)
@@ -602,14 +608,15 @@ static void test_what_is_left_is_told(void **state)
     struct tri_mesh mesh = coarse_square(&pslg);
     struct gate gate = {3, 0, 0};
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(30, 0.02).quality;
+    struct tri_quality options = support_quality(30, 0.02).quality;
+    struct tri_refine_hooks hooks = {0};
     int64_t left = 0;
-    options.gate = left_of;
-    options.gate_user = &gate;
-    options.fence = &fence;
-    options.deferred = count_left;
-    options.deferred_user = &left;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.gate = left_of;
+    hooks.gate_user = &gate;
+    hooks.fence = &fence;
+    hooks.deferred = count_left;
+    hooks.deferred_user = &left;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     assert_true(report.gated > 0 && report.fenced > 0);
     assert_int_equal(left, report.gated + report.fenced);
     tri_mesh_free(&mesh);
@@ -653,16 +660,17 @@ static void test_seeds(void **state)
     struct tri_pslg pslg;
     struct tri_mesh mesh = coarse_square(&pslg);
     struct tri_refine_report report;
-    struct tri_refine_options options = support_quality(30, 0.02).quality;
+    struct tri_quality options = support_quality(30, 0.02).quality;
+    struct tri_refine_hooks hooks = {0};
     int32_t *listed = calloc((size_t)mesh.n_triangles, sizeof *listed), n = 0;
-    options.worklist = listed;
-    options.n_worklist = 0;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.worklist = listed;
+    hooks.n_worklist = 0;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     assert_int_equal(report.inserted_free + report.inserted_on_segments, 0);
     for (int32_t t = mesh.n_triangles - 1; t >= 0; t--)
         listed[n++] = t;
-    options.n_worklist = n;
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
+    hooks.n_worklist = n;
+    assert_int_equal(tri_refine_with(&mesh, &options, &hooks, &report, NULL), TRI_OK);
     struct tri_check_options check = {.max_bad = 0, .min_angle = 30, .max_area = 0.02};
     support_judge(&mesh, &pslg, &check, false, NULL);
     free(listed);

@@ -184,21 +184,20 @@ static struct tri_mesh mesh_with_attributes(void)
 /* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
 static int64_t refine_in_view(struct tri_mesh *shared, struct par_view *view, int64_t limit, double max_area)
 {
-    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_quality options = tri_quality_defaults();
+    struct tri_refine_hooks hooks = {.more_room = par_view_more_room, .more_room_user = view};
     struct tri_refine_report report;
     int32_t n = shared->n_triangles, *worklist = malloc((size_t)n * sizeof *worklist);
     assert_non_null(worklist);
     options.min_angle = 30;
     options.max_area = max_area;
     options.max_steiner = limit;
-    options.more_room = par_view_more_room;
-    options.more_room_user = view;
-    options.worklist = worklist;
+    hooks.worklist = worklist;
     for (int32_t i = 0; i < n; i++)
         if (tri_is_live(&shared->tri[i]))
-            worklist[options.n_worklist++] = i;
+            worklist[hooks.n_worklist++] = i;
     par_view_begin(view, shared);
-    enum tri_status status = tri_refine(&view->mesh, &options, &report, NULL);
+    enum tri_status status = tri_refine_with(&view->mesh, &options, &hooks, &report, NULL);
     assert_true(status == TRI_OK || status == TRI_NO_ROOM);
     par_view_end(view);
     free(worklist);
@@ -267,7 +266,7 @@ static void test_closing_keeps_the_mesh(void **state)
         } else {
             /* leaves out what is marked */
             struct par_partition tiles;
-            const struct tri_refine_options none = tri_refine_defaults();
+            const struct tri_quality none = tri_quality_defaults();
             assert_int_equal(par_partition_make(&tiles, &mesh, &none, mesh.n_triangles, 100, NULL, NULL), TRI_OK);
             assert_int_equal(par_number(&mesh, &tiles, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
             par_partition_free(&tiles);

@@ -70,7 +70,7 @@ static struct par_options small_blocks(double block, int threads)
     return options;
 }
 
-static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_refine_report *report)
 {
     int64_t count[TRI_EXCUSES], sum = 0;
@@ -83,7 +83,7 @@ static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_opti
 /* Areas are kept whatever angles are like, save in a mesh that is not finished. */
 static void judge(const struct start *start, const struct tri_mesh *mesh, int64_t max_bad)
 {
-    const struct tri_refine_options *quality = &start->options.quality;
+    const struct tri_quality *quality = &start->options.quality;
     struct tri_check_options check = {.max_bad = max_bad, .min_angle = quality->min_angle, .ignore_lost = true};
     check.max_area = max_bad < INT64_MAX ? quality->max_area : 0;
     check.delaunay = quality->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
@@ -372,7 +372,7 @@ struct whole_run {
     struct par_report report;
 };
 
-static enum tri_status refine_whole_run(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static enum tri_status refine_whole_run(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                                         struct tri_refine_report *total, struct tri_error *error)
 {
     struct whole_run *run = user;
@@ -757,7 +757,8 @@ static void test_limits_and_gates_go_the_sequential_way(void **state)
         struct par_options options = small_blocks(256, 3);
         struct par_report report;
         start.options.quality.max_steiner = k ? -1 : 3000;
-        start.options.quality.gate = k ? open_gate : NULL;
+        const struct tri_refine_hooks hooks = {.gate = k ? open_gate : NULL};
+        options.hooks = &hooks;
         struct tri_mesh mesh = refine(&start, &options, &report),
                         plain = support_generate(&start.pslg, &start.options, NULL);
         support_assert_same_bytes(&mesh, &plain);

@@ -76,7 +76,7 @@ static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
 }
 
 /* Refinement sees the points in spatial order. */
-static enum tri_status refine_sorted(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+static enum tri_status refine_sorted(void *user, struct tri_mesh *mesh, const struct tri_quality *options,
                                      struct tri_refine_report *report, struct tri_error *error)
 {
     *(bool *)user = mesh->origin != NULL;

@@ -347,7 +347,7 @@ static void test_without_guards_boundaries_move_inwards(void **state)
     options.refine = false;
     for (int kind = 0; kind < KINDS; kind++)
         for (int seed = 0; seed < 60; seed++) {
-            struct tri_refine_options how = refined(seed % 2 ? 20 : 30, 0, false).quality;
+            struct tri_quality how = refined(seed % 2 ? 20 : 30, 0, false).quality;
             struct tri_refine_report report;
             struct tri_error error;
             struct tri_pslg pslg = make_figure(kind, (uint64_t)seed);
@@ -424,9 +424,42 @@ static void test_strips_of_a_few_ulps_end(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
+static void test_shells_are_powers_of_two(void **state)
+{
+    (void)state;
+    struct tri_point xy[] = {{0, 0}, {3, 0}, {7, 0}};
+    int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT, TRI_VERTEX_INPUT};
+    struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 3};
+    struct tri_subsegment from_acute = {.v = {0, 1}}, to_acute = {.v = {2, 0}}, plain = {.v = {1, 2}};
+    assert_true(3 * tri_split_fraction(&mesh, &from_acute) == 2 || 3 * tri_split_fraction(&mesh, &from_acute) == 1);
+    assert_true(fabs(7 * (1 - tri_split_fraction(&mesh, &to_acute)) - 4) < 1e-14);
+    assert_true(tri_split_fraction(&mesh, &plain) == 0.5);
+}
+
+/* Every length is split between 0.35 and 0.71 of it. */
+static void test_shells_are_near_the_middle(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    for (int i = 0; i < 1000; i++) {
+        struct tri_point xy[] = {{0, 0}, {ldexp(0.5 + support_unit(&random), i % 80 - 40), 0}};
+        int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT};
+        struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 2};
+        struct tri_subsegment s = {.v = {0, 1}};
+        double fraction = tri_split_fraction(&mesh, &s);
+        int exponent;
+        assert_true(fraction > 0.35 && fraction < 0.71);
+        double mantissa = frexp(fraction * xy[1].x, &exponent);
+        assert_true(mantissa - 0.5 < 1e-15 || 1 - mantissa < 1e-15);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shells_are_powers_of_two),
+        cmocka_unit_test(test_shells_are_near_the_middle),
         cmocka_unit_test(test_refined_boundaries_keep_to_themselves),
         cmocka_unit_test(test_chains_keep_to_their_lines),
         cmocka_unit_test(test_guards_do_not_overlap),

@@ -8,7 +8,7 @@
 #include "tests/array_grid.h"
 #include "support.h"
 #include "triangle/text/output.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 #include "triangle/text/read.h"
 #include "triangle/dropin/triangle.h"
 #include "triangle/text/write.h"

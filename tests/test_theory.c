@@ -3,7 +3,7 @@
 
 #include "sched/schedule/theory.h"
 #include "triangle/mesh/cavity.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 static const double RADIAN = 3.14159265358979324 / 180;
 

@@ -30,21 +30,21 @@ static void test_a_set_holds_what_is_listed(void **state)
 }
 
 /* A square with enough points for several shares, and bounds that about half of its triangles miss. */
-static struct tri_mesh half_bad(struct tri_refine_options *quality)
+static struct tri_mesh half_bad(struct tri_quality *quality)
 {
     struct tri_pslg pslg = support_square(1, 50000, 3);
     struct tri_options options = tri_defaults();
     struct tri_report report;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     tri_pslg_free(&pslg);
-    *quality = tri_refine_defaults();
+    *quality = tri_quality_defaults();
     quality->min_angle = 25;
     assert_true(tri_shares(mesh.n_triangles) > 2);
     return mesh;
 }
 
 static void assert_holds_all_bad(const struct par_ids *worklist, const struct tri_mesh *mesh,
-                                 const struct tri_refine_options *quality, double radius)
+                                 const struct tri_quality *quality, double radius)
 {
     int32_t *all = malloc((size_t)mesh->n_triangles * sizeof *all);
     double largest2 = 0;
@@ -64,7 +64,7 @@ static void assert_holds_all_bad(const struct par_ids *worklist, const struct tr
 static void test_fill(void **state)
 {
     (void)state;
-    struct tri_refine_options quality;
+    struct tri_quality quality;
     struct tri_mesh mesh = half_bad(&quality);
     struct par_ids worklist = {0};
     double radius;
@@ -80,7 +80,7 @@ static void test_fill(void **state)
 static void test_fill_again(void **state)
 {
     (void)state;
-    struct tri_refine_options quality;
+    struct tri_quality quality;
     struct tri_mesh mesh = half_bad(&quality);
     struct par_ids worklist = {0};
     struct tri_refine_report report;
@@ -96,31 +96,6 @@ static void test_fill_again(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_filter(void **state)
-{
-    (void)state;
-    struct tri_refine_options quality, stricter;
-    struct tri_mesh mesh = half_bad(&quality);
-    struct par_ids worklist = {0}, found = {0};
-    double radius;
-    stricter = tri_refine_defaults();
-    stricter.min_angle = 10;
-    assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, NULL, &radius, NULL), TRI_OK);
-    assert_true(par_worklist_filter(&worklist, &mesh, &stricter, &support_backwards, &found));
-    assert_true(found.n > 0 && found.n < worklist.n);
-    int32_t expected = 0, one;
-    for (int32_t i = 0; i < worklist.n; i++) {
-        if (tri_find_work(&mesh, &stricter, worklist.item[i], worklist.item[i] + 1, &one) == 0)
-            continue;
-        assert_int_equal(found.item[expected], worklist.item[i]);
-        expected++;
-    }
-    assert_int_equal(found.n, expected);
-    free(worklist.item);
-    free(found.item);
-    tri_mesh_free(&mesh);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -128,7 +103,6 @@ int main(void)
         cmocka_unit_test(test_a_set_holds_what_is_listed),
         cmocka_unit_test(test_fill),
         cmocka_unit_test(test_fill_again),
-        cmocka_unit_test(test_filter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

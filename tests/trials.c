@@ -1,6 +1,6 @@
 #include "trials.h"
 
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 static double total_area(const struct tri_mesh *mesh)
 {

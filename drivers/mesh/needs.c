@@ -50,7 +50,7 @@ static double triangles_by_area(const struct run *run, double demand)
 
 static double triangles_of(const struct run *run, double demand)
 {
-    const struct tri_refine_options *quality = &run->options.quality;
+    const struct tri_quality *quality = &run->options.quality;
     const struct run_hooks *hooks = run->hooks;
     double now = run->mesh.n_triangles;
     if (!run->options.refine)
@@ -194,7 +194,7 @@ static double column_of(const struct run *run, double triangles)
  * call. */
 static bool is_swept(const struct run *run)
 {
-    const struct tri_refine_options *quality = &run->options.quality;
+    const struct tri_quality *quality = &run->options.quality;
     return (run->hooks->n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0;
 }
 
@@ -245,7 +245,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
-    const struct tri_refine_options *quality = &run->options.quality;
+    const struct tri_quality *quality = &run->options.quality;
     const double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
     const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
     const bool sweeps = is_swept(run);

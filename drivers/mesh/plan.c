@@ -331,7 +331,7 @@ static enum tri_status check_scratch(const char *folder, struct tri_error *error
 
 static double margin_of(const struct run *run)
 {
-    const struct tri_refine_options *quality = &run->options.quality;
+    const struct tri_quality *quality = &run->options.quality;
     if (!is_strict(run))
         return MARGIN;
     return quality->conforming ? CONFORMING_MARGIN : quality->min_angle > TRI_EASY_ANGLE ? STEEP_MARGIN : STRICT_MARGIN;

@@ -116,7 +116,7 @@ static int64_t handed_out(const struct program *p, int which)
 }
 
 static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
-                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_mesh *mesh, const struct tri_quality *quality,
                                    struct tri_error *error)
 {
     p->n_before = mesh->n_vertices;
@@ -182,7 +182,7 @@ static enum tri_status join_files(struct program *p, const struct run *run, enum
 }
 
 static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
-                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_mesh *mesh, const struct tri_quality *quality,
                                    struct tri_error *error)
 {
     struct par_options options = options_of(p, run);
@@ -194,7 +194,7 @@ static enum tri_status refine_into(struct program *p, struct run *run, const str
 /* On several ranks into the sink of the first, behind a queue: who receives tiles of others does not wait for the disk.
  * to: on that rank. */
 static enum tri_status refine_through_first(struct program *p, struct run *run, const struct tri_sink *to,
-                                            struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                            struct tri_mesh *mesh, const struct tri_quality *quality,
                                             struct tri_error *error)
 {
     struct par_queue queue;
@@ -217,7 +217,7 @@ static enum tri_status refine_through_first(struct program *p, struct run *run, 
 
 /* Refines on several ranks. to: where rank 0 takes tiles of all, if all cannot write together. */
 static enum tri_status refine_on_ranks(struct program *p, struct run *run, const struct tri_sink *to,
-                                       struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                       struct tri_mesh *mesh, const struct tri_quality *quality,
                                        enum tri_status status, struct tri_error *error)
 {
     status = join_files(p, run, status, error);
@@ -230,7 +230,7 @@ static enum tri_status refine_on_ranks(struct program *p, struct run *run, const
 
 /* A rank whose files another one commits. */
 static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
-                                   const struct tri_refine_options *quality, struct tri_error *error)
+                                   const struct tri_quality *quality, struct tri_error *error)
 {
     enum tri_status status = refine_on_ranks(p, run, NULL, mesh, quality, TRI_OK, error);
     tri_mesh_free(mesh);
@@ -249,7 +249,7 @@ static void tell_of_parking(const struct program *p)
 
 /* Refines, and writes what is finished meanwhile. */
 static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                             const struct tri_refine_options *quality, struct tri_error *error)
+                             const struct tri_quality *quality, struct tri_error *error)
 {
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
@@ -283,7 +283,7 @@ static enum tri_status report_ranks(struct program *p, const struct run *run, en
 }
 
 static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              const struct tri_quality *quality, struct tri_refine_report *report,
                               struct tri_error *error)
 {
     struct program *p = user;
@@ -320,7 +320,7 @@ static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes
     return status;
 }
 
-static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     struct program *p = user;
     const struct tri_executor executor = par_executor(&p->threads);

@@ -141,7 +141,7 @@ static struct tri_shapes shapes_of(const struct run *run)
 static json_t *mesh_of(const struct run *run)
 {
     const struct tri_counts *c = &run->counts;
-    const struct tri_refine_options *bounds = &run->options.quality;
+    const struct tri_quality *bounds = &run->options.quality;
     const struct tri_shapes shapes = shapes_of(run);
     double mean = c->triangles > 0 ? shapes.total_area / (double)c->triangles : 0;
     json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
@@ -200,7 +200,7 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                          int threads)
 {
     int64_t memory = resources_memory_peak(); /* before the report needs some */
-    const struct tri_refine_options *q = &run->options.quality;
+    const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
     return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program,

@@ -264,7 +264,7 @@ static enum tri_status look_ahead(struct runner *r)
 }
 
 /* For a dry run. */
-static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                              struct tri_refine_report *report, struct tri_error *error)
 {
     (void)user, (void)mesh, (void)quality, (void)report, (void)error;
@@ -310,7 +310,7 @@ static enum tri_status count_unused(struct runner *r, const struct tri_mesh *mes
     return status;
 }
 
-static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
     struct runner *r = user;

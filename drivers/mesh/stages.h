@@ -59,13 +59,13 @@ struct run_hooks {
     /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into
      * the guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
     enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                              const struct tri_refine_options *options, struct tri_refine_report *report,
+                              const struct tri_quality *options, struct tri_refine_report *report,
                               struct tri_error *error);
     /* Beside a mesh that is not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
      * files. NULL: nothing moves. */
     enum tri_status (*make_room)(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error);
     /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
-    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
+    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_quality *options);
     bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */

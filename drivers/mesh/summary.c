@@ -41,7 +41,7 @@ void summary_duplicates(const struct console *console, const int32_t *twin, cons
     console_series_end(console, n, "duplicate vertices ignored");
 }
 
-static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_options *options,
+static const char *reason_of(enum tri_excuse excuse, const struct tri_quality *options,
                              const struct tri_refine_report *report)
 {
     switch (excuse) {
@@ -65,7 +65,7 @@ static int64_t sum_of(const int64_t count[TRI_EXCUSES])
 
 /* The rest of a line: how many for each reason. Nothing where there are none. */
 static void say_reasons(const struct console *console, const int64_t count[TRI_EXCUSES],
-                        const struct tri_refine_options *options, const struct tri_refine_report *report)
+                        const struct tri_quality *options, const struct tri_refine_report *report)
 {
     const char *comma = "";
     for (int k = 0; k < TRI_EXCUSES; k++) {
@@ -79,7 +79,7 @@ static void say_reasons(const struct console *console, const int64_t count[TRI_E
 }
 
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_refine_options *options, const struct tri_refine_report *report,
+                    const struct tri_quality *options, const struct tri_refine_report *report,
                     const struct tri_executor *executor, int64_t remain[TRI_EXCUSES])
 {
     if (options->conforming) {
@@ -96,7 +96,7 @@ void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
 }
 
 void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],
-                       const struct tri_refine_options *options, const struct tri_refine_report *report)
+                       const struct tri_quality *options, const struct tri_refine_report *report)
 {
     int64_t n = sum_of(count);
     if (n == 0)

@@ -23,12 +23,12 @@ void summary_duplicates(const struct console *console, const int32_t *twin, cons
 
 /* One line: how many triangles stay below the bounds, and why. They are counted into remain. */
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_refine_options *options, const struct tri_refine_report *report,
+                    const struct tri_quality *options, const struct tri_refine_report *report,
                     const struct tri_executor *executor, int64_t remain[TRI_EXCUSES]);
 
 /* The same of triangles that have been counted. */
 void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],
-                       const struct tri_refine_options *options, const struct tri_refine_report *report);
+                       const struct tri_quality *options, const struct tri_refine_report *report);
 
 /* The block "Statistics:". n_input_triangles is told with -r. */
 void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,

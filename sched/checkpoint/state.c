@@ -11,10 +11,10 @@
 
 /* --- of which run */
 
-static uint64_t hash_bounds(uint64_t hash, const struct tri_refine_options *q)
+static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
-    const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, q->unsuitable != NULL};
+    const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q)};
     return par_hash(par_hash(hash, reals, sizeof reals), others, sizeof others);
 }
 

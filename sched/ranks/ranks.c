@@ -342,14 +342,12 @@ static enum tri_status run_last_call(struct last_call *call, struct tri_refiner 
 static enum tri_status call_last(struct last_call *call, struct tri_error *error)
 {
     struct par_run *state = call->ranks->state;
-    struct tri_refine_options options = *state->quality;
     const struct tri_part part = {note_changes, ask_for, call};
     struct tri_refine_report report = {0};
+    const struct tri_refine_hooks hooks = {
+        .worklist = state->worklist.item, .n_worklist = state->worklist.n, .part = &part};
     struct tri_refiner *refiner = NULL;
-    options.worklist = state->worklist.item;
-    options.n_worklist = state->worklist.n;
-    options.part = &part;
-    enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    enum tri_status status = tri_refiner_new(&refiner, state->mesh, state->quality, &hooks, &report, error);
     status = status ? status : run_last_call(call, refiner, error);
     tri_refiner_free(refiner);
     par_add_up(&state->report->total, &report);

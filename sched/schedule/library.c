@@ -8,13 +8,14 @@
 /* Passes on what the schedule tells. */
 static void follow(void *user, const struct par_place *place)
 {
-    const struct tri_refine_options *quality = user;
-    quality->told(quality->told_user, place->triangles);
+    const struct tri_refine_hooks *hooks = user;
+    hooks->told(hooks->told_user, place->triangles);
 }
 
 enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, const struct tri_settings *settings,
-                              struct tri_refine_report *report, struct tri_error *error)
+                              const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
+                              const struct tri_settings *settings, struct tri_refine_report *report,
+                              struct tri_error *error)
 {
     struct par_options how = *(const struct par_options *)way->user;
     struct par_report schedule;
@@ -22,8 +23,9 @@ enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *me
     how.size_test_in_parallel = settings->callbacks_in_parallel;
     how.figure = way->figure;
     how.region_column = way->has_attributes;
-    how.progress = quality->told ? follow : NULL;
-    how.progress_user = (void *)quality; /* which only reads it */
+    how.hooks = hooks;
+    how.progress = hooks->told ? follow : NULL;
+    how.progress_user = (void *)hooks; /* which only reads them */
     enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
     *report = schedule.total;
     par_report_free(&schedule);

@@ -7,7 +7,7 @@
 #include "sched/schedule/threads.h"
 #include "triangle/dropin/call.h"
 
-static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
     const struct triangulate_options *options = user;

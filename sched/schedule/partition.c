@@ -325,7 +325,7 @@ static bool cut_anew(struct par_partition *p, struct samples *s, const struct tr
 }
 
 enum tri_status par_partition_make(struct par_partition *p, const struct tri_mesh *mesh,
-                                   const struct tri_refine_options *options, double estimate, double cell_triangles,
+                                   const struct tri_quality *options, double estimate, double cell_triangles,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
     struct samples s = {0};

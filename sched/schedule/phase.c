@@ -206,28 +206,28 @@ static void set_up(struct par_phase_run *p, struct par_task *task)
 {
     const struct par_run *state = p->state;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
-    task->options = *state->quality;
-    task->options.told = NULL; /* a block is not the mesh */
-    task->options.fence = &task->fence;
     task->part = (struct tri_part){note_changes, ask_for, task};
-    task->options.part = state->share && state->share->is_border[task->block] ? &task->part : NULL;
-    task->options.worklist = task->worklist;
-    task->options.n_worklist = task->n_worklist;
-    task->options.deferred = leave_triangle;
-    task->options.deferred_user = task;
-    task->options.given_up = state->counts_remaining ? note_given_up : NULL;
-    task->options.given_up_user = task;
-    task->options.more_room = par_view_more_room;
-    task->options.more_room_user = &task->view;
+    task->hooks = (struct tri_refine_hooks){
+        .fence = &task->fence,
+        .part = state->share && state->share->is_border[task->block] ? &task->part : NULL,
+        .worklist = task->worklist,
+        .n_worklist = task->n_worklist,
+        .deferred = leave_triangle,
+        .deferred_user = task,
+        .given_up = state->counts_remaining ? note_given_up : NULL,
+        .given_up_user = task,
+        .more_room = par_view_more_room,
+        .more_room_user = &task->view,
+    };
 }
 
 /* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
  * the slowest: a little more room where areas made the expectation about right, a good deal more where it was a
  * guess, and twice that each time. What is too much serves the phases that follow. */
-static int32_t more_for(const struct par_task *task)
+static int32_t more_for(const struct par_task *task, const struct tri_quality *quality)
 {
     double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
-    bool areas = task->options.max_area > 0 || task->options.region_areas;
+    bool areas = quality->max_area > 0 || quality->region_areas;
     double more = ldexp(fmax(task->expected, 2 * inserted) / (areas ? 16 : 4), task->pauses) + 256;
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
@@ -242,10 +242,10 @@ static enum tri_status reserve_room(struct par_phase_run *p, struct tri_error *e
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
  * follow for the triangles that are left: more triangles each time would stay empty. */
-static int32_t refill(struct par_task *task)
+static int32_t refill(struct par_task *task, const struct tri_quality *quality)
 {
     const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
-    const int32_t more = more_for(task), left = par_room_left(&task->view.room, PAR_TRIANGLES);
+    const int32_t more = more_for(task, quality), left = par_room_left(&task->view.room, PAR_TRIANGLES);
     task->view.room.on_segments = all > 0 ? (double)on_segments / (double)all : 0;
     if (left >= more / 4)
         return left;
@@ -255,7 +255,7 @@ static int32_t refill(struct par_task *task)
 
 static enum tri_status extend_room(struct par_phase_run *p, struct par_task *task, struct tri_error *error)
 {
-    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task);
+    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, p->state->quality);
     if (p->state->options->tight_room > 0)
         more = p->state->options->tight_room;
     p->state->report->pauses += task->progress == PAR_FULL;
@@ -317,12 +317,13 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     double began = tri_seconds();
     assert(task->progress == PAR_READY);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
-    task->options.owners = p->mark ? &task->owners : NULL;
+    task->hooks.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->state->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, p->state->quality, &task->hooks,
+                                       &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_view_end(&task->view);

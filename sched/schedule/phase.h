@@ -60,7 +60,7 @@ enum par_end {
 /* What the phases of a schedule hand on. */
 struct par_run {
     struct tri_mesh *mesh;
-    const struct tri_refine_options *quality;
+    const struct tri_quality *quality;
     const struct par_options *options;
     struct tri_executor executor;
     struct par_ids worklist; /* triangles that may be bad, in canonical order; some may have gone since */
@@ -83,7 +83,7 @@ struct par_run {
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices that there were before refinement */
     bool sizes_first;        /* a schedule for sizes comes before the one for all bounds (tri_sizes_come_first) */
-    const struct tri_refine_options *then; /* what is asked for behind this schedule, on its cells, before the mesh is
+    const struct tri_quality *then; /* what is asked for behind this schedule, on its cells, before the mesh is
                                 numbered; NULL: nothing, or something else */
     bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */
     struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */

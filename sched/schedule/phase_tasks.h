@@ -24,7 +24,7 @@ struct par_task {
     struct tri_fence fence;
     struct par_view view;
     struct tri_owners owners;
-    struct tri_refine_options options;
+    struct tri_refine_hooks hooks;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     struct par_ids left;  /* what gate and fence left */

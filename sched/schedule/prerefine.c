@@ -12,33 +12,34 @@
  * to take a few thousandths of the time. (docs/performance.md) */
 static const double COARSE_PER_CELL = 64;
 
-/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
- * the mesh's units, where squares neither overflow nor underflow. */
+/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. */
 struct coarse_test {
     const struct par_partition *partition;
     double share2; /* square of it */
     double least2; /* no edge shorter than the root of this is too long in any cell */
-    double unit;
 };
 
-static double squared_edge(const double a[2], const double b[2], double unit)
-{
-    double x = b[0] / unit - a[0] / unit, y = b[1] / unit - a[1] / unit;
-    return x * x + y * y;
-}
-
-static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
+static bool is_too_long(void *user, const struct tri_point *xy, const tri_vertex_id v[3])
 {
     const struct coarse_test *test = user;
-    double unit = test->unit;
-    double longest = fmax(squared_edge(a, b, unit), fmax(squared_edge(b, c, unit), squared_edge(c, a, unit)));
-    (void)area;
-    if (longest <= test->least2)
-        return 0;
-    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3,
-                               (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
-    double size = par_cell_size(test->partition, centre);
-    return longest > test->share2 * size * size;
+    const struct tri_point a = xy[v[0]], b = xy[v[1]], c = xy[v[2]];
+    const double longest2 = fmax(tri_distance2(a, b), fmax(tri_distance2(b, c), tri_distance2(c, a)));
+    if (longest2 <= test->least2)
+        return false;
+    double size = par_cell_size(test->partition,
+                                (struct tri_point){(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3});
+    return longest2 > test->share2 * size * size;
+}
+
+/* Those of the worklist that are too long, in their order. False: no memory. */
+static bool list_long_ones(const struct par_run *state, struct coarse_test *test, struct par_ids *found)
+{
+    const struct par_ids *worklist = &state->worklist;
+    *found = (struct par_ids){malloc(((size_t)worklist->n + 1) * sizeof *found->item), 0, worklist->n};
+    for (int32_t i = 0; found->item && i < worklist->n; i++)
+        if (is_too_long(test, state->mesh->xy, state->mesh->tri[worklist->item[i]].v))
+            found->item[found->n++] = worklist->item[i];
+    return found->item;
 }
 
 static double smallest_cell(const struct par_partition *p)
@@ -54,52 +55,50 @@ static double smallest_cell(const struct par_partition *p)
     return least > 0 ? least : 0;
 }
 
-struct tri_refine_options par_coarse_bounds(const struct tri_refine_options *quality, double cell)
+struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double cell)
 {
-    struct tri_refine_options coarse = *quality;
+    struct tri_quality coarse = *quality;
     coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
     return coarse;
 }
 
-bool par_areas_decide(const struct par_run *state, const struct tri_refine_options *quality, double estimate,
+bool par_areas_decide(const struct par_run *state, const struct tri_quality *quality, double estimate,
                       double cell)
 {
-    struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
+    struct tri_quality coarse = par_coarse_bounds(quality, cell);
     double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
     return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 
-enum tri_status par_fill_worklist(struct par_run *state, const struct tri_refine_options *quality, bool known,
+enum tri_status par_fill_worklist(struct par_run *state, const struct tri_quality *quality, bool known,
                                   struct tri_error *error)
 {
     state->key.n = 0;
     return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
 }
 
-enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_refine_options *quality,
+enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_quality *quality,
                                      const struct par_partition *partition, struct tri_error *error)
 {
-    struct tri_refine_options coarse = *quality;
+    struct tri_quality coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
-    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.urgent = is_too_long;
-    coarse.urgent_user = &test;
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16};
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
     double began = tri_seconds();
     enum tri_status status = par_fill_worklist(state, quality, false, error);
     if (status)
         return status;
-    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &state->executor, &long_ones))
+    if (!list_long_ones(state, &test, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
     assert(long_ones.n <= state->worklist.n);
-    coarse.worklist = long_ones.item;
-    coarse.n_worklist = long_ones.n;
+    const struct tri_refine_hooks hooks = {
+        .urgent = is_too_long, .urgent_user = &test, .worklist = long_ones.item, .n_worklist = long_ones.n};
     double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
-        status = tri_refine(state->mesh, &coarse, &report, error);
+        status = tri_refine_with(state->mesh, &coarse, &hooks, &report, error);
         state->report->total.inserted_free += report.inserted_free;
         state->report->total.inserted_on_segments += report.inserted_on_segments;
         refined = tri_seconds();

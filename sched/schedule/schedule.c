@@ -31,13 +31,13 @@ enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
-static enum tri_status refine_level(struct par_run *state, const struct tri_refine_options *quality, int level,
+static enum tri_status refine_level(struct par_run *state, const struct tri_quality *quality, int level,
                                     struct tri_error *error);
 
-static enum tri_status prerefine_uniform(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status prerefine_uniform(struct par_run *state, const struct tri_quality *quality,
                                          double cell, int level, struct tri_error *error)
 {
-    struct tri_refine_options coarse = par_coarse_bounds(quality, cell);
+    struct tri_quality coarse = par_coarse_bounds(quality, cell);
     bool is_told = level == 0 && !state->report->partition.x; /* of the first schedule, see report_schedule */
     if (is_told && coarse.min_angle > 0 && quality->max_area > 0) {
         double area = quality->max_area * coarse.area_scale;
@@ -54,19 +54,19 @@ static struct par_checkpoint *checkpoint_of(const struct par_run *state)
 }
 
 /* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
-static enum tri_status refine_rest(struct par_run *state, const struct tri_refine_options *quality, bool all,
+static enum tri_status refine_rest(struct par_run *state, const struct tri_quality *quality, bool all,
                                    struct tri_error *error)
 {
-    struct tri_refine_options options = *quality;
+    struct tri_refine_hooks hooks = state->options->hooks ? *state->options->hooks : (struct tri_refine_hooks){0};
     struct tri_refine_report report = {0};
     struct tri_refiner *refiner = NULL;
     if (!all) {
-        options.worklist = state->worklist.item;
-        options.n_worklist = state->worklist.n;
+        hooks.worklist = state->worklist.item;
+        hooks.n_worklist = state->worklist.n;
         if (state->worklist.n == 0)
             return TRI_OK;
     }
-    enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    enum tri_status status = tri_refiner_new(&refiner, state->mesh, quality, &hooks, &report, error);
     status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
     assert(tri_mesh_is_sound(state->mesh));
@@ -297,7 +297,7 @@ static enum tri_status leave_memory(struct par_run *state, const struct par_part
 }
 
 /* What no block could do, and what blocks have left unused. */
-static enum tri_status finish_schedule(struct par_run *state, const struct tri_refine_options *quality, bool top,
+static enum tri_status finish_schedule(struct par_run *state, const struct tri_quality *quality, bool top,
                                        enum tri_status status, struct tri_error *error)
 {
     double last = tri_seconds();
@@ -331,7 +331,7 @@ static enum tri_status report_schedule(struct par_run *state, const struct par_p
 }
 
 /* top: the mesh is the whole one, not what comes before its schedule. */
-static enum tri_status run_and_finish(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status run_and_finish(struct par_run *state, const struct tri_quality *quality,
                                       struct par_partition *partition, bool top, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -345,7 +345,7 @@ static enum tri_status run_and_finish(struct par_run *state, const struct tri_re
 }
 
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
-static enum tri_status run_schedule(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status run_schedule(struct par_run *state, const struct tri_quality *quality,
                                     struct par_partition *partition, bool top, struct tri_error *error)
 {
     enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
@@ -368,7 +368,7 @@ static enum tri_status run_schedule(struct par_run *state, const struct tri_refi
 }
 
 /* From where a checkpoint's state is, in the phases of a schedule. */
-static enum tri_status go_on(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status go_on(struct par_run *state, const struct tri_quality *quality,
                              struct tri_error *error)
 {
     struct par_partition partition;
@@ -389,7 +389,7 @@ static double cell_size(const struct par_run *state, double estimate)
 }
 
 /* The schedule on one level, after a pre-refinement. */
-static enum tri_status schedule_level(struct par_run *state, const struct tri_refine_options *quality, int level,
+static enum tri_status schedule_level(struct par_run *state, const struct tri_quality *quality, int level,
                                       double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
@@ -417,7 +417,7 @@ static enum tri_status schedule_level(struct par_run *state, const struct tri_re
     return status;
 }
 
-static double estimate_of(struct par_run *state, const struct tri_refine_options *quality, double *sure)
+static double estimate_of(struct par_run *state, const struct tri_quality *quality, double *sure)
 {
     double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
@@ -425,10 +425,10 @@ static double estimate_of(struct par_run *state, const struct tri_refine_options
 }
 
 /* The first points of a sequential call, as many as would make this many triangles; *done: they were enough. */
-static enum tri_status refine_a_little(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_a_little(struct par_run *state, const struct tri_quality *quality,
                                        double triangles, bool *done, struct tri_error *error)
 {
-    struct tri_refine_options options = *quality;
+    struct tri_quality options = *quality;
     struct tri_refine_report report;
     double began = tri_seconds();
     options.max_steiner = (int64_t)(triangles / 2);
@@ -444,7 +444,7 @@ static enum tri_status refine_a_little(struct par_run *state, const struct tri_r
  * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
  * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
  * what then remains is guessed better. */
-static enum tri_status refine_level(struct par_run *state, const struct tri_refine_options *quality, int level,
+static enum tri_status refine_level(struct par_run *state, const struct tri_quality *quality, int level,
                                     struct tri_error *error)
 {
     double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
@@ -467,7 +467,7 @@ static enum tri_status refine_level(struct par_run *state, const struct tri_refi
 
 /* The schedule behind that for sizes, on its cells: on ranks each has its part of the mesh by now, and nobody could cut
  * the whole of it anew. Triangles hardly larger than a share of a cell need no coarse mesh before. */
-static enum tri_status refine_again(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_again(struct par_run *state, const struct tri_quality *quality,
                                     struct tri_error *error)
 {
     struct par_partition partition;
@@ -493,7 +493,7 @@ static enum tri_status refine_again(struct par_run *state, const struct tri_refi
 }
 
 /* From its beginning, or from where the state is in its schedule. */
-static enum tri_status refine_to(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_to(struct par_run *state, const struct tri_quality *quality,
                                  struct tri_error *error)
 {
     if (par_is_phase(state->next) || par_is_rest(state->next))
@@ -504,10 +504,10 @@ static enum tri_status refine_to(struct par_run *state, const struct tri_refine_
 /* Triangles of different sizes meet everywhere in a mesh that comes out of a coarse one by stages. So where areas
  * decide on sizes these are brought about first, with an easy bound, and then the angles on a mesh of one size.
  * (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of 28%.) */
-static enum tri_status refine_sizes_first(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_sizes_first(struct par_run *state, const struct tri_quality *quality,
                                           struct tri_error *error)
 {
-    struct tri_refine_options easy = *quality;
+    struct tri_quality easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
     enum tri_status status = refine_to(state, &easy, error);
     state->next = PAR_BOUNDS;
@@ -515,17 +515,17 @@ static enum tri_status refine_sizes_first(struct par_run *state, const struct tr
 }
 
 /* What a schedule cannot do, one call does. */
-static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
+static bool must_be_sequential(const struct tri_quality *quality, const struct par_options *options)
 {
-    return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
-           quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
+    const bool is_tied = options->hooks && (options->hooks->gate || options->hooks->fence);
+    return quality->max_steiner >= 0 || is_tied || (tri_asks_caller(quality) && !options->size_test_in_parallel);
 }
 
 /* Refines by schedules: two where angles are dear. */
-static enum tri_status refine_by_schedule(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_by_schedule(struct par_run *state, const struct tri_quality *quality,
                                           struct tri_error *error)
 {
-    struct tri_refine_options usual = *quality;
+    struct tri_quality usual = *quality;
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     if (!state->sizes_first && state->next == PAR_SIZES)
         state->next = PAR_BOUNDS;
@@ -598,7 +598,7 @@ static void clean_up(struct par_run *state)
 }
 
 /* By a schedule or by one call; and to the sink. */
-static enum tri_status refine_and_deliver(struct par_run *state, const struct tri_refine_options *quality,
+static enum tri_status refine_and_deliver(struct par_run *state, const struct tri_quality *quality,
                                           bool sequential, struct tri_error *error)
 {
     double began = tri_seconds();
@@ -623,7 +623,7 @@ static enum tri_status check_ranks(const struct par_run *state, enum tri_status 
                            "the ranks do not begin with the same figure and settings", status, error);
 }
 
-enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = tri_seconds();

@@ -33,8 +33,10 @@ struct par_place {
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
-    bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
-                                   size test, the mesh is refined sequentially */
+    bool size_test_in_parallel; /* size function and size test may be called by several threads at once; else, where
+                                   there is one, the mesh is refined sequentially */
+    const struct tri_refine_hooks *hooks; /* of a sequential call for the whole mesh: with a gate or a fence there is no
+                                             schedule; NULL: none */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered tile by tile, along a curve (sched/tiles/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then. By block, a sink gets
@@ -126,7 +128,7 @@ struct par_options par_defaults(void);
  * find out how much work there is where. In a child that was forked after a call there is one thread. Vertices that are
  * there keep their ids; unless by_block, those of triangles and subsegments may change. Safe to call from several
  * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
-enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error);
 
 /* The block (column * n_rows + row) whose fence owns triangle t in the first phase that owns it, 0 to 3, which *phase

@@ -58,9 +58,9 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *tri
 
 struct finding {
     struct tri_mesh *mesh;
-    const struct tri_refine_options *bounds;
-    const struct par_ids *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
-    tri_triangle_id *found;       /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
+    const struct tri_quality *bounds;
+    const struct par_ids *worklist; /* as it was, or NULL */
+    tri_triangle_id *found;       /* [n_triangles] each share's own behind one another, with gaps */
     int32_t n[TRI_MOST_SHARES];
     double radius2[TRI_MOST_SHARES];
 };
@@ -134,7 +134,7 @@ static void fill_share(void *context, size_t share)
 }
 
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
-                                  const struct tri_refine_options *quality, bool known,
+                                  const struct tri_quality *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error)
 {
     int32_t n = mesh->n_triangles;
@@ -150,26 +150,4 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
     assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;
-}
-
-static void filter_share(void *context, size_t share)
-{
-    struct finding *f = context;
-    struct tri_range range = tri_share(share, f->worklist->n);
-    f->n[share] = tri_find_work_among(f->mesh, f->bounds, f->worklist->item + range.first, range.last - range.first,
-                                      f->found + range.first);
-}
-
-bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,
-                         const struct tri_refine_options *bounds, const struct tri_executor *executor,
-                         struct par_ids *found)
-{
-    struct finding f = {(struct tri_mesh *)mesh, bounds, worklist, malloc(((size_t)worklist->n + 1) * sizeof *f.found),
-                        {0}, {0}};
-    *found = (struct par_ids){f.found, 0, worklist->n};
-    if (!f.found)
-        return false;
-    tri_execute(executor, tri_shares(worklist->n), filter_share, &f);
-    found->n = gather(&f, worklist->n);
-    return true;
 }

@@ -42,12 +42,7 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *tri
  * triangles born since are judged. All begin a new life, see struct tri_triangle.life. TRI_NO_MEMORY: the worklist is
  * as before. O(triangles). */
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
-                                  const struct tri_refine_options *quality, bool known,
+                                  const struct tri_quality *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error);
-
-/* *found receives those that violate other bounds, in the same order. False: no memory, and *found is empty. */
-bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,
-                         const struct tri_refine_options *bounds, const struct tri_executor *executor,
-                         struct par_ids *found);
 
 #endif

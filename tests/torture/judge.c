@@ -3,7 +3,7 @@
 
 #include "sched/schedule/schedule.h"
 #include "sched/schedule/threads.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 #include "triangle/cdt/reconstruct.h"
 
 /* In degrees: up to here theory promises an end (28.6, where no segments meet at small angles). */
@@ -85,7 +85,7 @@ struct making {
     int threads;
 };
 
-static enum tri_status refine_call(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+static enum tri_status refine_call(void *user, struct tri_mesh *mesh, const struct tri_quality *options,
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     const struct making *making = user;
@@ -250,7 +250,7 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
 /* Against the angle that theory promises. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    const struct tri_refine_options *asked = &first->options.quality;
+    const struct tri_quality *asked = &first->options.quality;
     struct outcome less = *first;
     const double angle = asked->min_angle;
     if (first->mesh.n_triangles < FEW || angle <= PROMISED || first->switches.protect > 0)
@@ -270,7 +270,7 @@ static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
 {
     const double PER_VERTEX = 1000, PER_GAP_POINT = 40, SIZED_GAP_POINT = 60, SIZES = 200000;
     const double PER_WALL = 4000, WALLS = 1800000;
-    const struct tri_refine_options *asked = &o->options.quality;
+    const struct tri_quality *asked = &o->options.quality;
     bool refuses_walls = o->switches.protect > 0 && asked->unsuitable;
     return SIZES + PER_VERTEX * o->mesh.n_input +
            (refuses_walls ? fmin(PER_WALL * pslg->n_segments, WALLS) : 0) +

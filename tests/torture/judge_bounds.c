@@ -5,7 +5,7 @@
 #include "triangle/refine/census.h"
 #include "triangle/refine/disk.h"
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/quality.h"
+#include "triangle/refine/place.h"
 
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;
@@ -23,7 +23,7 @@ struct bounds {
 
 static double area_bound(const struct outcome *o, int32_t t)
 {
-    const struct tri_refine_options *q = &o->options.quality;
+    const struct tri_quality *q = &o->options.quality;
     double bound = q->max_area > 0 ? q->max_area : INFINITY;
     double own = o->mesh.regions[o->mesh.tri[t].region].max_area;
     return (q->region_areas && own > 0 ? fmin(bound, own) : bound) / o->mesh.unit / o->mesh.unit;
@@ -76,7 +76,7 @@ static void judge_unexplained(const struct outcome *o, const struct bounds *b, c
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
 {
-    struct tri_refine_options angles = o->options.quality;
+    struct tri_quality angles = o->options.quality;
     int64_t count[TRI_EXCUSES], sum = 0;
     angles.max_area = 0;
     angles.region_areas = false;

@@ -50,31 +50,13 @@ static void note_odd(struct sizes *sizes, double length, const double at[2])
     sizes->odd_at[1] = at[1];
 }
 
-/* Is the area above that of an equilateral triangle with edges of the least length that is wanted here? A length that
- * is not above 0 wants nothing: no mesh could have it. */
-static bool is_above_length(struct sizes *sizes, const double a[2], const double b[2], const double c[2], double area)
-{
-    const struct tri_settings *s = sizes->settings;
-    const double share = 0.43301270189221932; /* sqrt(3) / 4 */
-    const double centroid[2] = {(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3};
-    const double *places[4] = {centroid, a, b, c};
-    for (int k = 0; k < 4; k++) {
-        double length = s->edge_length(s->edge_length_user, places[k]);
-        if (!(length > 0))
-            note_odd(sizes, length, places[k]);
-        else if (area > share * length * length)
-            return true;
-    }
-    return false;
-}
-
-static int ask_both(void *user, const double a[2], const double b[2], const double c[2], double area)
+static double ask_length(void *user, const double at[2])
 {
     struct sizes *sizes = user;
-    const struct tri_settings *s = sizes->settings;
-    if (s->edge_length && is_above_length(sizes, a, b, c, area))
-        return 1;
-    return s->unsuitable ? s->unsuitable(s->unsuitable_user, a, b, c, area) : 0;
+    double length = sizes->settings->edge_length(sizes->settings->edge_length_user, at);
+    if (!(length > 0))
+        note_odd(sizes, length, at);
+    return length;
 }
 
 static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *s)
@@ -82,27 +64,34 @@ static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *
     return s->min_angle > 0 || s->max_area > 0 || s->conforming || s->edge_length || s->unsuitable || m->has_areas;
 }
 
-/* *fence is room for the settings' fence in the units of the mesh. */
-static struct tri_refine_options quality_of(const struct tri_api_mesh *m, struct sizes *sizes, struct tri_fence *fence)
+static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes *sizes)
 {
     const struct tri_settings *s = sizes->settings;
-    struct tri_refine_options how = tri_refine_defaults();
+    struct tri_quality how = tri_quality_defaults();
     how.min_angle = s->min_angle;
     how.max_area = s->max_area;
     how.region_areas = m->has_areas;
     how.conforming = s->conforming;
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
-    how.unsuitable = s->edge_length || s->unsuitable ? ask_both : NULL;
-    how.unsuitable_user = sizes;
-    how.gate = s->gate;
-    how.gate_user = s->gate_user;
+    how.edge_length = s->edge_length ? ask_length : NULL;
+    how.edge_length_user = sizes;
+    how.unsuitable = s->unsuitable;
+    how.unsuitable_user = s->unsuitable_user;
+    return how;
+}
+
+/* *fence is room for the settings' fence in the units of the mesh. */
+static struct tri_refine_hooks hooks_of(const struct tri_api_mesh *m, const struct tri_settings *s,
+                                        struct tri_fence *fence)
+{
+    struct tri_refine_hooks hooks = {.gate = s->gate, .gate_user = s->gate_user};
     if (s->fence) {
         double unit = m->mesh.unit;
         *fence = (struct tri_fence){s->fence[0] / unit, s->fence[1] / unit, s->fence[2] / unit, s->fence[3] / unit};
-        how.fence = fence;
+        hooks.fence = fence;
     }
-    return how;
+    return hooks;
 }
 
 /* --- arrays that are made from the mesh */
@@ -205,16 +194,16 @@ static void tell(void *user, int64_t triangles)
     f->settings->progress(f->settings->progress_user, f->done, triangles);
 }
 
-static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mesh *mesh,
-                                   const struct tri_refine_options *how, const struct tri_settings *s,
+static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mesh *mesh, const struct tri_quality *how,
+                                   const struct tri_refine_hooks *hooks, const struct tri_settings *s,
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     double sure;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
-    struct tri_refine_options told = *how;
+    struct tri_refine_hooks told = *hooks;
     told.told = tell;
     told.told_user = &f;
-    enum tri_status status = way->refine(way, mesh, &told, s, report, error);
+    enum tri_status status = way->refine(way, mesh, how, &told, s, report, error);
     if (!status)
         s->progress(s->progress_user, 1, mesh->n_triangles);
     return status;
@@ -233,21 +222,22 @@ static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)
              " will do there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0], sizes->odd_at[1]);
 }
 
-static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
     const struct refiner *refiner = user;
     const struct tri_settings *s = refiner->settings;
     struct tri_fence fence;
     struct sizes sizes = {.settings = s, .is_odd = ATOMIC_FLAG_INIT};
-    struct tri_refine_options how = quality_of(refiner->m, &sizes, &fence);
-    (void)options;
+    const struct tri_quality how = quality_of(refiner->m, &sizes);
+    const struct tri_refine_hooks hooks = hooks_of(refiner->m, s, &fence);
+    (void)quality;
     *report = (struct tri_refine_report){0};
     refiner->m->odd_length[0] = 0;
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
-    enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, s, report, error)
-                                         : refiner->way->refine(refiner->way, mesh, &how, s, report, error);
+    enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, &hooks, s, report, error)
+                                         : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);
     if (atomic_flag_test_and_set(&sizes.is_odd))
         tell_odd(refiner->m, &sizes);
     return status;
@@ -346,12 +336,13 @@ enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_sett
 }
 
 static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mesh *mesh,
-                                   const struct tri_refine_options *quality, const struct tri_settings *settings,
-                                   struct tri_refine_report *report, struct tri_error *error)
+                                   const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
+                                   const struct tri_settings *settings, struct tri_refine_report *report,
+                                   struct tri_error *error)
 {
     (void)way;
     (void)settings;
-    return tri_refine(mesh, quality, report, error);
+    return tri_refine_with(mesh, quality, hooks, report, error);
 }
 
 enum tri_status tri_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
@@ -416,11 +407,10 @@ int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_setting
     const struct tri_api_mesh *m = (const struct tri_api_mesh *)mesh;
     int64_t count[TRI_EXCUSES], sum = 0;
     struct tri_settings own;
-    struct tri_fence fence;
     if (tri_api_settings_take(&own, settings, NULL))
         return -1;
     struct sizes sizes = {.settings = &own, .is_odd = ATOMIC_FLAG_INIT};
-    const struct tri_refine_options how = quality_of(m, &sizes, &fence);
+    const struct tri_quality how = quality_of(m, &sizes);
     tri_count_bad(mesh, &how, &m->report.quality, NULL, count);
     for (int k = 0; by_reason && k < n_reasons; k++)
         by_reason[k] = 0;

@@ -23,8 +23,9 @@ struct tri_api_mesh {
 /* Who refines: tri_refine, or a schedule. */
 struct tri_api_way {
     enum tri_status (*refine)(const struct tri_api_way *way, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, const struct tri_settings *settings,
-                              struct tri_refine_report *report, struct tri_error *error);
+                              const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
+                              const struct tri_settings *settings, struct tri_refine_report *report,
+                              struct tri_error *error);
     const struct tri_executor *executor;
     void *user;
     const struct tri_pslg *figure; /* for tri_api_mesh_stream: the mesh's input .. */

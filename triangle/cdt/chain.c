@@ -8,7 +8,7 @@
  * of that distance if it is less, at the first. Why: docs/theory.md, chains.
  *
  * INVARIANT. The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c). So
- * the parents of a refined mesh come back, and with them its corners (small_angle.h), narrow spaces and sizes.
+ * the parents of a refined mesh come back, and with them its corners, narrow spaces and sizes.
  *
  * COST. From the DEEP-th cut within a cut on, chains are halved: n vertices cost at most n * (DEEP + log2(n)). */
 #include "triangle/cdt/chain.h"

@@ -4,7 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-struct tri_used; /* triangle/mesh/topology.h */
 
 struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
@@ -17,7 +16,7 @@ struct tri_reconstruct_options {
     int32_t *loose;    /* receives how many are not, with use_segments; NULL: not asked for */
 };
 
-/* Makes *mesh of the points of the PSLG and these triangles, ready for tri_refine.
+/* Makes *mesh of the points of the PSLG and these triangles.
  *
  * Every vertex is one of the input, every edge of one triangle is a subsegment. So is, with use_segments, every edge
  * that is a segment: these come first, in the order of the segments, each with a parent of its own (with
@@ -42,11 +41,5 @@ struct tri_reconstruct_options {
  * empty. O(points + triangles + segments), and the flips; about 30 bytes a triangle while it runs, beside the mesh. */
 enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_elements *elements,
                                 const struct tri_reconstruct_options *options, struct tri_error *error);
-
-/* The vertices that Triangle writes: with jettison (-j) those that are corners; of a mesh made from elements with more
- * than three nodes all but the nodes behind the third (midpoints of edges, -o2) that are no corners; else all, and
- * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
-enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
-                              bool jettison, struct tri_error *error);
 
 #endif

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "triangle/geometry/hilbert.h"
+#include "triangle/mesh/parents.h"
 
 static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
 

@@ -37,7 +37,7 @@ static int ask_client(void *user, const double a[2], const double b[2], const do
 
 static enum tri_status add_size_test(struct io_run *run)
 {
-    struct tri_refine_options *quality = &run->how.quality;
+    struct tri_quality *quality = &run->how.quality;
     if (!run->switches->user_test)
         return TRI_OK;
     if (!run->options->unsuitable && !triunsuitable)

@@ -7,7 +7,6 @@
 #ifndef TRIANGLE_MESH_GRID_H
 #define TRIANGLE_MESH_GRID_H
 
-#include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/mesh.h"
 
 struct tri_grid_point {

@@ -26,9 +26,8 @@
 #include "triangle/base/ids.h"
 #include "triangle/base/status.h"
 #include "triangle/base/stop.h"
-#include "triangle/geometry/point.h"
+#include "triangle/geometry/shape.h"
 #include "triangle/mesh/pslg.h"
-#include "triangle/refine/groundwork.h"
 
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
@@ -65,6 +64,21 @@ struct tri_parent {
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is; the
                                first end: of a mesh that was read */
+};
+
+/* Which parents end at each vertex that there was when they were listed (triangle/mesh/parents.h). Those at vertex v
+ * are parent[start[v] .. start[v + 1]); where they are many, in order of direction. */
+struct tri_incidence {
+    tri_parent_id *parent; /* [2 * n_parents] */
+    int32_t *start;        /* [n_vertices + 1] */
+    int32_t n_vertices;    /* 0: not listed yet */
+};
+
+/* Where refinement leaves a bad triangle as it is (triangle/size/groundwork.h). */
+struct tri_limits {
+    double shortest2;   /* square of the shortest edge that coordinates of this size can carry */
+    double dearest_gap; /* narrow spaces between parents that would cost more points than this are not filled */
+    double gap_points;  /* about so many points those that are filled take */
 };
 
 struct tri_region {
@@ -124,8 +138,8 @@ struct tri_mesh {
     int32_t n_subs, sub_capacity;
     struct tri_parent *parents; /* [n_parents] */
     int32_t n_parents, parent_capacity;
-    /* What refinement has to know of the input (groundwork.h): found once, asked by every call on this mesh, and true
-     * as long as its parents are. */
+    /* What refinement has to know of the input (triangle/size/groundwork.h): found once, asked by every call on this
+     * mesh, and true as long as its parents are. */
     struct tri_incidence incidence; /* parents at each vertex of the input */
     struct tri_limits limits;
 
@@ -141,8 +155,6 @@ struct tri_mesh {
     const struct tri_bound *bound;     /* asked before they grow there; borrowed; NULL: nobody */
     const struct tri_stop *stop; /* whoever works on the mesh asks it whether to go on; borrowed; NULL: nobody */
 };
-
-static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
 
 static inline tri_halfedge tri_code(tri_triangle_id t, int e) { return t << 2 | e; }
 static inline tri_triangle_id tri_of(tri_halfedge code) { return code >> 2; }

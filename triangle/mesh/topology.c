@@ -143,6 +143,31 @@ enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh
     return TRI_OK;
 }
 
+enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
+                              bool jettison, struct tri_error *error)
+{
+    enum { DROPPED = TRI_NONE - 1 };
+    size_t n = elements->extra ? (size_t)elements->n * (size_t)(elements->n_nodes - 3) : 0;
+    *kept = (struct tri_used){0};
+    enum tri_status status = jettison || n > 0 ? tri_used_make(kept, mesh, error) : TRI_OK;
+    if (status || jettison || n == 0)
+        return status;
+    for (size_t i = 0; i < n; i++) {
+        tri_vertex_id v = elements->extra[i];
+        if (v >= 0 && v < mesh->n_input && kept->number[v] == TRI_NONE)
+            kept->number[v] = DROPPED;
+    }
+    kept->n = 0;
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
+        bool is_kept = kept->number[v] != DROPPED;
+        kept->number[v] = is_kept ? kept->n : TRI_NONE;
+        if (is_kept)
+            kept->vertex[kept->n++] = v;
+    }
+    assert(kept->n <= mesh->n_vertices);
+    return TRI_OK;
+}
+
 void tri_used_free(struct tri_used *used)
 {
     if (used->mesh) {

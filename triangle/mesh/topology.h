@@ -76,4 +76,10 @@ struct tri_used {
 enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error);
 void tri_used_free(struct tri_used *used);
 
+/* The vertices that Triangle writes: with jettison (-j) those that are corners; of a mesh made from elements with more
+ * than three nodes all but the nodes behind the third (midpoints of edges, -o2) that are no corners; else all, and
+ * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
+enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
+                              bool jettison, struct tri_error *error);
+
 #endif

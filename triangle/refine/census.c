@@ -8,37 +8,38 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/disk.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/mesh/parents.h"
+#include "triangle/size/gap.h"
+#include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
 
 struct demand {
-    const struct tri_mesh *mesh;
-    const struct tri_criterion *criterion;
+    const struct tri_asked *asked;
     double triangles[TRI_MOST_SHARES]; /* of each share */
 };
 
 static void add_demand(void *context, size_t share)
 {
     struct demand *d = context;
-    const struct tri_mesh *mesh = d->mesh;
+    const struct tri_mesh *mesh = d->asked->mesh;
     struct tri_range range = tri_share(share, mesh->n_triangles);
     double sum = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++)
         if (tri_is_live(&mesh->tri[t])) {
             double area2 = tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
-            double bound = tri_area2_bound(d->criterion, mesh->tri[t].region);
+            double bound = tri_area2_bound(d->asked, mesh->tri[t].region);
             sum += area2 > bound ? area2 / bound : 0;
         }
     d->triangles[share] = sum;
 }
 
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor)
 {
-    const struct tri_criterion c = tri_criterion_of_areas(mesh, options);
-    struct demand d = {.mesh = mesh, .criterion = &c};
+    const struct tri_asked asked = tri_asked_of(mesh, quality);
+    struct demand d = {.asked = &asked};
     double triangles = 0;
-    if (!(options->max_area > 0 || options->region_areas))
+    if (!(quality->max_area > 0 || quality->region_areas))
         return 0;
     tri_execute(executor, tri_shares(mesh->n_triangles), add_demand, &d);
     for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
@@ -46,10 +47,10 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
     return triangles / TRI_MOST_OVER_BOUND;
 }
 
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                  const struct tri_executor *executor, struct tri_error *error)
 {
-    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options, executor) : 0;
+    double triangles = quality->max_steiner < 0 ? tri_area_demand(mesh, quality, executor) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
@@ -59,30 +60,30 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
 
 static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
-    const struct tri_triangle *t = &c->mesh->tri[triangle];
+    const struct tri_triangle *t = &c->asked.mesh->tri[triangle];
     if (!tri_is_live(t))
         return false;
-    struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
+    struct tri_shape shape = tri_shape_of(c->asked.mesh->xy, t->v);
     enum tri_badness badness = tri_judge(c, t, &shape);
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, &shape) &&
-        !tri_is_too_large(c, t, &shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->asked.mesh, triangle, &shape) &&
+        !tri_is_too_large(&c->asked, t, &shape))
         badness = TRI_GOOD; /* as good as it will be */
     if (badness != TRI_GOOD)
         return true;
-    if (!c->options->conforming || !tri_is_urgent(c, t->v))
+    if (!c->asked.quality->conforming)
         return false;
     struct tri_disk_split split;
     for (int e = 0; e < 3; e++)
         if (t->n[e] < 0 && t->n[e] != TRI_BEYOND &&
-            tri_is_encroached_from(c->mesh, &c->mesh->sub[~t->n[e]], tri_code(triangle, e), &split))
+            tri_is_encroached_from(c->asked.mesh, &c->asked.mesh->sub[~t->n[e]], tri_code(triangle, e), &split))
             return true;
     return false;
 }
 
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found)
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    const struct tri_criterion c = tri_criterion_for(mesh, quality);
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
     for (tri_triangle_id triangle = first; triangle < last; triangle++)
@@ -91,10 +92,10 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
     return n;
 }
 
-int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_quality *quality,
                             const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found)
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    const struct tri_criterion c = tri_criterion_for(mesh, quality);
     int32_t n_found = 0;
     assert(n >= 0);
     for (int32_t i = 0; i < n; i++)
@@ -113,10 +114,10 @@ int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle)
     return -1;
 }
 
-int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           tri_triangle_id *found)
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    const struct tri_criterion c = tri_criterion_for(mesh, quality);
     int32_t n = 0;
     for (tri_triangle_id triangle = 0; triangle < mesh->n_triangles; triangle++) {
         const struct tri_triangle *t = &mesh->tri[triangle];
@@ -133,11 +134,11 @@ int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_o
 static bool is_beside_protected(const struct tri_criterion *c, const struct tri_triangle *t)
 {
     for (int e = 0; e < 3; e++) {
-        if (t->n[e] < 0 && tri_is_protected(c->options, &c->mesh->sub[~t->n[e]]))
+        if (t->n[e] < 0 && tri_is_protected(c->asked.quality, &c->asked.mesh->sub[~t->n[e]]))
             return true;
-        const struct tri_triangle *other = t->n[e] < 0 ? t : &c->mesh->tri[tri_of(t->n[e])];
+        const struct tri_triangle *other = t->n[e] < 0 ? t : &c->asked.mesh->tri[tri_of(t->n[e])];
         for (int f = 0; f < 3; f++)
-            if (other->n[f] < 0 && tri_is_protected(c->options, &c->mesh->sub[~other->n[f]]))
+            if (other->n[f] < 0 && tri_is_protected(c->asked.quality, &c->asked.mesh->sub[~other->n[f]]))
                 return true;
     }
     return false;
@@ -148,20 +149,20 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
                                   const struct tri_shape *shape, enum tri_badness badness,
                                   const struct tri_refine_report *report)
 {
-    const struct tri_triangle *t = &c->mesh->tri[triangle];
-    if (tri_is_too_large(c, t, shape))
+    const struct tri_triangle *t = &c->asked.mesh->tri[triangle];
+    if (tri_is_too_large(&c->asked, t, shape))
         badness = TRI_BAD_SIZE;
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, shape))
-        return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
-               : tri_bridges_spike(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
-               : tri_is_narrow_gap(c->mesh, triangle, shape)   ? TRI_EXCUSE_NARROW_GAP
-               : tri_crosses_angle(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->asked.mesh, triangle, shape))
+        return shape->l[shape->shortest] < c->asked.mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
+               : tri_bridges_spike(c->asked.mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
+               : tri_is_narrow_gap(c->asked.mesh, triangle, shape)   ? TRI_EXCUSE_NARROW_GAP
+               : tri_crosses_angle(c->asked.mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
                                                                : TRI_EXCUSE_LIMIT;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
-    if (c->options->protect > 0 && is_beside_protected(c, t))
+    if (c->asked.quality->protect > 0 && is_beside_protected(c, t))
         return TRI_EXCUSE_PROTECTED;
-    if (c->options->min_angle > TRI_USUAL_ANGLE && badness == TRI_BAD_ANGLE)
+    if (c->asked.quality->min_angle > TRI_USUAL_ANGLE && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
     return TRI_EXCUSES;
 }
@@ -196,12 +197,12 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
         count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }
 
-static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                          const struct tri_refine_report *report, const struct tri_subsegment *s,
                                          tri_halfedge code)
 {
     tri_vertex_id apex = tri_apex(mesh, code);
-    if (tri_is_protected(options, s))
+    if (tri_is_protected(quality, s))
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
@@ -213,7 +214,7 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
     return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_NARROW_GAP : TRI_EXCUSE_PRECISION;
 }
 
-void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
 {
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -223,7 +224,7 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_o
         enum tri_excuse first = TRI_EXCUSES;
         for (int side = 0; side < 2; side++)
             if (sub->side[side] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[side])) {
-                const enum tri_excuse excuse = excuse_for_circle(mesh, options, report, sub, sub->side[side]);
+                const enum tri_excuse excuse = excuse_for_circle(mesh, quality, report, sub, sub->side[side]);
                 first = excuse < first ? excuse : first;
             }
         if (first < TRI_EXCUSES)
@@ -241,7 +242,7 @@ struct counting {
 static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,
                            int64_t count[TRI_EXCUSES + 1])
 {
-    const struct tri_mesh *mesh = c->mesh;
+    const struct tri_mesh *mesh = c->asked.mesh;
     if (!tri_is_live(&mesh->tri[t]))
         return;
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
@@ -253,27 +254,27 @@ static void count_triangle(const struct tri_criterion *c, const struct tri_refin
 static void count_share(void *context, size_t share)
 {
     struct counting *c = context;
-    struct tri_range range = tri_share(share, c->criterion.mesh->n_triangles);
+    struct tri_range range = tri_share(share, c->criterion.asked.mesh->n_triangles);
     for (tri_triangle_id t = range.first; t < range.last; t++)
         count_triangle(&c->criterion, c->report, t, c->count[share]);
 }
 
-void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
                          int64_t count[TRI_EXCUSES + 1])
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    const struct tri_criterion c = tri_criterion_for(mesh, quality);
     for (int32_t i = 0; i < n; i++)
         count_triangle(&c, report, triangle[i], count);
 }
 
-void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES])
 {
-    struct counting c = {tri_criterion_for(mesh, options), report, {{0}}};
+    struct counting c = {tri_criterion_for(mesh, quality), report, {{0}}};
     size_t shares = tri_shares(mesh->n_triangles);
-    tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
+    tri_execute(tri_asks_caller(quality) ? NULL : executor, shares, count_share, &c);
     for (size_t i = 1; i < shares; i++)
         for (int k = 0; k <= TRI_EXCUSES; k++)
             c.count[0][k] += c.count[i][k];

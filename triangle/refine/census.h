@@ -6,23 +6,23 @@
 
 /* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
  * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor);
 
 /* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first, and
  * so does a schedule. O(triangles). */
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                  const struct tri_executor *executor, struct tri_error *error);
 
 /* found[last - first] receives, in order, the triangles from first to last - 1 at which the loop has something to do:
- * an angle that is bad and not hopeless, a bad size, or, if conforming, a subsegment that the triangle encroaches; of
- * these the urgent ones, where options->urgent is set. Returns how many. Neighbours are not looked at: they may be
+ * an angle that is bad and not hopeless, a bad size, or, if conforming, a subsegment that the triangle encroaches.
+ * Returns how many. Neighbours are not looked at: they may be
  * elsewhere. Each call works the bounds out anew, which costs more than to judge a triangle. */
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 
 /* The same among these n triangles. found may be the array they are in. */
-int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_quality *quality,
                             const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found);
 
 /* The corner at which a triangle is obtuse, so that it encroaches a subsegment that lies opposite; -1: none. Exact. */
@@ -33,18 +33,18 @@ int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
  * the split. Else the vertex is level with an end but for rounding, and the split would take too many parts: the reason
  * is the place, at a small angle of the input or between segments near to each other. Where both sides have such a
  * vertex, the first reason counts. */
-void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
 /* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
  * O(triangles). */
-void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
 
 /* The same of n triangles alone, each of which is listed once; adds to the counts. The last count is of triangles that
  * have no reason of their own. */
-void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
                          int64_t count[TRI_EXCUSES + 1]);
 
@@ -54,7 +54,7 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
 
 /* found[n_triangles] receives the triangles that violate the bounds though there is nothing to do at them: what
  * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */
-int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           tri_triangle_id *found);
 
 #endif

@@ -17,7 +17,8 @@
 #include <float.h>
 
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/mesh/parents.h"
+#include "triangle/refine/split.h"
 #include "triangle/refine/split.h"
 #include "triangle/tunables.h"
 

@@ -8,7 +8,6 @@
 
 #include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/quality.h"
 
 /* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
 static int bucket_of(const struct tri_refiner *r, double shortest)
@@ -53,14 +52,23 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-/* Judges the new triangles where only urgent ones count (options->urgent). */
+enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
+                                   const struct tri_shape *shape)
+{
+    enum tri_badness badness = tri_judge(&r->criterion, t, shape);
+    if (badness != TRI_GOOD && r->hooks->urgent && !r->hooks->urgent(r->hooks->urgent_user, r->mesh->xy, t->v))
+        return TRI_GOOD;
+    return badness;
+}
+
+/* Judges the new triangles where only urgent ones count (tri_refine_hooks). */
 static bool judge_urgent(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < r->cavity.n_edges; i++) {
         tri_triangle_id triangle = r->cavity.tri[i];
         const struct tri_triangle *t = &r->mesh->tri[triangle];
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        enum tri_badness badness = tri_refiner_judge(r, t, &shape);
         if (badness != TRI_GOOD && !push(r, triangle, badness, shape.l[shape.shortest]))
             return false;
     }
@@ -75,9 +83,9 @@ static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const 
     double area2 = edge->area2, x = a.x - b.x, y = a.y - b.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(a.l, b.l, l))
         return push_angle(r, triangle, tri_lesser(a.l, tri_lesser(b.l, l)));
-    bool is_bad = area2 > tri_area2_bound(&r->criterion, edge->region);
-    if (r->options->unsuitable)
-        is_bad = is_bad || tri_is_unsuitable(&r->criterion, t->v);
+    bool is_bad = area2 > tri_area2_bound(&r->criterion.asked, edge->region);
+    if (tri_asks_caller(r->quality))
+        is_bad = is_bad || tri_is_unsuitable(&r->criterion.asked, t->v);
     return tri_bad_queue_push_size(&r->queue, (struct tri_entry){triangle, t->life}, is_bad);
 }
 
@@ -85,7 +93,7 @@ static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const 
 bool tri_feed_fan(struct tri_refiner *r)
 {
     const struct tri_cavity *c = &r->cavity;
-    if (r->options->urgent)
+    if (r->hooks->urgent)
         return judge_urgent(r);
     for (int32_t i = 0; i < c->n_edges; i++)
         if (!judge(r, c->tri[i], &c->edge[i]))
@@ -96,7 +104,7 @@ bool tri_feed_fan(struct tri_refiner *r)
 /* The fan is whole, even where there is no memory for what waits. */
 bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
 {
-    if (r->options->urgent) {
+    if (r->hooks->urgent) {
         tri_cavity_fill(&r->cavity, r->mesh, v);
         return judge_urgent(r);
     }
@@ -114,7 +122,7 @@ bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
 
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
 {
-    assert(s >= 0 && r->options->conforming);
+    assert(s >= 0 && r->quality->conforming);
     if (!tri_grow(&r->encroached, &r->encroached_capacity, r->n_encroached + 1, sizeof *r->encroached))
         return false;
     r->encroached[r->n_encroached++] = s;
@@ -124,7 +132,7 @@ bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
 /* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
 bool tri_feed_walls(struct tri_refiner *r)
 {
-    const int32_t n = r->options->conforming ? r->cavity.n_wall : 0;
+    const int32_t n = r->quality->conforming ? r->cavity.n_wall : 0;
     for (int32_t i = 0; i < n; i++)
         if (!tri_feed_subsegment(r, ~r->cavity.edge[r->cavity.wall[i]].outer))
             return false;
@@ -137,7 +145,7 @@ bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool siz
     if (!tri_is_live(t))
         return true;
     struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-    enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+    enum tri_badness badness = tri_refiner_judge(r, t, &shape);
     if (badness == TRI_GOOD || (badness == TRI_BAD_SIZE) != sizes)
         return true;
     return push(r, triangle, badness, shape.l[shape.shortest]);

@@ -6,7 +6,7 @@
 
 #include "triangle/cdt/delaunay.h"
 
-struct tri_options tri_defaults(void) { return (struct tri_options){.quality = tri_refine_defaults()}; }
+struct tri_options tri_defaults(void) { return (struct tri_options){.quality = tri_quality_defaults()}; }
 
 static void announce(const struct tri_options *options, enum tri_stage stage)
 {
@@ -84,10 +84,6 @@ static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, 
     status = status ? status : triangulate(mesh, pslg, options, report, error);
     if (!status)
         tri_mark_boundary(mesh);
-    if (!status && options->refine)
-        status = tri_refine_prepare(mesh, options->executor, error);
-    if (status)
-        tri_mesh_free(mesh);
     return status;
 }
 
@@ -120,8 +116,12 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
     *report = (struct tri_report){0};
     enum tri_status status = options->elements ? rebuild(mesh, pslg, options, report, error)
                                                : make(mesh, pslg, options, report, error);
-    if (status)
+    if (!status && options->refine)
+        status = tri_refine_prepare(mesh, options->executor, error);
+    if (status) {
+        tri_mesh_free(mesh);
         return status;
+    }
     assert(tri_mesh_is_sound(mesh));
     status = refine(mesh, options, report, error);
     assert(tri_mesh_is_sound(mesh)); /* refinement that failed, too, leaves a mesh that is valid */

@@ -31,7 +31,7 @@ enum tri_stage {
 };
 
 /* Refines as tri_refine does; or hands the mesh out, and frees it. */
-typedef enum tri_status tri_refine_call(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+typedef enum tri_status tri_refine_call(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                                         struct tri_refine_report *report, struct tri_error *error);
 
 struct tri_options {
@@ -41,7 +41,7 @@ struct tri_options {
     bool even_odd;      /* segments tell what is inside, see tri_carve */
     bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
     bool refine;        /* the quality stage runs, with the options below */
-    struct tri_refine_options quality;
+    struct tri_quality quality;
     tri_refine_call *refine_call; /* does so in place of tri_refine; NULL: tri_refine */
     void *refine_user;
     const struct tri_elements *elements; /* a mesh that is there (-r): it is rebuilt, and use_segments and refine are

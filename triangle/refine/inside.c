@@ -16,7 +16,7 @@
 
 #include "triangle/geometry/predicates.h"
 
-tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          tri_triangle_id triangle, const struct tri_shape *shape)
 {
     assert(tri_is_live(&mesh->tri[triangle]));
@@ -24,7 +24,7 @@ tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_op
     double length2 = 0.25 * tri_longest2(shape);
     for (int e = 0; e < 3; e++) {
         tri_link link = mesh->tri[triangle].n[e];
-        if (link < 0 && shape->l[e] >= length2 && !tri_is_protected(options, &mesh->sub[~link])) {
+        if (link < 0 && shape->l[e] >= length2 && !tri_is_protected(quality, &mesh->sub[~link])) {
             found = ~link;
             length2 = shape->l[e];
         }
@@ -41,18 +41,18 @@ static struct tri_point lowest_apex(const struct tri_mesh *mesh, struct tri_poin
     return (struct tri_point){m.x + share * (apex.x - m.x), m.y + share * (apex.y - m.y)};
 }
 
-bool tri_is_walled_in(const struct tri_criterion *criterion, tri_triangle_id triangle, const struct tri_shape *shape)
+bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    const struct tri_mesh *mesh = criterion->mesh;
+    const struct tri_mesh *mesh = asked->mesh;
     const struct tri_triangle *t = &mesh->tri[triangle];
     const double longest2 = tri_longest2(shape), LOW = 4096;
     const int e = shape->l[0] == longest2 ? 0 : shape->l[1] == longest2 ? 1 : 2;
-    if (!criterion->options->unsuitable || criterion->options->protect == 0 || LOW * shape->area2 > longest2 ||
-        shape->area2 > tri_area2_bound(criterion, t->region))
+    if (!tri_asks_caller(asked->quality) || asked->quality->protect == 0 || LOW * shape->area2 > longest2 ||
+        shape->area2 > tri_area2_bound(asked, t->region))
         return false;
     const struct tri_point a = mesh->xy[t->v[tri_next[e]]], b = mesh->xy[t->v[tri_prev[e]]];
     const struct tri_point low = lowest_apex(mesh, a, b, mesh->xy[t->v[e]], shape->area2 / sqrt(longest2));
-    return tri_is_refused(criterion->options, mesh->unit, a, b, low, tri_area_scale(criterion->options));
+    return tri_is_refused(asked, a, b, low, tri_area_scale(asked->quality));
 }
 
 bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,

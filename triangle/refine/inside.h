@@ -6,12 +6,12 @@
 
 /* The longest subsegment of the triangle, if it is at least half as long as the longest edge and may be split; else
  * TRI_NONE. */
-tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* Is the triangle one that only the size test refuses, and always would, for the length of an edge beside a wall that
  * must not be split? Then nothing is to be had here. See the rule. */
-bool tri_is_walled_in(const struct tri_criterion *criterion, tri_triangle_id triangle, const struct tri_shape *shape);
+bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* The triangle's centroid. False where a disk about it, in the triangle, would have a radius below the shortest edge
  * that coordinates resolve. */

@@ -11,8 +11,9 @@
 #ifndef TRIANGLE_REFINE_PETAL_H
 #define TRIANGLE_REFINE_PETAL_H
 
+#include "triangle/geometry/shape.h"
 #include "triangle/mesh/fence.h"
-#include "triangle/refine/quality.h"
+#include "triangle/mesh/mesh.h"
 
 enum tri_petal {
     TRI_PETAL_USUAL,  /* the usual point (tri_place) is the best, or nothing better is known */

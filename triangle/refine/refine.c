@@ -8,7 +8,7 @@
  * COST. A triangle costs what its cavity has: O(1) on average, but up to n beside n points at a wall that must not be
  * split (-Y).
  *
- * THEOREM (end). Points for angles are finitely many by small_angle.c and feature_size.c; those for sizes and circles,
+ * THEOREM (end). Points for angles are finitely many by hopeless.c and feature_size.c; those for sizes and circles,
  * whatever the others do, by inside.c and disk.c. */
 #include "triangle/refine/refiner.h"
 
@@ -18,11 +18,6 @@
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
-
-struct tri_refine_options tri_refine_defaults(void)
-{
-    return (struct tri_refine_options){.max_steiner = -1};
-}
 
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
@@ -50,12 +45,12 @@ static bool work_off(struct tri_refiner *r)
 
 static tri_triangle_id listed(const struct tri_refiner *r, int32_t i)
 {
-    return r->options->worklist ? r->options->worklist[i] : i;
+    return r->hooks->worklist ? r->hooks->worklist[i] : i;
 }
 
 static int32_t listed_count(const struct tri_refiner *r)
 {
-    return r->options->worklist ? r->options->n_worklist : r->mesh->n_triangles;
+    return r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
 }
 
 /* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
@@ -63,7 +58,7 @@ static bool queue_chunk(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < TRI_WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
         tri_triangle_id triangle = listed(r, r->next_listed);
-        if ((r->options->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
+        if ((r->quality->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
             return false;
     }
     assert(r->next_listed <= r->n_worklist);
@@ -96,33 +91,30 @@ static bool refine_worklist(struct tri_refiner *r)
     }
     if (!work_off(r))
         return false;
-    while (tri_has_sizes(r->options) && r->next_listed < r->n_worklist)
+    while (tri_has_sizes(r->quality) && r->next_listed < r->n_worklist)
         if (!tri_feed_triangle(r, listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
 }
 
 /* A bound above TRI_USUAL_ANGLE is worked for as that one. */
-static double worked_angle(const struct tri_refine_options *options)
-{
-    return fmin(options->min_angle, TRI_USUAL_ANGLE);
-}
+static double worked_angle(const struct tri_quality *quality) { return fmin(quality->min_angle, TRI_USUAL_ANGLE); }
 
 /* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
  * (tri_sizes_come_first). A call with a fence or a worklist has one stage: triangles that the first stage makes bad for
  * the second would not be in its list. */
 static void begin_stages(struct tri_refiner *r)
 {
-    bool easy = !r->options->fence && !r->options->worklist && tri_sizes_come_first(r->mesh, r->options, NULL);
+    bool easy = !r->hooks->fence && !r->hooks->worklist && tri_sizes_come_first(r->mesh, r->quality, NULL);
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : worked_angle(r->options), r->options->conforming);
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : worked_angle(r->quality), r->quality->conforming);
 }
 
 static void next_stage(struct tri_refiner *r)
 {
     r->step = NOT_BEGUN;
     r->stage++;
-    r->criterion.bounds = tri_bounds_for(worked_angle(r->options), r->options->conforming);
+    r->criterion.bounds = tri_bounds_for(worked_angle(r->quality), r->quality->conforming);
 }
 
 /* Resumable, as refine_worklist. */
@@ -137,13 +129,13 @@ static bool refine_in_stages(struct tri_refiner *r)
 }
 
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
-                                const struct tri_refine_options *options, struct tri_refine_report *report,
-                                struct tri_error *error)
+                                const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
+                                struct tri_refine_report *report, struct tri_error *error)
 {
     struct tri_refiner *r = NULL;
     *refiner = NULL;
     *report = (struct tri_refine_report){0};
-    enum tri_status status = options->fence || options->part ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
+    enum tri_status status = hooks->fence || hooks->part ? TRI_OK : tri_refine_check(mesh, quality, NULL, error);
     if (status)
         return status;
     r = calloc(1, sizeof *r);
@@ -154,13 +146,14 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     *refiner = r;
     assert(mesh->n_triangles == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
-    r->options = options;
-    r->criterion = tri_criterion_for(mesh, options);
+    r->quality = quality;
+    r->hooks = hooks;
+    r->criterion = tri_criterion_for(mesh, quality);
     r->report = report;
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
-    r->cavity.fence = options->fence;
-    r->cavity.owners = options->owners;
+    r->cavity.fence = hooks->fence;
+    r->cavity.owners = hooks->owners;
     return TRI_OK;
 }
 
@@ -188,15 +181,21 @@ void tri_refiner_free(struct tri_refiner *r)
     free(r);
 }
 
-enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
-                           struct tri_refine_report *report, struct tri_error *error)
+enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality *quality,
+                                const struct tri_refine_hooks *hooks, struct tri_refine_report *report,
+                                struct tri_error *error)
 {
     struct tri_refiner *refiner = NULL;
     enum tri_status status = tri_refine_prepare(mesh, NULL, error);
-    status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
+    status = status ? status : tri_refiner_new(&refiner, mesh, quality, hooks, report, error);
     status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
-    assert(options->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
+    assert(hooks->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
     return status;
 }
 
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
+                           struct tri_error *error)
+{
+    return tri_refine_with(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
+}

@@ -14,11 +14,8 @@
 #include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/owners.h"
-#include "triangle/tunables.h"
-
-/* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
- * bounds, by par_refine also for others (sched/schedule/schedule.h). */
-typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
+#include "triangle/size/groundwork.h"
+#include "triangle/size/quality.h"
 
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
 typedef bool tri_gate(void *user, const double p[2]);
@@ -39,19 +36,12 @@ struct tri_part {
     void *user;
 };
 
-struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles; above 38 as 38 */
-    double max_area;       /* <= 0: none */
-    bool region_areas;     /* mesh->regions[t.region].max_area applies too */
-    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
-                              asked about triangles that are smaller by this; 0: as they are */
-    bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
-    int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
-    int64_t max_steiner;   /* < 0: no limit on the points inserted */
-    tri_unsuitable *unsuitable;
-    void *unsuitable_user;
-    tri_unsuitable *urgent; /* not NULL: of the bad triangles only those that this says yes to are refined, at their
-                               circumcentres: for pre-refinement */
+/* Of the bad triangles only those with corners v that this says yes to are refined. */
+typedef bool tri_urgent(void *user, const struct tri_point *xy, const tri_vertex_id v[3]);
+
+/* How a call is tied to what is around it. All zero: it has the whole mesh to itself. */
+struct tri_refine_hooks {
+    tri_urgent *urgent;    /* for pre-refinement, at circumcentres; NULL: all are urgent */
     void *urgent_user;
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
@@ -71,17 +61,6 @@ struct tri_refine_options {
     void *told_user;
 };
 
-/* Is there any bound on sizes? */
-static inline bool tri_has_sizes(const struct tri_refine_options *options)
-{
-    return options->max_area > 0 || options->region_areas || options->unsuitable;
-}
-
-static inline double tri_area_scale(const struct tri_refine_options *options)
-{
-    return options->area_scale > 0 ? options->area_scale : 1;
-}
-
 enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
     TRI_EXCUSE_NARROW_GAP,  /* between two segments so near to each other that filling the space would cost too much */
@@ -99,24 +78,24 @@ struct tri_refine_report {
     bool hit_limit;                   /* max_steiner stopped the call */
 };
 
-struct tri_refine_options tri_refine_defaults(void);
-
 /* Refines until every bad triangle is given up or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
  * TRI_TOO_LARGE comes before anything is done where area bounds ask for more than a mesh holds (tri_refine_check; not
  * asked within a fence, and of a part).
  * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
-enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
-                           struct tri_refine_report *report, struct tri_error *error);
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
+                           struct tri_error *error);
+enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality *quality,
+                                const struct tri_refine_hooks *hooks, struct tri_refine_report *report,
+                                struct tri_error *error);
 
 /* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and
  * goes on where it was when called again, as if there had been no pause. Meanwhile the mesh's pointers may change, and
- * a part of a mesh may grow. The mesh, the options and the report are borrowed, until the refiner is freed, which may
- * be NULL. */
+ * a part of a mesh may grow. All are borrowed, until the refiner is freed, which may be NULL. */
 struct tri_refiner;
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
-                                const struct tri_refine_options *options, struct tri_refine_report *report,
-                                struct tri_error *error);
+                                const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
+                                struct tri_refine_report *report, struct tri_error *error);
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
 

@@ -14,7 +14,8 @@ enum tri_step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
 struct tri_refiner {
     struct tri_mesh *mesh;
-    const struct tri_refine_options *options;
+    const struct tri_quality *quality;
+    const struct tri_refine_hooks *hooks;
     struct tri_refine_report *report;
     struct tri_error error; /* of the run that is on */
     struct tri_criterion criterion;
@@ -59,6 +60,10 @@ bool tri_feed_fan(struct tri_refiner *r);
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
 bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
 bool tri_feed_walls(struct tri_refiner *r);
+
+/* A bad angle counts before a bad size; what is not urgent (tri_refine_hooks) is good. */
+enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
+                                   const struct tri_shape *shape);
 
 /* --- treat.c */
 

@@ -18,6 +18,26 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/tunables.h"
 
+static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
+
+double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s)
+{
+    bool at_start = is_acute(mesh, s->v[0]), at_end = is_acute(mesh, s->v[1]);
+    if (!at_start && !at_end)
+        return 0.5;
+    double length = sqrt(tri_distance2(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
+    int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
+    double mantissa = frexp(0.5 * length, &exponent);
+    double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
+    assert(shell > 0.35 * length && shell < 0.71 * length);
+    return at_start ? shell / length : 1 - shell / length;
+}
+
+bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b)
+{
+    return tri_distance2(a, b) > 4 * mesh->limits.shortest2;
+}
+
 /* Is p on the line of the parent, or on the side of it that is left of the way from `from` to `to`? (Subsegments are
  * far longer than their distance from the line.) */
 static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_point from, struct tri_point to,

@@ -4,6 +4,14 @@
 
 #include "triangle/cdt/crossing.h"
 
+/* Where to split a subsegment, as a fraction from its start: in the middle or, beside an acute input vertex, at the
+ * power of two nearest to the middle from there. So subsegments that meet at a small angle are split on common circles
+ * (concentric shells: Ruppert 1995), and do not encroach each other for ever. */
+double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s);
+
+/* Is the subsegment from a to b long enough to be split? */
+bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b);
+
 enum { TRI_SPLIT_PLACES = 4 * TRI_PLACES };
 
 /* The point that a subsegment is to be split at, rounded once: on its parent's line, and on the subsegment. */

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "triangle/geometry/degrees.h"
-#include "triangle/refine/quality.h"
+#include "triangle/geometry/shape.h"
 
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
                                                    15,     25,  50, 100, 300, 1000, 10000, 100000};

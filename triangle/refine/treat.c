@@ -7,7 +7,7 @@
  *
  * INVARIANT. A triangle is refined for its angle unless its shortest edge is shorter than s(v) / 6 (feature_size.c),
  * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can
- * afford (small_angle.c). Sizes are never given up: see inside.c.
+ * afford (hopeless.c). Sizes are never given up: see inside.c.
  *
  * A subsegment that must not be split (-Y) tolerates points in its lens that are TRI_CLEARANCE times the shortest edge
  * away: docs/theory.md, protected walls. */
@@ -20,10 +20,10 @@
 #include "triangle/refine/disk.h"
 #include "triangle/refine/inside.h"
 #include "triangle/refine/petal.h"
-#include "triangle/refine/quality.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/refine/place.h"
 #include "triangle/refine/split.h"
 #include "triangle/size/feature_size.h"
+#include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
 
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. */
@@ -35,8 +35,8 @@ static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 static enum tri_status find_room(struct tri_refiner *r)
 {
     struct tri_mesh *m = r->mesh;
-    if (r->options->more_room)
-        return r->error.status = r->options->more_room(r->options->more_room_user, m, &r->error);
+    if (r->hooks->more_room)
+        return r->error.status = r->hooks->more_room(r->hooks->more_room_user, m, &r->error);
     enum tri_status status = tri_mesh_reserve_vertices(m, 1, &r->error);
     status = status ? status : tri_mesh_reserve_triangles(m, 2, &r->error);
     return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
@@ -76,8 +76,8 @@ static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct t
 
 static void tell_changes(const struct tri_refiner *r)
 {
-    if (r->options->part)
-        r->options->part->changed(r->options->part->user, r->cavity.tri, r->cavity.n_edges);
+    if (r->hooks->part)
+        r->hooks->part->changed(r->hooks->part->user, r->cavity.tri, r->cavity.n_edges);
 }
 
 /* Inserts p, whose cavity has been found, for the sake of a triangle. */
@@ -102,16 +102,16 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
 static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
 {
     ++*counter;
-    if (r->options->deferred)
-        r->options->deferred(r->options->deferred_user, triangle);
+    if (r->hooks->deferred)
+        r->hooks->deferred(r->hooks->deferred_user, triangle);
     return DEFERRED;
 }
 
 /* Nothing has been changed; the same is tried again when there is more of the mesh. */
 static enum tri_outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edge[2])
 {
-    assert(r->options->part);
-    r->options->part->beyond(r->options->part->user, edge);
+    assert(r->hooks->part);
+    r->hooks->part->beyond(r->hooks->part->user, edge);
     r->error.status = TRI_NO_ROOM;
     return FAILED;
 }
@@ -127,8 +127,8 @@ static enum tri_outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 static enum tri_outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enum tri_excuse excuse)
 {
     r->report->given_up[excuse]++;
-    if (r->options->given_up && triangle != TRI_NONE)
-        r->options->given_up(r->options->given_up_user, triangle);
+    if (r->hooks->given_up && triangle != TRI_NONE)
+        r->hooks->given_up(r->hooks->given_up_user, triangle);
     return GIVEN_UP;
 }
 
@@ -203,7 +203,7 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
     assert(s >= 0 && split.fraction > 0 && split.fraction < 1);
-    if (tri_is_protected(r->options, &old))
+    if (tri_is_protected(r->quality, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     enum tri_search found = find_split(r, s, &split, &n_left);
     if (found == TRI_SEARCH_FENCED)
@@ -223,7 +223,7 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     tell_changes(r);
     r->report->inserted_on_segments++;
     bool room = tri_feed_fan(r) && tri_feed_walls(r);
-    if (room && r->options->conforming)
+    if (room && r->quality->conforming)
         room = tri_feed_subsegment(r, s) && tri_feed_subsegment(r, second);
     return room ? DONE : FAILED;
 }
@@ -238,7 +238,7 @@ static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_
 static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
 {
     const struct tri_cavity *c = &r->cavity;
-    if (!tri_is_protected(r->options, &r->mesh->sub[~c->edge[i].outer]))
+    if (!tri_is_protected(r->quality, &r->mesh->sub[~c->edge[i].outer]))
         return false;
     struct tri_relative a = c->edge[i].a->r, b = c->edge[i + 1].a->r;
     double x = b.x - a.x, y = b.y - a.y, area2 = c->edge[i].area2;
@@ -285,11 +285,11 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
                        enum tri_badness badness)
 {
     double l = shape->l[shape->shortest];
-    if (r->options->urgent)
+    if (r->hooks->urgent)
         return HUGE_VAL;
     assert(l > 0 && badness != TRI_GOOD);
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
-    double area2_bound = tri_area2_bound(&r->criterion, t->region);
+    double area2_bound = tri_area2_bound(&r->criterion.asked, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
         double ideal2 = TRI_IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
         reach = tri_lesser(ideal2 > 0.25 * l ? sqrt(ideal2) : HUGE_VAL, reach);
@@ -302,12 +302,12 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
 {
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    if (r->options->gate) {
+    if (r->hooks->gate) {
         double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
-        if (!r->options->gate(r->options->gate_user, at))
+        if (!r->hooks->gate(r->hooks->gate_user, at))
             return defer(r, triangle, &r->report->gated);
     }
-    if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
+    if (r->hooks->fence && !tri_fence_holds(r->hooks->fence, p)) /* then its cavity reaches beyond, too */
         return defer(r, triangle, &r->report->fenced);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
@@ -323,7 +323,7 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
                                   struct tri_point *p)
 {
     tri_vertex_id beyond[2];
-    switch (tri_petal_point(r->mesh, r->options->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
+    switch (tri_petal_point(r->mesh, r->hooks->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
     case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
     case TRI_PETAL_BEYOND: return wait_for_more(r, beyond);
     default: return REFUSED;
@@ -337,7 +337,7 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
     const struct tri_triangle t = r->mesh->tri[triangle];
     struct tri_point p;
     enum tri_outcome outcome = REFUSED;
-    if (badness == TRI_BAD_ANGLE && !r->sized && !r->options->urgent)
+    if (badness == TRI_BAD_ANGLE && !r->sized && !r->hooks->urgent)
         outcome = find_best(r, triangle, shape, &p);
     if (outcome == REFUSED) {
         p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
@@ -358,14 +358,14 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
 /* For sizes, where the usual point is refused: see inside.c. */
 static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    tri_sub_id s = tri_long_wall(r->mesh, r->options, triangle, shape);
+    tri_sub_id s = tri_long_wall(r->mesh, r->quality, triangle, shape);
     enum tri_outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, triangle);
     if (outcome != REFUSED)
         return outcome == DONE ? AGAIN : outcome;
     struct tri_point p;
     if (!tri_centroid(r->mesh, triangle, shape, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    if (tri_is_walled_in(&r->criterion, triangle, shape))
+    if (tri_is_walled_in(&r->criterion.asked, triangle, shape))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     outcome = find_cavity(r, triangle, p);
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
@@ -374,8 +374,8 @@ static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id tr
 static bool at_limit(struct tri_refiner *r)
 {
     int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
-    assert(r->options->max_steiner < 0 || inserted <= r->options->max_steiner);
-    if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
+    assert(r->quality->max_steiner < 0 || inserted <= r->quality->max_steiner);
+    if (r->quality->max_steiner < 0 || inserted < r->quality->max_steiner)
         return false;
     return r->report->hit_limit = true;
 }
@@ -383,8 +383,8 @@ static bool at_limit(struct tri_refiner *r)
 /* Somebody asks for the end: between two points the mesh is in order. */
 bool tri_refiner_must_stop(struct tri_refiner *r)
 {
-    if (r->options->told && r->step_of_stop % TRI_STOP_STEPS == 0)
-        r->options->told(r->options->told_user, r->mesh->n_triangles);
+    if (r->hooks->told && r->step_of_stop % TRI_STOP_STEPS == 0)
+        r->hooks->told(r->hooks->told_user, r->mesh->n_triangles);
     return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
 }
 
@@ -397,12 +397,12 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
         if (t->life != entry.life || !tri_is_live(t))
             return DONE;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        enum tri_badness badness = tri_refiner_judge(r, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
         if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, entry.t, &shape)) {
-            if (!tri_is_too_large(&r->criterion, t, &shape))
+            if (!tri_is_too_large(&r->criterion.asked, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
         }
@@ -410,7 +410,7 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
             return give_up(r, entry.t, TRI_EXCUSE_LIMIT);
         bool resolved = shape.l[shape.shortest] >= r->mesh->limits.shortest2;
         enum tri_outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
-        if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
+        if (outcome == REFUSED && tri_is_too_large(&r->criterion.asked, t, &shape)) {
             r->sized = true;
             outcome = propose_inside(r, entry.t, &shape);
         }

@@ -10,10 +10,10 @@
  * 1 / h^2 between two places is 1 over the product of both: so a piece counts by its corners. */
 #include "triangle/size/crowd.h"
 
-#include "triangle/refine/criterion.h"
-#include "triangle/refine/quality.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/size/asked.h"
 #include "triangle/size/estimate.h"
+#include "triangle/size/gap.h"
+#include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
 
 enum { STRIPS = 6, MOST_TURNS = 32, DEEPEST = 128 };
@@ -163,8 +163,8 @@ static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, do
 
 struct forecast {
     const struct tri_mesh *mesh;
-    const struct tri_refine_options *options;
-    struct tri_criterion areas;
+    const struct tri_quality *quality;
+    struct tri_asked areas;
     double sin2;     /* square of the sine of the angle bound */
     double fineness; /* triangles for each square of the size of features */
 };
@@ -208,12 +208,12 @@ static double triangles_of(const struct forecast *e, tri_triangle_id t)
 
 /* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it.
  * Triangles lie along a curve, so that every n-th is a fair sample. */
-double tri_forecast(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+double tri_forecast(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     enum { SURVEY = 1 << 15 };
-    const double angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
-    const double again = tri_sizes_come_first(mesh, options, NULL) ? TRI_AGAIN / (TRI_NEVER_AGAIN - angle) : 0;
-    const struct forecast f = {mesh, options, tri_criterion_of_areas(mesh, options), tri_bounds_for(angle, false).sin2,
+    const double angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    const double again = tri_sizes_come_first(mesh, quality, NULL) ? TRI_AGAIN / (TRI_NEVER_AGAIN - angle) : 0;
+    const struct forecast f = {mesh, quality, tri_asked_of(mesh, quality), tri_bounds_for(angle, false).sin2,
                                angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
     const int32_t step = mesh->n_triangles / SURVEY + 1;
     double sum = 0;

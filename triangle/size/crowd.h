@@ -3,11 +3,12 @@
 #ifndef TRIANGLE_SIZE_CROWD_H
 #define TRIANGLE_SIZE_CROWD_H
 
-#include "triangle/refine/refine.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/size/quality.h"
 
 /* For angles and areas, not for a size test. The mesh has been made ready for refinement
- * (triangle/refine/groundwork.h). Looks at no more than 32,768 triangles, in each for a time that grows with the
+ * (triangle/size/groundwork.h). Looks at no more than 32,768 triangles, in each for a time that grows with the
  * logarithms of ratios of sizes in it. */
-double tri_forecast(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+double tri_forecast(const struct tri_mesh *mesh, const struct tri_quality *quality);
 
 #endif

@@ -6,9 +6,9 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/refine/criterion.h"
-#include "triangle/refine/quality.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/size/asked.h"
+#include "triangle/size/gap.h"
+#include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
 
 enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
@@ -23,15 +23,15 @@ struct corners {
 /* What work is estimated from. */
 struct estimator {
     const struct tri_mesh *mesh;
-    const struct tri_refine_options *options;
+    const struct tri_quality *quality;
     double large; /* a size test is probed in pieces no larger than this */
-    struct tri_criterion criterion;
+    struct tri_asked asked;
 };
 
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
 static double density(const struct estimator *e, tri_region_id region)
 {
-    return 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
+    return 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
 }
 
 /* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
@@ -40,9 +40,9 @@ static double density(const struct estimator *e, tri_region_id region)
 static double probe_size(const struct estimator *e, const struct corners *t)
 {
     enum { DEEPEST_PROBE = 16 };
-    double scale = tri_area_scale(e->options), pieces = 1;
+    double scale = tri_area_scale(e->quality), pieces = 1;
     for (int k = 0; k <= DEEPEST_PROBE; k++, pieces *= 4)
-        if (!tri_is_refused(e->options, e->mesh->unit, t->a, t->b, t->c, scale * pieces))
+        if (!tri_is_refused(&e->asked, t->a, t->b, t->c, scale * pieces))
             return k > 0 ? pieces : 0;
     return 0;
 }
@@ -86,7 +86,7 @@ static double size_work(const struct estimator *e, const struct corners *t, int 
 static double work_inside(const struct estimator *e, tri_region_id region, const struct corners *t)
 {
     double work = area_of(t) * density(e, region);
-    if (e->options->unsuitable)
+    if (tri_asks_caller(e->quality))
         work = fmax(work, size_work(e, t, DEEPEST_CUT));
     return work < MOST_WORK ? work : MOST_WORK;
 }
@@ -100,19 +100,19 @@ static struct corners corners_of(const struct tri_mesh *mesh, tri_triangle_id t)
 static double area_work(const struct estimator *e, tri_triangle_id t)
 {
     struct corners corners = corners_of(e->mesh, t);
-    return tri_has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
+    return tri_has_sizes(e->quality) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
 }
 
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
  * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
  * hopeless triangle stays one. */
-static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
+static double angle_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     double longest2 = tri_longest2(&shape);
     double octaves = 0.5 * tri_rough_log2(longest2 / shape.l[shape.shortest]);
-    double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
+    double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     if (tri_is_hopeless(mesh, t, &shape))
         return 1;
     gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
@@ -120,26 +120,26 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     return work < 1 ? 1 : work < MOST_WORK ? work : MOST_WORK;
 }
 
-double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
 {
-    const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
-    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + TRI_BAD_WORK * angle_work(mesh, options, t) : 0;
+    const struct estimator here = {mesh, quality, HUGE_VAL, tri_asked_of(mesh, quality)};
+    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + TRI_BAD_WORK * angle_work(mesh, quality, t) : 0;
 }
 
 /* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
 static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_triangles / SURVEY + 1; }
 
-static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
-    struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
+    struct estimator e = {mesh, quality, HUGE_VAL, tri_asked_of(mesh, quality)};
     double all = 0;
-    for (tri_triangle_id t = 0; options->unsuitable && t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t])) {
             struct corners corners = corners_of(mesh, t);
             all += area_of(&corners);
         }
-    if (options->unsuitable)
+    if (tri_asks_caller(quality))
         e.large = all / PIECES;
     return e;
 }
@@ -160,7 +160,7 @@ static double area_of_live(const struct estimator *e, tri_triangle_id t)
 
 static double angle_of_live(const struct estimator *e, tri_triangle_id t)
 {
-    return tri_is_live(&e->mesh->tri[t]) ? angle_work(e->mesh, e->options, t) : 0;
+    return tri_is_live(&e->mesh->tri[t]) ? angle_work(e->mesh, e->quality, t) : 0;
 }
 
 /* What areas ask for in a triangle that meets its bound already: likely, since new vertices come near, but not sure. */
@@ -170,7 +170,7 @@ static double unsure_of_live(const struct estimator *e, tri_triangle_id t)
     if (!tri_is_live(triangle))
         return 0;
     double area2 = tri_shape_of(e->mesh->xy, triangle->v).area2;
-    return area2 <= tri_area2_bound(&e->criterion, triangle->region) ? 0.5 * area2 * density(e, triangle->region) : 0;
+    return area2 <= tri_area2_bound(&e->asked, triangle->region) ? 0.5 * area2 * density(e, triangle->region) : 0;
 }
 
 static struct works unsure_works(const struct estimator *e)
@@ -207,7 +207,7 @@ static void sum_share(void *context, size_t share)
 /* A size test is the caller's: whether threads may ask it at once is not known here. */
 static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
 {
-    return w->e->options->unsuitable ? NULL : executor;
+    return tri_asks_caller(w->e->quality) ? NULL : executor;
 }
 
 /* In shares that the mesh decides: the same for any number of threads. */
@@ -236,23 +236,23 @@ static void know_all(struct works *w, const struct tri_executor *executor)
         tri_execute(executor_for(w, executor), tri_shares(w->n), know_share, w);
 }
 
-double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
-    const struct estimator e = estimator_for(mesh, options);
-    double areas = tri_has_sizes(options) ? sum_of(area_works(&e), executor) : 0;
+    const struct estimator e = estimator_for(mesh, quality);
+    double areas = tri_has_sizes(quality) ? sum_of(area_works(&e), executor) : 0;
     *sure = mesh->n_triangles + (areas > 0 ? fmax(areas - sum_of(unsure_works(&e), executor), 0) : 0);
     return areas + sum_of(angle_works(&e), executor);
 }
 
-bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_executor *executor)
 {
-    if (fmin(options->min_angle, TRI_USUAL_ANGLE) <= TRI_EASY_ANGLE || !tri_has_sizes(options))
+    if (fmin(quality->min_angle, TRI_USUAL_ANGLE) <= TRI_EASY_ANGLE || !tri_has_sizes(quality))
         return false;
-    if (options->unsuitable)
+    if (tri_asks_caller(quality))
         return true;
-    const struct estimator e = estimator_for(mesh, options);
+    const struct estimator e = estimator_for(mesh, quality);
     return sum_of(area_works(&e), executor) > TRI_SIZES_FIRST * sum_of(angle_works(&e), executor);
 }
 
@@ -273,7 +273,7 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
     struct corners part[4];
     quarter(t, part);
     for (int i = 0; i < 4; i++) {
-        double inside = e->options->unsuitable ? work_inside(e, region, &part[i]) : work / 4;
+        double inside = tri_asks_caller(e->quality) ? work_inside(e, region, &part[i]) : work / 4;
         if (!sample_triangle(to, e, region, &part[i], inside, grain, depth - 1))
             return false;
     }
@@ -316,17 +316,17 @@ static bool sample_areas(const struct receiver *to, const struct works *areas, d
     return true;
 }
 
-bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
+bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *quality, double grain,
                      const struct tri_executor *executor, tri_take_work *take, void *user)
 {
     const struct receiver to = {take, user};
-    const struct estimator e = estimator_for(mesh, options);
+    const struct estimator e = estimator_for(mesh, quality);
     assert(take && grain >= 0);
     struct works angles = angle_works(&e), areas = area_works(&e);
     know_all(&angles, executor);
     bool taken = sample_angles(&to, &angles, grain);
     free(angles.known);
-    if (!taken || !tri_has_sizes(options))
+    if (!taken || !tri_has_sizes(quality))
         return taken;
     know_all(&areas, executor);
     taken = sample_areas(&to, &areas, grain);

@@ -2,15 +2,15 @@
 #ifndef TRIANGLE_SIZE_ESTIMATE_H
 #define TRIANGLE_SIZE_ESTIMATE_H
 
-#include "triangle/refine/refine.h"
-#include "triangle/tunables.h"
+#include "triangle/mesh/mesh.h"
+#include "triangle/size/quality.h"
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
  * mesh can hold. *sure: the part of it that is no guess: the triangles that there are, and those that areas and
  * the size test ask for where they are not met yet.
  * O(triangles), and a probe for each thousand triangles or so of those to come. */
-double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure);
 
 /* Are the bounds to be reached in two steps: sizes with an easy angle bound, and then the angles? Angles above
@@ -18,18 +18,18 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
  * triangles seldom meet; where features decide on sizes they meet anyway, and are mended twice. So the answer is yes
  * where areas ask for more than twice as many triangles as angles, in the mesh as it is, and where there is a size
  * test. O(triangles). */
-bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_executor *executor);
 
 /* The share of one bad triangle in the estimate. */
-double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t);
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t);
 
 /* Takes a place and the work (triangles) that lies about there. False: it cannot. */
 typedef bool tri_take_work(void *user, struct tri_point q, double work);
 
 /* Hands out the work in pieces of about `grain`, each with its place, in an order that the mesh decides; small ones are
  * gathered. False: `take` said so. O(triangles + pieces). */
-bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
+bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *quality, double grain,
                      const struct tri_executor *executor, tri_take_work *take, void *user);
 
 #endif

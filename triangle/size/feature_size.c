@@ -18,8 +18,9 @@
 #include <stdlib.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/refine/quality.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/geometry/shape.h"
+#include "triangle/mesh/parents.h"
+#include "triangle/size/gap.h"
 #include "triangle/tunables.h"
 
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */

@@ -1,164 +1,10 @@
-/* Rules that make refinement end on any PSLG, beside the order of the loop (refine.c).
- *
- * THEOREM (Chew 1993; Shewchuk 2002; Rand 2011). Refinement with bounds up to 28.6 degrees ends where segments meet at
- * 60 degrees or more. RULE. A triangle stays if its shortest edge is of one of these kinds (docs/theory.md, the rule):
- *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
- *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the angle of the input dictates its length;
- *   - it joins the sides of a spike, two segments that meet at less than 1 / TRI_SHARP;
- *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
- *     width each (tri_choose_gaps);
- *   - it, or the triangle's height, is shorter than limits.shortest2 says: rounding;
- *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles.
- * Triangles that stay are counted by reason (tri_count_bad). */
-#include "triangle/refine/small_angle.h"
+/* Narrow spaces between two segments, and which of them are filled. */
+#include "triangle/size/gap.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
-#include "triangle/geometry/predicates.h"
-#include "triangle/size/feature_size.h"
+#include "triangle/mesh/parents.h"
 #include "triangle/tunables.h"
-
-static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
-
-double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s)
-{
-    bool at_start = is_acute(mesh, s->v[0]), at_end = is_acute(mesh, s->v[1]);
-    if (!at_start && !at_end)
-        return 0.5;
-    double length = sqrt(tri_distance2(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
-    int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
-    double mantissa = frexp(0.5 * length, &exponent);
-    double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
-    assert(shell > 0.35 * length && shell < 0.71 * length);
-    return at_start ? shell / length : 1 - shell / length;
-}
-
-bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b)
-{
-    return tri_distance2(a, b) > 4 * mesh->limits.shortest2;
-}
-
-/* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
-static tri_vertex_id apex_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
-{
-    tri_parent_id pu = mesh->on[u], pv = mesh->on[v];
-    for (int i = 0; pu >= 0 && pv >= 0 && pu != pv && i < 2; i++)
-        for (int k = 0; k < 2; k++)
-            if (mesh->parents[pu].v[i] == mesh->parents[pv].v[k])
-                return mesh->parents[pu].v[i];
-    return TRI_NONE;
-}
-
-/* Do u and v lie on two segments that meet at a vertex, at the same distance from it? Then the angle there dictates how
- * far apart they are (Miller, Pav & Walkington 2003). */
-static bool on_one_shell(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, double uv2)
-{
-    tri_vertex_id apex = apex_between(mesh, u, v);
-    if (apex == TRI_NONE)
-        return false;
-    double du = tri_distance2(mesh->xy[apex], mesh->xy[u]), dv = tri_distance2(mesh->xy[apex], mesh->xy[v]);
-    return du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du;
-}
-
-/* The angle between the legs oa and ob. */
-static enum tri_corner corner_at(struct tri_point o, struct tri_point a, struct tri_point b)
-{
-    double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
-    double dot = ax * bx + ay * by, sine = fabs(ax * by - ay * bx);
-    if (!(dot > 0 && 3 * dot * dot > sine * sine))
-        return TRI_WIDE_CORNER;
-    return TRI_SHARP * sine > dot ? TRI_NARROW_CORNER : TRI_SPIKE;
-}
-
-enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
-{
-    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
-    for (int i = 0; p != q && i < 2; i++)
-        for (int k = 0; k < 2; k++)
-            if (a[i] == b[k])
-                return corner_at(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
-    return TRI_APART;
-}
-
-/* The parents that vertex v lies on: its own, or those that end there. */
-static const tri_parent_id *parents_of(const struct tri_mesh *mesh, tri_vertex_id v, int32_t *n)
-{
-    *n = 0;
-    if (mesh->on[v] >= 0) {
-        *n = 1;
-        return &mesh->on[v];
-    }
-    if (v >= mesh->incidence.n_vertices)
-        return NULL;
-    *n = mesh->incidence.start[v + 1] - mesh->incidence.start[v];
-    return mesh->incidence.parent + mesh->incidence.start[v];
-}
-
-/* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
- * on which q lies, up to rounding, is among them, and those on either side of it. */
-static int list_neighbours(const struct tri_mesh *mesh, tri_vertex_id hub, const tri_parent_id *incident, int32_t n,
-                           struct tri_point q, tri_parent_id *beside)
-{
-    assert(n > TRI_MANY_PARENTS);
-    int32_t low = 0, high = n;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (tri_turns_before(mesh->xy[hub], tri_far_end(mesh, incident[middle], hub), q))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (int k = 0; k < 4; k++)
-        beside[k] = incident[(low + n + k - 2) % n];
-    return 4;
-}
-
-/* The parents at u that bound spaces in which triangle u, v, w may lie: at a hub the next ones around it, else all. */
-static const tri_parent_id *parents_beside(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v,
-                                           tri_vertex_id w, tri_parent_id beside[8], int32_t *n)
-{
-    const tri_parent_id *incident = parents_of(mesh, u, n);
-    if (*n <= TRI_MANY_PARENTS)
-        return incident;
-    int32_t all = *n;
-    *n = list_neighbours(mesh, u, incident, all, mesh->xy[v], beside);
-    *n += list_neighbours(mesh, u, incident, all, mesh->xy[w], beside + *n);
-    return beside;
-}
-
-bool tri_is_on_parent(const struct tri_mesh *mesh, tri_vertex_id v)
-{
-    int32_t n;
-    parents_of(mesh, v, &n);
-    return n > 0;
-}
-
-/* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a
- * wheel. */
-static bool are_joined(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
-{
-    int32_t nu, nv;
-    const tri_parent_id *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
-    for (int32_t i = 0; i < (nu < nv ? nu : nv); i++) {
-        const tri_vertex_id *ends = mesh->parents[(nu < nv ? pu : pv)[i]].v;
-        if ((ends[0] == u && ends[1] == v) || (ends[0] == v && ends[1] == u))
-            return true;
-    }
-    return false;
-}
-
-tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
-{
-    const tri_vertex_id *ends = mesh->parents[parent].v;
-    const int32_t on = mesh->on[v];
-    for (int k = 0; k < 2; k++) {
-        const tri_vertex_id *others = on >= 0 ? mesh->parents[on].v : NULL;
-        if (others ? others[0] == ends[k] || others[1] == ends[k] : are_joined(mesh, ends[k], v))
-            return ends[k];
-    }
-    return TRI_NONE;
-}
 
 /* The integral of 1 / width along the shorter one. If they spread by no more than the width they have, that is about
  * length / width; else each octave of width takes about length / spread. Widths that coordinates do not resolve count
@@ -175,17 +21,6 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
     double width = fabs(px * (v.y - u.y) - py * (v.x - u.x)) / sqrt(lp), spread = cross / longer;
     width = fmax(width, sqrt(mesh->limits.shortest2));
     return spread <= width ? shorter / width : shorter / spread * tri_rough_log2(1 + spread / width);
-}
-
-bool tri_touches(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
-{
-    const struct tri_parent *p = &mesh->parents[parent];
-    struct tri_relative a = tri_relative(&mesh->xy[p->v[0]], mesh->xy[v]);
-    struct tri_relative b = tri_relative(&mesh->xy[p->v[1]], mesh->xy[v]);
-    double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = tri_cross(a, b);
-    if (a.l > b.l + l || b.l > a.l + l)
-        return tri_lesser(a.l, b.l) < mesh->limits.shortest2;
-    return cross * cross < mesh->limits.shortest2 * l;
 }
 
 static bool do_touch(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
@@ -268,10 +103,10 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
     int32_t nu, nv;
     tri_parent_id beside[2][8];
     struct gap gap = {0, false};
-    const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
+    const tri_parent_id *pu = tri_parents_beside(mesh, u, v, w, beside[0], &nu);
     if (nu == 0)
         return gap;
-    const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
+    const tri_parent_id *pv = tri_parents_beside(mesh, v, u, w, beside[1], &nv);
     for (int32_t i = 0; i < nu; i++) {
         const struct tri_parent *p = &mesh->parents[pu[i]];
         if (is_end(p, v) || is_cheaper(mesh, p, u, v, least))
@@ -312,21 +147,6 @@ bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, co
 {
     struct gap gap = gap_at(mesh, triangle, shape, 0);
     return gap.spike || gap.cost > mesh->limits.dearest_gap;
-}
-
-bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
-{
-    const tri_vertex_id *v = mesh->tri[triangle].v;
-    return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
-}
-
-bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
-{
-    const struct tri_triangle *t = &mesh->tri[triangle];
-    int k = shape->shortest;
-    tri_vertex_id u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
-           on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
 enum { OCTAVES = 64 };

@@ -1,4 +1,4 @@
-/* Where refinement stops: shells at small input angles, narrow spaces, flat triangles. */
+/* Where refinement stops: narrow spaces, flat triangles, hubs of many segments. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "tests/support.h"
-#include "triangle/refine/small_angle.h"
+#include "triangle/size/gap.h"
 
 /* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as
  * narrow gaps. */
@@ -68,37 +68,6 @@ static void test_filling_costs_what_the_width_takes_all_along(void **state)
         }
 }
 
-/* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
-static void test_shells_are_powers_of_two(void **state)
-{
-    (void)state;
-    struct tri_point xy[] = {{0, 0}, {3, 0}, {7, 0}};
-    int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT, TRI_VERTEX_INPUT};
-    struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 3};
-    struct tri_subsegment from_acute = {.v = {0, 1}}, to_acute = {.v = {2, 0}}, plain = {.v = {1, 2}};
-    assert_true(3 * tri_split_fraction(&mesh, &from_acute) == 2 || 3 * tri_split_fraction(&mesh, &from_acute) == 1);
-    assert_true(fabs(7 * (1 - tri_split_fraction(&mesh, &to_acute)) - 4) < 1e-14);
-    assert_true(tri_split_fraction(&mesh, &plain) == 0.5);
-}
-
-/* Every length is split between 0.35 and 0.71 of it. */
-static void test_shells_are_near_the_middle(void **state)
-{
-    (void)state;
-    struct support_random random = {1};
-    for (int i = 0; i < 1000; i++) {
-        struct tri_point xy[] = {{0, 0}, {ldexp(0.5 + support_unit(&random), i % 80 - 40), 0}};
-        int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT};
-        struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 2};
-        struct tri_subsegment s = {.v = {0, 1}};
-        double fraction = tri_split_fraction(&mesh, &s);
-        int exponent;
-        assert_true(fraction > 0.35 && fraction < 0.71);
-        double mantissa = frexp(fraction * xy[1].x, &exponent);
-        assert_true(mantissa - 0.5 < 1e-15 || 1 - mantissa < 1e-15);
-    }
-}
-
 /* Split points that rounding puts beside their segment, next to a triangle flatter than that: the mesh stays
  * Delaunay. */
 static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
@@ -154,8 +123,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thin_rectangles_are_filled_while_that_is_cheap),
         cmocka_unit_test(test_filling_costs_what_the_width_takes_all_along),
-        cmocka_unit_test(test_shells_are_powers_of_two),
-        cmocka_unit_test(test_shells_are_near_the_middle),
         cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),
         cmocka_unit_test(test_spokes_of_a_hub_are_in_order),
     };

@@ -1,32 +1,16 @@
-/* The geometry of one triangle: its shape, its bounds in the form in which the inner loop compares them, and the usual
- * point of a bad one (circumcentre or off-centre).
+/* The shape of a triangle: squared lengths, twice its area, its shortest edge.
  *
- *   tri_bounds_for       what an angle bound is: a squared sine, the lens of a subsegment, the height of an off-centre
- *   tri_shape_of         squared edge lengths, twice the area, the shortest edge
- *   tri_longer_product   what the sine of the smallest angle is measured by
- *   tri_place            the usual point
- *
- * criterion.h asks with these whether a triangle of a mesh is bad; treat.c chooses between tri_place and petal.h.
  * INVARIANT. All decisions use + - * / and sqrt alone, so that they are the same on every machine. */
-#ifndef TRIANGLE_REFINE_QUALITY_H
-#define TRIANGLE_REFINE_QUALITY_H
+#ifndef TRIANGLE_GEOMETRY_SHAPE_H
+#define TRIANGLE_GEOMETRY_SHAPE_H
 
 #include <math.h>
 
+#include "triangle/base/ids.h"
 #include "triangle/geometry/point.h"
-#include "triangle/mesh/mesh.h"
 
-/* The bounds in the form in which the inner loop compares them. */
-struct tri_bounds {
-    double sin2;       /* square of the sine of the angle bound; 0: no angle bound */
-    double lens_cos2;  /* a point that sees a subsegment under more than 180 - 2 * bound encroaches: dot < 0 and
-                          dot^2 > lens_cos2 * product of squared lengths */
-    double off_centre; /* height of an off-centre over its edge in units of the edge; 0: always circumcentres */
-};
-
-/* min_angle in degrees; above 60 as 60, which no mesh keeps; 0: no bound. conforming: the lens is the whole diametral
- * disk. */
-struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
+/* The corners, or edges, that come after and before one. */
+static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
 
 /* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
 static inline double tri_rough_log2(double x)
@@ -66,10 +50,5 @@ static inline double tri_longer_product(double a, double b, double c)
 {
     return tri_larger(a * b, tri_larger(b * c, c * a));
 }
-
-/* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies
- * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Üngör 2004). */
-struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
-                           double reach);
 
 #endif

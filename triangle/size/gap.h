@@ -1,0 +1,34 @@
+/* Narrow spaces between two segments: what it costs to fill them, and which are too dear. */
+#ifndef TRIANGLE_SIZE_GAP_H
+#define TRIANGLE_SIZE_GAP_H
+
+#include "triangle/geometry/shape.h"
+#include "triangle/mesh/mesh.h"
+
+/* How many points, to the order, would fill the space between two parents? The first runs through u, the second through
+ * v, and they are nearest to each other there: as far apart as v is from the line of the first. The cost is the
+ * integral of 1 / width along the space: Ruppert's integral of 1 / size^2 (1995), where each place is as wide as its
+ * features. */
+double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
+                        struct tri_point v);
+
+/* Will the space between two parents be filled, so that its width is a feature? Not where an end of one touches the
+ * other, unless they meet at less than 60 degrees. u and v as above. */
+bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
+                   struct tri_point v);
+
+/* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
+ * bridges; 0 where it bridges none. */
+double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
+
+/* Does the shortest edge of the triangle bridge a spike? */
+bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
+
+/* Does the shortest edge of the triangle bridge a spike, or a space between two parents that is too dear to fill? */
+bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
+
+/* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.
+ * O(triangles). */
+void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor);
+
+#endif

@@ -1,0 +1,71 @@
+/* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
+ *
+ *   limits      the shortest edge that coordinates can carry
+ *   features    how far each vertex is from what is around it (feature_size.h)
+ *   acute       input vertices at which two subsegments meet at less than 60 degrees
+ *   incidence   the parents that end at each vertex, in order of direction where they are many
+ *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
+ *
+ * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
+#include "triangle/size/groundwork.h"
+
+#include "triangle/mesh/parents.h"
+#include "triangle/size/feature_size.h"
+#include "triangle/size/gap.h"
+#include "triangle/tunables.h"
+
+static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
+
+/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
+ * the outside comes first. */
+static tri_sub_id next_around(const struct tri_mesh *mesh, tri_sub_id s, int k)
+{
+    tri_halfedge code = mesh->sub[s].side[k];
+    while (code != TRI_NONE) { /* edge `code` starts at the vertex, counter-clockwise in its triangle */
+        tri_link link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
+        if (link < 0)
+            return ~link;
+        code = tri_code(tri_of(link), tri_edge(link));
+    }
+    return TRI_NONE;
+}
+
+static void find_acute(struct tri_mesh *mesh)
+{
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++) {
+            tri_vertex_id v = mesh->sub[s].v[k];
+            tri_sub_id other = is_input(mesh->on[v]) ? next_around(mesh, s, k) : TRI_NONE;
+            if (other == TRI_NONE || other == s)
+                continue;
+            struct tri_point o = mesh->xy[v], a = mesh->xy[mesh->sub[s].v[1 - k]];
+            struct tri_point b = mesh->xy[mesh->sub[other].v[mesh->sub[other].v[0] == v]];
+            double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
+            double dot = ax * bx + ay * by, cross = ax * by - ay * bx;
+            if (dot > 0 && cross > 0 && 4 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by))
+                mesh->on[v] = TRI_VERTEX_ACUTE;
+        }
+}
+
+double tri_shortest_edge2(const struct tri_mesh *mesh)
+{
+    double size = 0;
+    for (tri_vertex_id v = 0; v < mesh->n_input; v++) {
+        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
+        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
+    }
+    return size * TRI_SHORTEST_EDGE * (size * TRI_SHORTEST_EDGE);
+}
+
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
+{
+    if (mesh->incidence.start)
+        return TRI_OK;
+    mesh->limits.shortest2 = tri_shortest_edge2(mesh);
+    tri_estimate_features(mesh, executor);
+    find_acute(mesh);
+    enum tri_status status = tri_incidence_list(mesh, error);
+    if (!status)
+        tri_choose_gaps(mesh, executor);
+    return status;
+}
