@@ -52,15 +52,6 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
-                                   const struct tri_shape *shape)
-{
-    enum tri_badness badness = tri_judge(&r->criterion, t, shape);
-    if (badness != TRI_GOOD && r->hooks->urgent && !r->hooks->urgent(r->hooks->urgent_user, r->mesh->xy, t->v))
-        return TRI_GOOD;
-    return badness;
-}
-
 /* Judges the new triangles where only urgent ones count (tri_refine_hooks). */
 static bool judge_urgent(struct tri_refiner *r)
 {

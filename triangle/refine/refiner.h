@@ -35,6 +35,15 @@ struct tri_refiner {
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
+/* A bad angle counts before a bad size; what is not urgent (tri_refine_hooks) is good. */
+static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
+                                                 const struct tri_shape *shape)
+{
+    enum tri_badness badness = tri_judge(&r->criterion, t, shape);
+    bool counts = !r->hooks->urgent || r->hooks->urgent(r->hooks->urgent_user, r->mesh->xy, t->v);
+    return counts ? badness : TRI_GOOD;
+}
+
 /* How the treatment of a bad triangle ended. */
 enum tri_outcome {
     DONE,     /* a point was inserted, or the triangle is gone */
@@ -60,10 +69,6 @@ bool tri_feed_fan(struct tri_refiner *r);
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
 bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
 bool tri_feed_walls(struct tri_refiner *r);
-
-/* A bad angle counts before a bad size; what is not urgent (tri_refine_hooks) is good. */
-enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
-                                   const struct tri_shape *shape);
 
 /* --- treat.c */
 

@@ -1,6 +1,6 @@
 /* What is done about one bad triangle.
  *
- * The triangle proposes a point (petal.h, quality.h). The point's cavity is searched completely. Every subsegment that
+ * The triangle proposes a point (petal.h, place.h). The point's cavity is searched completely. Every subsegment that
  * the point encroaches is a wall of the cavity (cavity.h): if there is one, it is split instead, and the triangle, if
  * it still stands, proposes again. Else the point is inserted. Nothing is changed before everything is known, so
  * nothing is undone.
