@@ -51,6 +51,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/gap.c
     triangle/size/groundwork.c
     triangle/size/hopeless.c
+    triangle/size/integral.c
     triangle/size/quality.c
     triangle/size/estimate.c
     triangle/refine/stats.c

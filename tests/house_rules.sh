@@ -75,6 +75,7 @@ tested_by() {
     triangle/mesh/parents.c) echo groundwork ;;
     triangle/size/asked.c) echo criterion ;;
     triangle/size/gap.c) echo hopeless ;;
+    triangle/size/integral.c) echo estimate ;;
     triangle/refine/place.c) echo quality ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;

@@ -152,57 +152,11 @@ static void test_encroached(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Bounds that ask for more triangles than a mesh holds are refused before any work, unless points are limited. */
-static void test_check(void **state)
-{
-    (void)state;
-    struct tri_options none = tri_defaults();
-    struct tri_report report;
-    struct tri_error error;
-    struct tri_pslg square = support_square(1, 0, 1);
-    struct tri_mesh mesh = support_generate(&square, &none, &report);
-    struct tri_quality quality = tri_quality_defaults();
-    quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* no mesh fills more of its bound than that */
-    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
-    quality.max_area = 0.99 / 0.75 / TRI_MAX_TRIANGLES;
-    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_TOO_LARGE);
-    quality.max_steiner = 10;
-    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&square);
-}
-
-/* Of two triangles of area 1/2 one meets its bound. */
-static void test_bounds_that_are_met_ask_for_nothing(void **state)
-{
-    (void)state;
-    struct tri_options none = tri_defaults();
-    struct tri_report report;
-    struct tri_pslg square = support_square(1, 0, 1);
-    struct tri_mesh mesh = support_generate(&square, &none, &report);
-    struct tri_quality quality = tri_quality_defaults();
-    assert_int_equal(mesh.n_triangles, 2);
-    quality.max_area = 0.5;
-    assert_true(tri_area_demand(&mesh, &quality, NULL) == 0);
-    quality.max_area = 0;
-    quality.region_areas = true;
-    assert_true(tri_resize(&mesh.regions, 3, sizeof *mesh.regions));
-    mesh.n_regions = 3;
-    mesh.regions[1] = (struct tri_region){.max_area = 0.6};
-    mesh.regions[2] = (struct tri_region){.max_area = 0.005};
-    for (int32_t t = 0; t < 2; t++)
-        mesh.tri[t].region = t + 1;
-    assert_true(fabs(tri_area_demand(&mesh, &quality, NULL) - 100 / 0.75) < 1e-9);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&square);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_find_work),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_excuses),
-        cmocka_unit_test(test_encroached), cmocka_unit_test(test_check),     cmocka_unit_test(test_settle_counts),
-        cmocka_unit_test(test_bounds_that_are_met_ask_for_nothing),
+        cmocka_unit_test(test_encroached), cmocka_unit_test(test_settle_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -618,7 +618,7 @@ static enum tri_status stop_short_of_memory(const struct way *way, const struct 
 static void test_memory_is_short_for_a_halt(void **state)
 {
     (void)state;
-    static const struct way way = {{"letter.poly", 30, 4000, 300, false, false, 0},
+    static const struct way way = {{"letter.poly", 30, 4000, 200, false, false, 0},
                                    false, false, 0, -1, PAR_IN_MEMORY, 0};
     enum { LAST = 20 };
     int64_t all, calls;

@@ -1,6 +1,6 @@
-/* Forecasts against what refinement makes. */
+/* What angles ask for, by the estimate, against what refinement makes. */
 #include "support.h"
-#include "triangle/size/crowd.h"
+#include "triangle/size/estimate.h"
 
 /* What angles alone ask for: in a long gap between walls, where no size can grow, at a feature of a large square, and
  * along a coast. Before, the second was twice too much, and the last half of what came. */
@@ -17,7 +17,7 @@ static void test_angles(void **state)
             assert_true(support_read(files[k], &pslg));
             options.refine = false;
             struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-            double estimate = tri_forecast(&mesh, &options.quality);
+            double sure, estimate = tri_estimate(&mesh, &options.quality, NULL, &sure);
             assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
             print_message("  %s, %g degrees: %.2f\n", files[k], angle, estimate / mesh.n_triangles);
             assert_true(estimate > 0.65 * mesh.n_triangles && estimate < 1.5 * mesh.n_triangles);

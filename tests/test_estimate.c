@@ -1,6 +1,8 @@
 /* Estimates against what refinement makes, and against themselves. */
 #include "support.h"
+#include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
+#include "triangle/size/integral.h"
 
 /* A square of side 1 with some points in it, not refined yet. */
 static struct tri_mesh coarse_square(int32_t n)
@@ -29,7 +31,7 @@ static void test_areas(void **state)
         struct tri_quality quality = support_quality(20, area).quality;
         struct tri_refine_report report;
         double sure, estimate = tri_estimate(&mesh, &quality, NULL, &sure);
-        assert_true(sure > mesh.n_triangles && sure < estimate + mesh.n_triangles);
+        assert_true(sure > mesh.n_triangles && sure <= estimate + mesh.n_triangles);
         assert_int_equal(tri_refine(&mesh, &quality, &report, NULL), TRI_OK);
         assert_true(estimate > 0.8 * mesh.n_triangles && estimate < 1.25 * mesh.n_triangles);
         tri_mesh_free(&mesh);
@@ -70,6 +72,59 @@ static void test_size_test_is_probed(void **state)
     assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
     bound = -1; /* is never content: no test of size */
     assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
+    tri_mesh_free(&mesh);
+}
+
+/* Fine at one place, which is amid a triangle of the input. */
+static double length_about(void *user, const double at[2])
+{
+    (void)user;
+    return 0.004 + 0.1 * hypot(at[0] - 0.52, at[1] - 0.21);
+}
+
+static double size_about(const void *user, struct tri_point q)
+{
+    const double at[2] = {q.x, q.y};
+    (void)user;
+    return length_about(NULL, at);
+}
+
+/* Against a sum over a million small squares, half of them in the triangle. */
+static void test_integral(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    const struct tri_point corner[3] = {{0, 0}, {1, 0}, {1, 1}};
+    const struct tri_size_field field = {size_about, NULL, 0, 1e-3, 0.3}, over = {size_about, NULL, 1e3, 1e-3, 0.3};
+    double sum = 0, sum_over = 0;
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < N; k++) {
+            const struct tri_point q = {(i + 0.5) / N, (k + 0.5) / N};
+            const double h = size_about(NULL, q), share = k < i ? 1 : k == i ? 0.5 : 0;
+            sum += share / (h * h) / N / N;
+            sum_over += share * fmax(1 / (h * h) - 1e3, 0) / N / N;
+        }
+    double found = tri_integral(&field, corner), found_over = tri_integral(&over, corner);
+    print_message("  integral %.3f of the sum, over a bound %.3f\n", found / sum, found_over / sum_over);
+    assert_true(fabs(found / sum - 1) < 0.1 && fabs(found_over / sum_over - 1) < 0.1);
+}
+
+/* A size function is integrated, at any scale. */
+static void test_size_function(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(0);
+    struct tri_quality quality = support_quality(20, 0).quality;
+    struct tri_refine_report report;
+    quality.edge_length = length_about;
+    double estimate = support_estimate(&mesh, &quality);
+    quality.area_scale = 9;
+    double coarse = support_estimate(&mesh, &quality);
+    quality.area_scale = 0;
+    assert_int_equal(tri_refine(&mesh, &quality, &report, NULL), TRI_OK);
+    print_message("  size function: estimate %.2f of what comes\n", estimate / mesh.n_triangles);
+    assert_true(estimate > 0.8 * mesh.n_triangles && estimate < 1.25 * mesh.n_triangles);
+    assert_true(fabs(9 * coarse / estimate - 1) < 0.1);
     tri_mesh_free(&mesh);
 }
 
@@ -155,15 +210,64 @@ static void test_any_threads_say_the_same(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* Bounds that ask for more triangles than a mesh holds are refused before any work, unless points are limited. */
+static void test_check(void **state)
+{
+    (void)state;
+    struct tri_options none = tri_defaults();
+    struct tri_report report;
+    struct tri_error error;
+    struct tri_pslg square = support_square(1, 0, 1);
+    struct tri_mesh mesh = support_generate(&square, &none, &report);
+    struct tri_quality quality = tri_quality_defaults();
+    quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* no mesh fills more of its bound than that */
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
+    quality.max_area = 0.99 / 0.75 / TRI_MAX_TRIANGLES;
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_TOO_LARGE);
+    quality.max_steiner = 10;
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&square);
+}
+
+/* Of two triangles of area 1/2 one meets its bound. */
+static void test_bounds_that_are_met_ask_for_nothing(void **state)
+{
+    (void)state;
+    struct tri_options none = tri_defaults();
+    struct tri_report report;
+    struct tri_pslg square = support_square(1, 0, 1);
+    struct tri_mesh mesh = support_generate(&square, &none, &report);
+    struct tri_quality quality = tri_quality_defaults();
+    assert_int_equal(mesh.n_triangles, 2);
+    quality.max_area = 0.5;
+    assert_true(tri_area_demand(&mesh, &quality, NULL) == 0);
+    quality.max_area = 0;
+    quality.region_areas = true;
+    assert_true(tri_resize(&mesh.regions, 3, sizeof *mesh.regions));
+    mesh.n_regions = 3;
+    mesh.regions[1] = (struct tri_region){.max_area = 0.6};
+    mesh.regions[2] = (struct tri_region){.max_area = 0.005};
+    for (int32_t t = 0; t < 2; t++)
+        mesh.tri[t].region = t + 1;
+    assert_true(fabs(tri_area_demand(&mesh, &quality, NULL) - 100 / 0.75) < 1e-9);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&square);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas),
         cmocka_unit_test(test_bounds_that_are_met),
         cmocka_unit_test(test_size_test_is_probed),
+        cmocka_unit_test(test_integral),
+        cmocka_unit_test(test_size_function),
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_samples),
         cmocka_unit_test(test_any_threads_say_the_same),
+        cmocka_unit_test(test_check),
+        cmocka_unit_test(test_bounds_that_are_met_ask_for_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

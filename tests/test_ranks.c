@@ -292,8 +292,9 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
 {
     (void)state;
     for (int fails = 0; fails < 4; fails++) { /* 3: rank 0, of tiles that others have sent */
-        struct start start = trials_start_of(&trials[1]);
-        struct par_options options = small_blocks(&trials[1], 1);
+        static const struct trial trial = {"gear.poly", 30, 10000, 128, false, false, 0};
+        struct start start = trials_start_of(&trial);
+        struct par_options options = small_blocks(&trial, 1);
         struct member member[3];
         run_ranks(member, &start, &options, 3, NULL, fails < 3 ? fails : 0, fails == 3);
         for (int p = 0; p < 3; p++) {

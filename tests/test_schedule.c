@@ -653,7 +653,7 @@ static void test_a_long_gap_costs_no_triangles(void **state)
     for (int turned = 0; turned < 2; turned++) {
         struct par_report report;
         struct start start = {.options = support_quality(32, 0)};
-        struct par_options blocks = small_blocks(2000, 2), one_call = small_blocks(1e9, 1);
+        struct par_options blocks = small_blocks(1000, 2), one_call = small_blocks(1e9, 1);
         assert_true(support_read("regress/long_gap.poly", &start.pslg));
         for (int32_t v = 0; turned && v < start.pslg.n_points; v++) {
             double *p = start.pslg.points + 2 * (size_t)v, x = p[0];

@@ -88,13 +88,9 @@
 /* Mean area over bound, and a share that no mesh has. Measured: 0.63 to 0.67. */
 #define TRI_MEAN_OVER_BOUND 0.655
 #define TRI_MOST_OVER_BOUND 0.75
-/* A bad triangle becomes so many times what triangles do on average. Guess. */
+/* A bad triangle, and each octave between its shortest edge and its longest, makes so many. Guess. */
 #define TRI_BAD_WORK 1.25
-/* An octave of sizes takes TRI_ROWS / (TRI_NO_ROWS - angle) triangles. Fitted to coasts, parts and point sets at 20 to
- * 36 degrees. */
-#define TRI_ROWS 20.0
-#define TRI_NO_ROWS 44.0
-/* Forecast of triangles (crowd.h): growth of h over distance, triangles for an octave and for a gap, and
+/* Triangles for angles (crowd.h): growth of h over distance, triangles for an octave and for a gap, and
  * TRI_FINENESS / (TRI_NEVER - angle) for each of the squares that features impose; once more where sizes come first.
  * Fitted to 19 coasts, parts, maps and point sets at 20 to 36 degrees, without areas and with two area bounds each. */
 #define TRI_CROWD_SLOPE 0.35

@@ -7,7 +7,7 @@
 #include "drivers/mesh/self_check.h"
 #include "drivers/resources.h"
 #include "triangle/base/clock.h"
-#include "triangle/refine/census.h"
+#include "triangle/size/estimate.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop; time of the numbering against that of
  * refining; triangles against the least number that area bounds ask for. */

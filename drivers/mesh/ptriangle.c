@@ -29,7 +29,6 @@
 #include "sched/tiles/queue.h"
 #include "triangle/base/size_text.h"
 #include "triangle/refine/census.h"
-#include "triangle/size/crowd.h"
 #include "triangle/size/estimate.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
@@ -325,8 +324,6 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     struct program *p = user;
     const struct tri_executor executor = par_executor(&p->threads);
     double sure;
-    if (!quality->unsuitable)
-        return tri_forecast(mesh, quality);
     return tri_estimate(mesh, quality, &executor, &sure);
 }
 

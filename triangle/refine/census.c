@@ -4,7 +4,6 @@
 #include <assert.h>
 #include <math.h>
 
-#include "triangle/base/size_text.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/disk.h"
@@ -12,51 +11,6 @@
 #include "triangle/size/gap.h"
 #include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
-
-struct demand {
-    const struct tri_asked *asked;
-    double triangles[TRI_MOST_SHARES]; /* of each share */
-};
-
-static void add_demand(void *context, size_t share)
-{
-    struct demand *d = context;
-    const struct tri_mesh *mesh = d->asked->mesh;
-    struct tri_range range = tri_share(share, mesh->n_triangles);
-    double sum = 0;
-    for (tri_triangle_id t = range.first; t < range.last; t++)
-        if (tri_is_live(&mesh->tri[t])) {
-            double area2 = tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
-            double bound = tri_area2_bound(d->asked, mesh->tri[t].region);
-            sum += area2 > bound ? area2 / bound : 0;
-        }
-    d->triangles[share] = sum;
-}
-
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
-                       const struct tri_executor *executor)
-{
-    const struct tri_asked asked = tri_asked_of(mesh, quality);
-    struct demand d = {.asked = &asked};
-    double triangles = 0;
-    if (!(quality->max_area > 0 || quality->region_areas))
-        return 0;
-    tri_execute(executor, tri_shares(mesh->n_triangles), add_demand, &d);
-    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
-        triangles += d.triangles[share];
-    return triangles / TRI_MOST_OVER_BOUND;
-}
-
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
-                                 const struct tri_executor *executor, struct tri_error *error)
-{
-    double triangles = quality->max_steiner < 0 ? tri_area_demand(mesh, quality, executor) : 0;
-    if (triangles <= TRI_MAX_TRIANGLES)
-        return TRI_OK;
-    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for at least %s triangles, and a mesh holds %s",
-                    tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
-}
 
 static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {

@@ -4,16 +4,6 @@
 
 #include "triangle/refine/refine.h"
 
-/* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
- * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
-                       const struct tri_executor *executor);
-
-/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first, and
- * so does a schedule. O(triangles). */
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
-                                 const struct tri_executor *executor, struct tri_error *error);
-
 /* found[last - first] receives, in order, the triangles from first to last - 1 at which the loop has something to do:
  * an angle that is bad and not hopeless, a bad size, or, if conforming, a subsegment that the triangle encroaches.
  * Returns how many. Neighbours are not looked at: they may be

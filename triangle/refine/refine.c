@@ -15,7 +15,6 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 

@@ -6,6 +6,9 @@
 /* Area over squared edge of an equilateral triangle: sqrt(3) / 4. */
 static const double EQUILATERAL = 0.43301270189221932;
 
+/* No bound. */
+static const double ANY_LENGTH = 1e100;
+
 /* Twice a bound of the caller's. The unit is a power of two; its square may be beyond the range of doubles. */
 static double to_area2(const struct tri_asked *a, double bound)
 {
@@ -72,4 +75,36 @@ bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *
 {
     return shape->area2 > tri_area2_bound(asked, t->region) ||
            (tri_asks_caller(asked->quality) && tri_is_unsuitable(asked, t->v));
+}
+
+/* Does the test refuse the equilateral triangle with this edge about a place? */
+static bool refuses_edge(const struct tri_asked *asked, struct tri_point p, double edge)
+{
+    const struct tri_quality *quality = asked->quality;
+    const double half = 0.5 * edge, low = edge / 3.4641016151377546, high = 2 * low, unit = asked->mesh->unit;
+    const double a[2] = {(p.x - half) * unit, (p.y - low) * unit}, b[2] = {(p.x + half) * unit, (p.y - low) * unit};
+    const double c[2] = {p.x * unit, (p.y + high) * unit}, area = EQUILATERAL * (edge * unit) * (edge * unit);
+    return quality->unsuitable(quality->unsuitable_user, a, b, c, area) != 0;
+}
+
+static double probe(const struct tri_asked *asked, struct tri_point p, double longest)
+{
+    enum { DEEPEST = 16 };
+    double edge = longest;
+    for (int k = 0; k <= DEEPEST; k++, edge *= 0.5)
+        if (!refuses_edge(asked, p, edge))
+            return k > 0 ? 1.4142135623730951 * edge : ANY_LENGTH;
+    return ANY_LENGTH;
+}
+
+double tri_asked_length(const struct tri_asked *asked, struct tri_point p, double longest)
+{
+    const struct tri_quality *quality = asked->quality;
+    const double coarser = sqrt(tri_area_scale(quality)), unit = asked->mesh->unit;
+    double length = ANY_LENGTH;
+    if (quality->edge_length) {
+        const double at[2] = {p.x * unit, p.y * unit}, here = quality->edge_length(quality->edge_length_user, at);
+        length = here > 0 ? tri_lesser(length, coarser * here / unit) : length;
+    }
+    return quality->unsuitable ? tri_lesser(length, coarser * probe(asked, p, longest / coarser)) : length;
 }

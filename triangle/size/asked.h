@@ -33,6 +33,11 @@ bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tr
 /* The same for a triangle with these corners, at quality->area_scale. */
 bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3]);
 
+/* How long an edge the caller's functions let be about a place, in the mesh's units, at quality->area_scale. The size
+ * test is probed with equilateral triangles about the place, to a factor of 1.5: from one with edges as long as
+ * `longest` down to a 65,536th of it. Where it is content with the first, or with none, it asks for nothing: 1e100. */
+double tri_asked_length(const struct tri_asked *asked, struct tri_point at, double longest);
+
 /* Does the triangle break a bound on areas, or do the caller's functions refuse it? */
 bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *t, const struct tri_shape *shape);
 

@@ -1,22 +1,17 @@
-/* The integral of 1 / h^2, the number of triangles of a graded mesh to a constant (Ruppert 1995, theorem 4).
- *
- * h(x) is the least of
+/* h(x) is the least of
  *   - s(v) + TRI_CROWD_SLOPE * |xv| for the corners v of the triangle, s being the size of the features around v
- *     (triangle/size/feature_size.h): the corners are about the nearest vertices to x in a Delaunay triangulation;
+ *     (feature_size.h): the corners are about the nearest vertices to x in a Delaunay triangulation;
  *   - between a subsegment that is an edge of the triangle and one that ends at the corner opposite to it, the sum of
- *     the distances of x from both: the width of a gap that vertices at its ends alone would not tell.
- *
- * A piece of the triangle is halved across its longest edge until h is about linear in it. Of a linear h the mean of
- * 1 / h^2 between two places is 1 over the product of both: so a piece counts by its corners. */
+ *     the distances of x from both: the width of a gap that vertices at its ends alone would not tell. */
 #include "triangle/size/crowd.h"
 
-#include "triangle/size/asked.h"
-#include "triangle/size/estimate.h"
+#include "triangle/geometry/shape.h"
 #include "triangle/size/gap.h"
 #include "triangle/size/hopeless.h"
+#include "triangle/size/integral.h"
 #include "triangle/tunables.h"
 
-enum { STRIPS = 6, MOST_TURNS = 32, DEEPEST = 128 };
+enum { STRIPS = 6, MOST_TURNS = 32 };
 
 /* A line, and the part of it on which a subsegment lies. */
 struct wall {
@@ -31,12 +26,6 @@ struct field {
     struct wall strip[STRIPS][2]; /* gaps, by their two sides */
     int n_strips;
     double least; /* h is no less: where walls meet they do not ask for ever smaller triangles */
-    double over;  /* what counts is 1 / h^2 beyond this */
-};
-
-struct place {
-    struct tri_point at;
-    double h;
 };
 
 static struct wall wall_of(const struct tri_mesh *mesh, const struct tri_subsegment *sub)
@@ -54,60 +43,15 @@ static double distance_from(const struct wall *wall, struct tri_point q)
     return along >= 0 && along <= wall->length ? fabs(x * wall->direction.y - y * wall->direction.x) : HUGE_VAL;
 }
 
-static struct place place_at(const struct field *f, struct tri_point q)
+static double size_at(const void *field, struct tri_point q)
 {
+    const struct field *f = field;
     double h = HUGE_VAL;
     for (int k = 0; k < 3; k++)
         h = tri_lesser(h, f->size[k] + TRI_CROWD_SLOPE * sqrt(tri_distance2(q, f->corner[k])));
     for (int i = 0; i < f->n_strips; i++)
         h = tri_lesser(h, distance_from(&f->strip[i][0], q) + distance_from(&f->strip[i][1], q));
-    return (struct place){q, tri_larger(h, f->least)};
-}
-
-static struct place between(const struct field *f, const struct place *a, const struct place *b)
-{
-    return place_at(f, (struct tri_point){0.5 * (a->at.x + b->at.x), 0.5 * (a->at.y + b->at.y)});
-}
-
-static double area_of(const struct place p[3])
-{
-    double bx = p[1].at.x - p[0].at.x, by = p[1].at.y - p[0].at.y;
-    return 0.5 * fabs(bx * (p[2].at.y - p[0].at.y) - by * (p[2].at.x - p[0].at.x));
-}
-
-/* Index of the corner opposite the longest edge. */
-static int opposite_longest(const struct place p[3])
-{
-    double a = tri_distance2(p[1].at, p[2].at), b = tri_distance2(p[2].at, p[0].at);
-    double c = tri_distance2(p[0].at, p[1].at);
-    return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
-}
-
-static double count_by_corners(const struct field *f, const struct place p[3], double area)
-{
-    double mean = (p[0].h + p[1].h + p[2].h) / (3 * p[0].h * p[1].h * p[2].h);
-    return mean > f->over ? area * (mean - f->over) : 0;
-}
-
-/* Is h nearly linear between these, or is the piece worth nothing? */
-static bool is_simple(const struct place p[3], int k, const struct place *middle, double area)
-{
-    const double WORTHLESS = 0.3, RATIO = 4, BENT = 0.4;
-    double low = tri_lesser(p[0].h, tri_lesser(p[1].h, p[2].h)), high = tri_larger(p[0].h, tri_larger(p[1].h, p[2].h));
-    low = tri_lesser(low, middle->h);
-    double bend = fabs(middle->h - 0.5 * (p[tri_next[k]].h + p[tri_prev[k]].h));
-    return area < WORTHLESS * low * low || (high < RATIO * low && bend < BENT * middle->h);
-}
-
-static double count_in(const struct field *f, const struct place p[3], int depth)
-{
-    double area = area_of(p);
-    int k = opposite_longest(p);
-    struct place middle = between(f, &p[tri_next[k]], &p[tri_prev[k]]);
-    if (depth == 0 || is_simple(p, k, &middle, area))
-        return count_by_corners(f, p, area);
-    const struct place first[3] = {p[k], p[tri_next[k]], middle}, second[3] = {p[k], middle, p[tri_prev[k]]};
-    return count_in(f, first, depth - 1) + count_in(f, second, depth - 1);
+    return tri_larger(h, f->least);
 }
 
 /* The subsegment that comes first when one turns around corner k of the triangle, one way or the other; TRI_NONE where
@@ -146,34 +90,23 @@ static void find_strips(struct field *f, const struct tri_mesh *mesh, tri_triang
 /* The integral of 1 / h^2 - 1 / most^2 over those places where h is below `most`. */
 static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, double most)
 {
-    const double LEAST = 0.05;
+    const double LEAST = 0.05, FEW = 0.3;
     const tri_vertex_id *v = mesh->tri[triangle].v;
-    struct field f = {.least = HUGE_VAL, .over = 1 / (most * most)};
-    struct place p[3];
+    struct field f = {.least = HUGE_VAL};
+    const struct tri_size_field field = {size_at, &f, 1 / (most * most), HUGE_VAL, FEW};
     for (int k = 0; k < 3; k++) {
         f.corner[k] = mesh->xy[v[k]];
         f.size[k] = tri_larger(mesh->feature[v[k]], sqrt(mesh->limits.shortest2)); /* shorter edges stay */
         f.least = tri_lesser(f.least, LEAST * f.size[k]);
     }
     find_strips(&f, mesh, triangle);
-    for (int k = 0; k < 3; k++)
-        p[k] = place_at(&f, f.corner[k]);
-    return count_in(&f, p, DEEPEST);
+    return tri_integral(&field, f.corner);
 }
-
-struct forecast {
-    const struct tri_mesh *mesh;
-    const struct tri_quality *quality;
-    struct tri_asked areas;
-    double sin2;     /* square of the sine of the angle bound */
-    double fineness; /* triangles for each square of the size of features */
-};
 
 /* How many times its shortest edge has to be doubled until it is as long as its longest, or as `most`. */
 static double octaves_of(const struct tri_shape *shape, double most)
 {
-    double longest2 = tri_longest2(shape);
-    double ratio2 = fmin(longest2, most * most) / shape->l[shape->shortest];
+    double ratio2 = fmin(tri_longest2(shape), most * most) / shape->l[shape->shortest];
     return ratio2 > 1 ? 0.5 * tri_rough_log2(ratio2) : 0;
 }
 
@@ -185,40 +118,27 @@ static double gap_of(const struct tri_mesh *mesh, tri_triangle_id t, const struc
     return width2 < most * most ? fmin(tri_gap_cost(mesh, t, shape), sqrt(longest2 / width2)) : 0;
 }
 
-/* Triangles that the bounds make of one. Beyond those that areas ask for, angles want as many as squares of the size
- * that features impose fill it, where that is less than the areas ask for. A bad triangle takes a few for each octave
- * between its shortest edge and its longest however small it is; between two walls it takes more, since no size can
- * grow there. A good one stays, unless sizes around do not let it; a hopeless one stays. */
-static double triangles_of(const struct forecast *e, tri_triangle_id t)
+struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    const struct tri_mesh *mesh = e->mesh;
-    const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    const double asked = 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->areas, mesh->tri[t].region));
-    const double itself = fmax(0.5 * shape.area2 * asked, 1);
-    if (!(e->fineness > 0) || tri_is_hopeless(mesh, t, &shape))
-        return itself;
-    const double most = asked > 0 ? sqrt(e->fineness / asked) : HUGE_VAL;
-    double crowd = crowd_in(mesh, t, most), product = tri_longer_product(shape.l[0], shape.l[1], shape.l[2]);
-    bool bad = shape.area2 * shape.area2 < e->sin2 * product;
-    if (!bad)
-        return itself + fmax(e->fineness * crowd - 1, 0);
-    double grown = crowd + TRI_AN_OCTAVE * octaves_of(&shape, most), filled = TRI_A_GAP * gap_of(mesh, t, &shape, most);
-    return itself + fmin(e->fineness * fmax(grown, filled), 1e15);
+    const double angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    return (struct tri_crowd){mesh, tri_bounds_for(angle, false).sin2,
+                              angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
 }
 
-/* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it.
- * Triangles lie along a curve, so that every n-th is a fair sample. */
-double tri_forecast(const struct tri_mesh *mesh, const struct tri_quality *quality)
+/* As many as squares of the size that features impose fill it, where that is less than what is asked for. A bad
+ * triangle takes a few for each octave between its shortest edge and its longest however small it is; between two walls
+ * it takes more, since no size can grow there. A good one stays, unless sizes around do not let it; so does a hopeless
+ * one. */
+double tri_crowd_work(const struct tri_crowd *c, tri_triangle_id t, double asked)
 {
-    enum { SURVEY = 1 << 15 };
-    const double angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
-    const double again = tri_sizes_come_first(mesh, quality, NULL) ? TRI_AGAIN / (TRI_NEVER_AGAIN - angle) : 0;
-    const struct forecast f = {mesh, quality, tri_asked_of(mesh, quality), tri_bounds_for(angle, false).sin2,
-                               angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
-    const int32_t step = mesh->n_triangles / SURVEY + 1;
-    double sum = 0;
-    for (int64_t t = 0; t < mesh->n_triangles; t += step)
-        if (tri_is_live(&mesh->tri[t]))
-            sum += step * triangles_of(&f, (tri_triangle_id)t);
-    return (1 + again * again) * sum;
+    const struct tri_mesh *mesh = c->mesh;
+    const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+    if (!(c->fineness > 0) || tri_is_hopeless(mesh, t, &shape))
+        return 0;
+    const double most = asked > 0 ? sqrt(0.5 * shape.area2 * c->fineness / asked) : HUGE_VAL;
+    double crowd = crowd_in(mesh, t, most), product = tri_longer_product(shape.l[0], shape.l[1], shape.l[2]);
+    if (shape.area2 * shape.area2 >= c->sin2 * product)
+        return fmax(c->fineness * crowd - 1, 0);
+    double grown = crowd + TRI_AN_OCTAVE * octaves_of(&shape, most), filled = TRI_A_GAP * gap_of(mesh, t, &shape, most);
+    return fmin(c->fineness * fmax(grown, filled), 1e15);
 }

@@ -1,14 +1,21 @@
-/* How many triangles refinement will end with, from how crowded the features of a mesh are: --dry-run tells it. Blocks
- * are cut by the quicker measure of triangle/size/estimate.h. */
+/* How many triangles angles ask for, from how crowded the features around a triangle are. */
 #ifndef TRIANGLE_SIZE_CROWD_H
 #define TRIANGLE_SIZE_CROWD_H
 
 #include "triangle/mesh/mesh.h"
 #include "triangle/size/quality.h"
 
-/* For angles and areas, not for a size test. The mesh has been made ready for refinement
- * (triangle/size/groundwork.h). Looks at no more than 32,768 triangles, in each for a time that grows with the
- * logarithms of ratios of sizes in it. */
-double tri_forecast(const struct tri_mesh *mesh, const struct tri_quality *quality);
+struct tri_crowd {
+    const struct tri_mesh *mesh;
+    double sin2;     /* square of the sine of the angle bound */
+    double fineness; /* triangles for each square of the size of features; 0: there is no bound */
+};
+
+/* The mesh has been made ready for refinement (groundwork.h). Borrowed. */
+struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_quality *quality);
+
+/* Triangles that angles make of one, beside itself and those that sizes ask for in it, `asked`. Takes a time that grows
+ * with the logarithms of the ratios of sizes in it: about as long as a point. */
+double tri_crowd_work(const struct tri_crowd *crowd, tri_triangle_id t, double asked);
 
 #endif

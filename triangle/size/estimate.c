@@ -1,50 +1,34 @@
-/* The work of a triangle has two parts: triangles that an area bound asks for inside it, and triangles that an angle
- * bound asks for, to grade from the shortest edge to the longest. Samples of the first part are taken from small pieces
- * of large triangles, so that the work lies where it will be; the second part lies at the shortest edge. */
+/* The work of a triangle has two parts: triangles that sizes ask for inside it, and the rest, which angles ask for and
+ * itself. Samples of the first part are taken from small pieces of large triangles, so that the work lies where it will
+ * be; the rest lies at the shortest edge. */
 #include "triangle/size/estimate.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/base/size_text.h"
 #include "triangle/size/asked.h"
-#include "triangle/size/gap.h"
-#include "triangle/size/hopeless.h"
+#include "triangle/size/crowd.h"
+#include "triangle/size/integral.h"
 #include "triangle/tunables.h"
 
-enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
+enum { DEEPEST_CUT = 12, FEWEST = 1 << 10, MOST = 1 << 14 };
 
 /* More than anybody will have, and no infinity: bounds may ask for any number. */
 static const double MOST_WORK = 1e15;
 
-struct corners {
-    struct tri_point a, b, c;
-};
-
 /* What work is estimated from. */
 struct estimator {
     const struct tri_mesh *mesh;
-    const struct tri_quality *quality;
-    double large; /* a size test is probed in pieces no larger than this */
     struct tri_asked asked;
+    struct tri_crowd crowd;
+    double large; /* the caller's functions are asked in pieces no larger than this */
 };
 
-/* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
-static double density(const struct estimator *e, tri_region_id region)
+static double area_of(const struct tri_point p[3])
 {
-    return 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
-}
-
-/* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
- * quarter, a sixteenth and so on of its area, until it says yes; 0 where it does at once, and also where it never does,
- * since then it is no test of size. */
-static double probe_size(const struct estimator *e, const struct corners *t)
-{
-    enum { DEEPEST_PROBE = 16 };
-    double scale = tri_area_scale(e->quality), pieces = 1;
-    for (int k = 0; k <= DEEPEST_PROBE; k++, pieces *= 4)
-        if (!tri_is_refused(&e->asked, t->a, t->b, t->c, scale * pieces))
-            return k > 0 ? pieces : 0;
-    return 0;
+    double bx = p[1].x - p[0].x, by = p[1].y - p[0].y, cx = p[2].x - p[0].x, cy = p[2].y - p[0].y;
+    return 0.5 * (bx * cy - by * cx);
 }
 
 static struct tri_point middle(struct tri_point a, struct tri_point b)
@@ -52,141 +36,117 @@ static struct tri_point middle(struct tri_point a, struct tri_point b)
     return (struct tri_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
 }
 
-/* A triangle in four. */
-static void quarter(const struct corners *t, struct corners part[4])
+/* Piece i of a triangle in four. */
+static void quarter(const struct tri_point p[3], int i, struct tri_point piece[3])
 {
-    struct tri_point ab = middle(t->a, t->b), bc = middle(t->b, t->c), ca = middle(t->c, t->a);
-    part[0] = (struct corners){t->a, ab, ca};
-    part[1] = (struct corners){ab, t->b, bc};
-    part[2] = (struct corners){ca, bc, t->c};
-    part[3] = (struct corners){ab, bc, ca};
+    for (int k = 0; k < 3; k++)
+        piece[k] = i == 3 ? middle(p[tri_next[k]], p[tri_prev[k]]) : k == i ? p[i] : middle(p[i], p[k]);
 }
 
-static double area_of(const struct corners *t)
+static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point p[3])
 {
-    double bx = t->b.x - t->a.x, by = t->b.y - t->a.y, cx = t->c.x - t->a.x, cy = t->c.y - t->a.y;
-    return 0.5 * (bx * cy - by * cx);
+    for (int k = 0; k < 3; k++)
+        p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* The same where sizes vary inside: in a large triangle, or where a probe says many, its quarters are probed. */
-static double size_work(const struct estimator *e, const struct corners *t, int depth)
+/* The caller's functions, as a size h of which 1 / h^2 is the number of triangles on a unit of area. */
+struct wish {
+    const struct tri_asked *asked;
+    double longest;
+};
+
+static double wished_at(const void *user, struct tri_point q)
 {
-    enum { MANY = 1024 };
-    double work = probe_size(e, t), sum = 0;
-    if (depth == 0 || (work <= MANY && area_of(t) <= e->large))
-        return work;
-    struct corners part[4];
-    quarter(t, part);
-    for (int i = 0; i < 4; i++)
-        sum += size_work(e, &part[i], depth - 1);
-    return work <= MANY ? fmax(work, sum) : sum;
+    const double MEAN_SQUARE = 0.43301270189221932 * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
+    const struct wish *wish = user;
+    return sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, q, wish->longest);
 }
 
-/* Triangles that areas and size test ask for in a piece of a triangle of this region. */
-static double work_inside(const struct estimator *e, tri_region_id region, const struct corners *t)
+/* Triangles that the caller's functions ask for in a piece. */
+static double wished_in(const struct estimator *e, const struct tri_point p[3])
 {
-    double work = area_of(t) * density(e, region);
-    if (tri_asks_caller(e->quality))
-        work = fmax(work, size_work(e, t, DEEPEST_CUT));
+    enum { FEW = 256 };
+    const double longest2 = tri_larger(tri_distance2(p[0], p[1]),
+                                       tri_larger(tri_distance2(p[1], p[2]), tri_distance2(p[2], p[0])));
+    const struct wish wish = {&e->asked, sqrt(longest2)};
+    const struct tri_size_field field = {wished_at, &wish, 0, e->large, FEW};
+    return tri_integral(&field, p);
+}
+
+/* Triangles that sizes ask for in a piece of a triangle of this region. */
+static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3])
+{
+    double work = area_of(p) * 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
+    if (tri_asks_caller(e->asked.quality))
+        work = fmax(work, wished_in(e, p));
     return work < MOST_WORK ? work : MOST_WORK;
 }
 
-static struct corners corners_of(const struct tri_mesh *mesh, tri_triangle_id t)
+/* Of a triangle; 0 where its number is free. */
+static double asked_work(const struct estimator *e, tri_triangle_id t)
 {
-    const tri_vertex_id *v = mesh->tri[t].v;
-    return (struct corners){mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]};
+    struct tri_point p[3];
+    if (!tri_has_sizes(e->asked.quality) || !tri_is_live(&e->mesh->tri[t]))
+        return 0;
+    corners_of(e->mesh, t, p);
+    return asked_in(e, e->mesh->tri[t].region, p);
 }
 
-static double area_work(const struct estimator *e, tri_triangle_id t)
+static double rest_work(const struct estimator *e, tri_triangle_id t)
 {
-    struct corners corners = corners_of(e->mesh, t);
-    return tri_has_sizes(e->quality) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
+    const double asked = asked_work(e, t);
+    return tri_is_live(&e->mesh->tri[t]) ? fmax(1 - asked, 0) + tri_crowd_work(&e->crowd, t, asked) : 0;
 }
 
-/* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
- * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
- * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
- * hopeless triangle stays one. */
-static double angle_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
+/* What angles alone would make of it. */
+static double angle_work(const struct estimator *e, tri_triangle_id t)
 {
-    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    double longest2 = tri_longest2(&shape);
-    double octaves = 0.5 * tri_rough_log2(longest2 / shape.l[shape.shortest]);
-    double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
-    if (tri_is_hopeless(mesh, t, &shape))
-        return 1;
-    gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
-    double work = angle > 0 ? TRI_ROWS / (TRI_NO_ROWS - angle) * (octaves + 2 * gap) : 0;
-    return work < 1 ? 1 : work < MOST_WORK ? work : MOST_WORK;
+    return tri_is_live(&e->mesh->tri[t]) ? 1 + tri_crowd_work(&e->crowd, t, 0) : 0;
 }
-
-double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
-{
-    const struct estimator here = {mesh, quality, HUGE_VAL, tri_asked_of(mesh, quality)};
-    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + TRI_BAD_WORK * angle_work(mesh, quality, t) : 0;
-}
-
-/* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
-static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_triangles / SURVEY + 1; }
 
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
-    struct estimator e = {mesh, quality, HUGE_VAL, tri_asked_of(mesh, quality)};
+    struct estimator e = {mesh, tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL};
     double all = 0;
     for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
-        if (tri_is_live(&mesh->tri[t])) {
-            struct corners corners = corners_of(mesh, t);
-            all += area_of(&corners);
-        }
+        all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
     if (tri_asks_caller(quality))
         e.large = all / PIECES;
     return e;
 }
 
-/* What each n-th triangle adds to the work, by area or by angle. */
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
+{
+    const struct estimator here = {.mesh = mesh, .asked = tri_asked_of(mesh, quality), .large = HUGE_VAL};
+    if (!tri_is_live(&mesh->tri[t]))
+        return 0;
+    const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+    const double octaves = 0.5 * tri_rough_log2(tri_longest2(&shape) / shape.l[shape.shortest]);
+    return asked_work(&here, t) + TRI_BAD_WORK * (1 + octaves);
+}
+
+/* What each n-th triangle adds to the work. */
 struct works {
     const struct estimator *e;
     double (*of)(const struct estimator *e, tri_triangle_id t);
     int32_t step, n; /* triangle step * i, i < n */
     double *known;   /* [n] each, looked up by all threads; NULL: to be asked for */
-    double sum[TRI_MOST_SHARES]; /* of each share */
+    double sum[TRI_MOST_SHARES];    /* of each share .. */
+    double urgent[TRI_MOST_SHARES]; /* .. and of what is more than a triangle that keeps its bounds can ask for */
 };
 
-static double area_of_live(const struct estimator *e, tri_triangle_id t)
+static struct works asked_works(const struct estimator *e)
 {
-    return tri_is_live(&e->mesh->tri[t]) ? area_work(e, t) : 0;
+    return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->mesh->n_triangles};
 }
 
-static double angle_of_live(const struct estimator *e, tri_triangle_id t)
+/* Triangles lie along a curve, so that every n-th is a fair sample: at most MOST of a large mesh, and a quarter of a
+ * small one. */
+static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
-    return tri_is_live(&e->mesh->tri[t]) ? angle_work(e->mesh, e->quality, t) : 0;
-}
-
-/* What areas ask for in a triangle that meets its bound already: likely, since new vertices come near, but not sure. */
-static double unsure_of_live(const struct estimator *e, tri_triangle_id t)
-{
-    const struct tri_triangle *triangle = &e->mesh->tri[t];
-    if (!tri_is_live(triangle))
-        return 0;
-    double area2 = tri_shape_of(e->mesh->xy, triangle->v).area2;
-    return area2 <= tri_area2_bound(&e->asked, triangle->region) ? 0.5 * area2 * density(e, triangle->region) : 0;
-}
-
-static struct works unsure_works(const struct estimator *e)
-{
-    return (struct works){.e = e, .of = unsure_of_live, .step = 1, .n = e->mesh->n_triangles};
-}
-
-static struct works area_works(const struct estimator *e)
-{
-    return (struct works){.e = e, .of = area_of_live, .step = 1, .n = e->mesh->n_triangles};
-}
-
-static struct works angle_works(const struct estimator *e)
-{
-    int32_t step = survey_step(e->mesh);
-    return (struct works){.e = e, .of = angle_of_live, .step = step, .n = (e->mesh->n_triangles + step - 1) / step};
+    const int32_t n = e->mesh->n_triangles, step = n < 4 * FEWEST ? 1 + n / FEWEST : 4 + n / MOST;
+    return (struct works){.e = e, .of = of, .step = step, .n = (n + step - 1) / step};
 }
 
 static inline double work_at(const struct works *w, int32_t i)
@@ -198,25 +158,31 @@ static void sum_share(void *context, size_t share)
 {
     struct works *w = context;
     struct tri_range range = tri_share(share, w->n);
-    double sum = 0;
-    for (int32_t i = range.first; i < range.last; i++)
-        sum += w->step * work_at(w, i);
+    double sum = 0, urgent = 0;
+    for (int32_t i = range.first; i < range.last; i++) {
+        const double work = work_at(w, i);
+        sum += w->step * work;
+        urgent += TRI_MEAN_OVER_BOUND * work > 1 ? w->step * work : 0;
+    }
     w->sum[share] = sum;
+    w->urgent[share] = urgent;
 }
 
-/* A size test is the caller's: whether threads may ask it at once is not known here. */
+/* The caller's functions: whether threads may ask them at once is not known here. */
 static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
 {
-    return tri_asks_caller(w->e->quality) ? NULL : executor;
+    return tri_asks_caller(w->e->asked.quality) ? NULL : executor;
 }
 
 /* In shares that the mesh decides: the same for any number of threads. */
-static double sum_of(struct works w, const struct tri_executor *executor)
+static double sum_of(struct works w, const struct tri_executor *executor, double *urgent)
 {
     double sum = 0;
     tri_execute(executor_for(&w, executor), tri_shares(w.n), sum_share, &w);
-    for (size_t share = 0; share < tri_shares(w.n); share++)
+    for (size_t share = 0; share < tri_shares(w.n); share++) {
         sum += w.sum[share];
+        *urgent += w.urgent[share];
+    }
     return sum;
 }
 
@@ -236,24 +202,55 @@ static void know_all(struct works *w, const struct tri_executor *executor)
         tri_execute(executor_for(w, executor), tri_shares(w->n), know_share, w);
 }
 
+/* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
     const struct estimator e = estimator_for(mesh, quality);
-    double areas = tri_has_sizes(quality) ? sum_of(area_works(&e), executor) : 0;
-    *sure = mesh->n_triangles + (areas > 0 ? fmax(areas - sum_of(unsure_works(&e), executor), 0) : 0);
-    return areas + sum_of(angle_works(&e), executor);
+    const bool twice = tri_sizes_come_first(mesh, quality, executor);
+    const double again = twice ? TRI_AGAIN / (TRI_NEVER_AGAIN - fmin(quality->min_angle, TRI_USUAL_ANGLE)) : 0;
+    double urgent = 0, ignored = 0;
+    double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
+    *sure = mesh->n_triangles + urgent;
+    return (1 + again * again) * (asked + sum_of(sampled_works(&e, rest_work), executor, &ignored));
+}
+
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                       const struct tri_executor *executor)
+{
+    struct tri_quality areas = *quality;
+    double urgent = 0;
+    areas.edge_length = NULL;
+    areas.unsuitable = NULL;
+    if (!tri_has_sizes(&areas))
+        return 0;
+    const struct estimator e = estimator_for(mesh, &areas);
+    sum_of(asked_works(&e), executor, &urgent);
+    return TRI_MEAN_OVER_BOUND / TRI_MOST_OVER_BOUND * urgent;
+}
+
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                                 const struct tri_executor *executor, struct tri_error *error)
+{
+    double triangles = quality->max_steiner < 0 ? tri_area_demand(mesh, quality, executor) : 0;
+    if (triangles <= TRI_MAX_TRIANGLES)
+        return TRI_OK;
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                    "the area bounds ask for at least %s triangles, and a mesh holds %s",
+                    tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
 bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_executor *executor)
 {
+    double ignored = 0;
     if (fmin(quality->min_angle, TRI_USUAL_ANGLE) <= TRI_EASY_ANGLE || !tri_has_sizes(quality))
         return false;
     if (tri_asks_caller(quality))
         return true;
     const struct estimator e = estimator_for(mesh, quality);
-    return sum_of(area_works(&e), executor) > TRI_SIZES_FIRST * sum_of(angle_works(&e), executor);
+    return sum_of(asked_works(&e), executor, &ignored) >
+           TRI_SIZES_FIRST * sum_of(sampled_works(&e, angle_work), executor, &ignored);
 }
 
 /* Who is given the samples. */
@@ -264,30 +261,30 @@ struct receiver {
 
 /* Samples a triangle's work, cut into four as long as a piece holds more than `grain`; depth bounds the recursion. */
 static bool sample_triangle(const struct receiver *to, const struct estimator *e, tri_region_id region,
-                            const struct corners *t, double work, double grain, int depth)
+                            const struct tri_point p[3], double work, double grain, int depth)
 {
     if (work <= grain || depth == 0) {
-        struct tri_point q = {(t->a.x + t->b.x + t->c.x) / 3, (t->a.y + t->b.y + t->c.y) / 3};
+        struct tri_point q = {(p[0].x + p[1].x + p[2].x) / 3, (p[0].y + p[1].y + p[2].y) / 3};
         return to->take(to->user, q, work);
     }
-    struct corners part[4];
-    quarter(t, part);
     for (int i = 0; i < 4; i++) {
-        double inside = tri_asks_caller(e->quality) ? work_inside(e, region, &part[i]) : work / 4;
-        if (!sample_triangle(to, e, region, &part[i], inside, grain, depth - 1))
+        struct tri_point piece[3];
+        quarter(p, i, piece);
+        double inside = tri_asks_caller(e->asked.quality) ? asked_in(e, region, piece) : work / 4;
+        if (!sample_triangle(to, e, region, piece, inside, grain, depth - 1))
             return false;
     }
     return true;
 }
 
 /* Small pieces of work are gathered until they are worth a sample. */
-static bool sample_angles(const struct receiver *to, const struct works *angles, double grain)
+static bool sample_rest(const struct receiver *to, const struct works *rest, double grain)
 {
-    const struct tri_mesh *mesh = angles->e->mesh;
+    const struct tri_mesh *mesh = rest->e->mesh;
     double waiting = 0;
-    for (int32_t i = 0; i < angles->n; i++) {
-        const tri_vertex_id *v = mesh->tri[angles->step * i].v;
-        waiting += angles->step * work_at(angles, i);
+    for (int32_t i = 0; i < rest->n; i++) {
+        const tri_vertex_id *v = mesh->tri[rest->step * i].v;
+        waiting += rest->step * work_at(rest, i);
         if (waiting < grain || v[0] == TRI_NONE)
             continue;
         int k = tri_shape_of(mesh->xy, v).shortest;
@@ -298,17 +295,18 @@ static bool sample_angles(const struct receiver *to, const struct works *angles,
     return true;
 }
 
-static bool sample_areas(const struct receiver *to, const struct works *areas, double grain)
+static bool sample_asked(const struct receiver *to, const struct works *asked, double grain)
 {
-    const struct tri_mesh *mesh = areas->e->mesh;
+    const struct tri_mesh *mesh = asked->e->mesh;
     double waiting = 0;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
-        double work = work_at(areas, t);
+        double work = work_at(asked, t);
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)
             continue;
-        struct corners corners = corners_of(mesh, t);
-        if (!sample_triangle(to, areas->e, mesh->tri[t].region, &corners, work < grain ? waiting : work,
+        struct tri_point p[3];
+        corners_of(mesh, t, p);
+        if (!sample_triangle(to, asked->e, mesh->tri[t].region, p, work < grain ? waiting : work,
                              work < grain ? waiting : grain, DEEPEST_CUT))
             return false;
         waiting = work < grain ? 0 : waiting;
@@ -322,14 +320,14 @@ bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *qual
     const struct receiver to = {take, user};
     const struct estimator e = estimator_for(mesh, quality);
     assert(take && grain >= 0);
-    struct works angles = angle_works(&e), areas = area_works(&e);
-    know_all(&angles, executor);
-    bool taken = sample_angles(&to, &angles, grain);
-    free(angles.known);
+    struct works rest = sampled_works(&e, rest_work), asked = asked_works(&e);
+    know_all(&rest, executor);
+    bool taken = sample_rest(&to, &rest, grain);
+    free(rest.known);
     if (!taken || !tri_has_sizes(quality))
         return taken;
-    know_all(&areas, executor);
-    taken = sample_areas(&to, &areas, grain);
-    free(areas.known);
+    know_all(&asked, executor);
+    taken = sample_asked(&to, &asked, grain);
+    free(asked.known);
     return taken;
 }

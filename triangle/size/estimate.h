@@ -5,13 +5,23 @@
 #include "triangle/mesh/mesh.h"
 #include "triangle/size/quality.h"
 
-/* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
- * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
- * mesh can hold. *sure: the part of it that is no guess: the triangles that there are, and those that areas and
- * the size test ask for where they are not met yet.
- * O(triangles), and a probe for each thousand triangles or so of those to come. */
+/* Estimates the number of triangles that refinement will end with: those that sizes ask for, by integrals of 1 / h^2
+ * where sizes are the caller's functions, and those that angles ask for beside them (crowd.h). It may be more than any
+ * mesh can hold. *sure: the part of it that is no guess: the triangles that there are, and those that sizes ask for
+ * where they are not met yet. The mesh has been made ready for refinement (groundwork.h).
+ * O(triangles), and a call for each hundred triangles or so that the caller's functions ask for. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure);
+
+/* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
+ * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                       const struct tri_executor *executor);
+
+/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first, and
+ * so does a schedule. O(triangles). */
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                                 const struct tri_executor *executor, struct tri_error *error);
 
 /* Are the bounds to be reached in two steps: sizes with an easy angle bound, and then the angles? Angles above
  * TRI_EASY_ANGLE are dear to mend where triangles of different sizes meet. In a mesh that areas have made even such
@@ -21,7 +31,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
 bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_executor *executor);
 
-/* The share of one bad triangle in the estimate. */
+/* The work that one bad triangle makes, at a glance. */
 double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t);
 
 /* Takes a place and the work (triangles) that lies about there. False: it cannot. */

@@ -1,0 +1,19 @@
+/* The integral of 1 / h^2 over a triangle: how many squares of the size h fill it. A mesh graded by h has that many
+ * triangles, to a constant (Ruppert 1995, theorem 4). */
+#ifndef TRIANGLE_SIZE_INTEGRAL_H
+#define TRIANGLE_SIZE_INTEGRAL_H
+
+#include "triangle/geometry/point.h"
+
+struct tri_size_field {
+    double (*at)(const void *user, struct tri_point q); /* h, above 0 and below 1e100 */
+    const void *user;
+    double over;  /* what counts is 1 / h^2 beyond this */
+    double large; /* parts of a larger area are divided in any case: what h does amid them cannot be seen from afar */
+    double few;   /* parts that hold no more squares than this are not divided */
+};
+
+/* O(log of the ratios of sizes) places are looked at, where h is smooth. */
+double tri_integral(const struct tri_size_field *field, const struct tri_point corner[3]);
+
+#endif
