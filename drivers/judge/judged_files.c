@@ -10,7 +10,6 @@
 
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
-#include "triangle/text/text.h"
 
 /* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
 #define TEXT_SHARE 4.0
@@ -29,84 +28,6 @@ bool judged_cut_suffix(char *path, const char *suffix)
 bool judged_cut_text_suffix(char *path)
 {
     return judged_cut_suffix(path, ".node") || judged_cut_suffix(path, ".ele") || judged_cut_suffix(path, ".poly");
-}
-
-struct neighbor_rows {
-    int32_t *neighbors;
-    int32_t base;
-};
-
-static const char *read_neighbor_row(void *user, size_t i, struct tri_fields *fields)
-{
-    struct neighbor_rows *rows = user;
-    int64_t value;
-    if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
-        return "has no number";
-    for (size_t k = 0; k < 3; k++) {
-        if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
-            return "lacks a neighbor";
-        if (value < -1 || value > INT32_MAX)
-            return "has a neighbor that is no triangle";
-        rows->neighbors[3 * i + k] = value < 0 ? -1 : (int32_t)value - rows->base;
-    }
-    return NULL;
-}
-
-static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_text *text,
-                                       const struct tri_executor *executor, struct tri_error *error)
-{
-    struct tri_cursor cursor = tri_cursor_begin(text);
-    struct tri_fields fields;
-    int64_t n = 0;
-    const bool found = tri_cursor_next(&cursor, &fields);
-    const long line = (long)cursor.line;
-    if (!found)
-        return tri_fail(error, TRI_BAD_INPUT, text->name, line > 0 ? line : 1,
-                        "unexpected end of file: the number of triangles is missing");
-    if (tri_fields_integer(&fields, &n) != TRI_FIELD_GOOD)
-        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is not a number");
-    if (n < 0)
-        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is negative");
-    f->stale_neighbors = n != f->elements.n; /* left there by an earlier run */
-    if (f->stale_neighbors)
-        return TRI_OK;
-    if (tri_cursor_remaining(&cursor) < (size_t)n)
-        return tri_fail(error, TRI_BAD_INPUT, text->name, line,
-                        "unexpected end of file: %lld triangles are announced, but only %zu records follow",
-                        (long long)n, tri_cursor_remaining(&cursor));
-    f->neighbors = malloc(3 * ((size_t)n + 1) * sizeof *f->neighbors);
-    if (f->neighbors == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    struct neighbor_rows rows = {f->neighbors, f->base};
-    struct tri_table table = {"triangle", (size_t)n, f->base, read_neighbor_row, &rows};
-    return tri_cursor_table(&cursor, &table, executor, error);
-}
-
-static enum tri_status read_neighbors(struct judged_files *f, const char *path, const struct tri_executor *executor,
-                                      struct tri_error *error)
-{
-    struct tri_text text = {0};
-    enum tri_status status = tri_text_load(&text, path, 0, executor, NULL, error);
-    if (status == TRI_OK)
-        status = parse_neighbors(f, &text, executor, error);
-    tri_text_free(&text);
-    return status;
-}
-
-static enum tri_status read_arrays(struct judged_files *f, const struct judged_names *names,
-                                   const struct tri_executor *executor, struct tri_error *error)
-{
-    struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = executor};
-    bool points_in_poly;
-    enum tri_status status =
-        names->poly ? tri_read_poly(names->poly, names->node, &options, &f->mesh, &f->base, &points_in_poly, error)
-                    : tri_read_node(names->node, &options, &f->mesh, &f->base, error);
-    f->n_nodes = f->mesh.n_points;
-    if (status == TRI_OK)
-        status = tri_read_ele(names->ele, &options, f->base, f->mesh.n_points, &f->elements, error);
-    if (status == TRI_OK && names->neigh)
-        status = read_neighbors(f, names->neigh, executor, error);
-    return status;
 }
 
 static double size_of(const char *path)
@@ -159,8 +80,8 @@ static struct tri_check_source take_arrays(struct judged_files *f)
     f->arrays = (struct tri_check_mesh){
         .n_points = f->mesh.n_points, .points = f->mesh.points,
         .n_triangles = f->elements.n, .triangles = f->elements.corners != NULL ? f->elements.corners : none,
-        .neighbors = f->neighbors, .n_segments = f->listed ? f->mesh.n_segments : 0,
-        .segments = !f->listed ? NULL : f->mesh.segments != NULL ? f->mesh.segments : none,
+        .n_segments = f->boundary_alone ? 0 : f->mesh.n_segments,
+        .segments = f->boundary_alone ? NULL : f->mesh.segments != NULL ? f->mesh.segments : none,
         .segment_markers = f->mesh.segment_markers, .point_markers = f->mesh.markers,
         .n_attributes = f->elements.n_attributes, .attributes = f->elements.attributes,
         .n_nodes = f->mesh.n_points, .middles = f->elements.n_nodes == 6 ? f->elements.extra : NULL,
@@ -193,7 +114,8 @@ static void leave_out_nodes(struct judged_files *f)
     }
 }
 
-bool judged_fits(const char *base, double memory)
+/* Would the text files, and what works on them, fit into so many bytes of memory? */
+static bool fits(const char *base, double memory)
 {
     enum { POLY, NODE, ELE, NEIGH, N_SUFFIXES };
     static const char *const suffixes[N_SUFFIXES] = {".poly", ".node", ".ele", ".neigh"};
@@ -207,23 +129,16 @@ bool judged_fits(const char *base, double memory)
     return BOUNDARY_SHARE * size[POLY] + share * (size[NODE] + size[ELE] + size[NEIGH]) <= memory;
 }
 
-/* Into memory, if they and the judge fit. */
 static enum tri_status read_texts(struct judged_files *f, const struct judged_ask *ask,
                                   const struct judged_names *names, struct tri_error *error)
 {
-    f->listed = names->poly != NULL;
-    enum tri_status status = TRI_OK;
-    if (judged_fits(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input))) {
-        status = read_arrays(f, names, ask->executor, error);
-        f->source = take_arrays(f);
-    } else {
-        status = judged_text_read(&f->text, names, ask->scratch, ask->executor, error);
-        f->source = judged_text_source(&f->text);
-        f->source.memory = ask->memory;
-        f->base = f->text.base;
-        f->n_nodes = f->text.n_nodes;
-        f->stale_neighbors = f->text.stale_neighbors;
-    }
+    const char *folder = fits(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input)) ? NULL : ask->scratch;
+    enum tri_status status = judged_text_read(&f->text, names, folder, ask->executor, error);
+    f->source = judged_text_source(&f->text);
+    f->source.memory = ask->memory;
+    f->base = f->text.base;
+    f->n_nodes = f->text.n_nodes;
+    f->stale_neighbors = f->text.stale_neighbors;
     return status;
 }
 
@@ -235,8 +150,8 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
     if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
         status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     } else {
-        struct judged_names names = {node, ele, access(poly, F_OK) == 0 ? poly : NULL,
-                                     access(neigh, F_OK) == 0 ? neigh : NULL};
+        struct judged_names names = {node, ask->may_lack_triangles && access(ele, F_OK) != 0 ? NULL : ele,
+                                     access(poly, F_OK) == 0 ? poly : NULL, access(neigh, F_OK) == 0 ? neigh : NULL};
         status = read_texts(f, ask, &names, error);
     }
     free(node);
@@ -257,9 +172,11 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     return TRI_OK;
 }
 
-bool judged_is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
+static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
 
-const struct tri_format *judged_format(const struct judged_ask *ask)
+/* NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is the base of these where mesh.14.node is
+ * there, but no mesh.14. */
+static const struct tri_format *format_of(const struct judged_ask *ask)
 {
     const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
     if (format == NULL || access(ask->base, F_OK) == 0)
@@ -270,7 +187,8 @@ const struct tri_format *judged_format(const struct judged_ask *ask)
     return is_base ? NULL : format;
 }
 
-enum tri_status judged_check_size(const char *path, double memory, struct tri_error *error)
+/* May a file that is read whole, with what works on it, take so much? */
+static enum tri_status check_size(const char *path, double memory, struct tri_error *error)
 {
     const double size = size_of(path);
     if (size < JUDGED_WORTH_A_LOOK || TEXT_SHARE * size <= memory)
@@ -284,12 +202,11 @@ enum tri_status judged_check_size(const char *path, double memory, struct tri_er
 static enum tri_status read_format(struct judged_files *f, const struct judged_ask *ask,
                                    const struct tri_format *format, struct tri_error *error)
 {
-    enum tri_status status = judged_check_size(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input), error);
+    enum tri_status status = check_size(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input), error);
     status = status ? status : format->read(ask->base, &f->mesh, &f->elements, ask->executor, error);
     if (status != TRI_OK)
         return status;
-    f->listed = format->inner_segments;
-    f->boundary_alone = !f->listed;
+    f->boundary_alone = !format->inner_segments;
     f->n_nodes = f->mesh.n_points;
     f->source = take_arrays(f);
     return TRI_OK;
@@ -297,8 +214,8 @@ static enum tri_status read_format(struct judged_files *f, const struct judged_a
 
 enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    const struct tri_format *format = judged_format(ask);
-    enum tri_status status = judged_is_h5(ask) ? open_h5(f, ask, error)
+    const struct tri_format *format = format_of(ask);
+    enum tri_status status = is_h5(ask) ? open_h5(f, ask, error)
                              : format != NULL  ? read_format(f, ask, format, error)
                                                : read_mesh(f, ask, error);
     if (status == TRI_OK && ask->input != NULL)
@@ -313,7 +230,6 @@ void judged_files_free(struct judged_files *f)
 {
     tri_pslg_free(&f->mesh);
     tri_elements_free(&f->elements);
-    free(f->neighbors);
     tri_pslg_free(&f->input);
     judged_text_close(&f->text);
     judged_h5_close(f->h5);

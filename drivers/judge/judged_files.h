@@ -1,7 +1,7 @@
 /* The files of a mesh on trial, and its input.
  *
- * Triangle's text files are read into memory where they fit, else turned into scratch files; an HDF5 file is read in
- * slices; files of other formats (triangle/text/formats.h) are read into memory, or refused. */
+ * Triangle's text files become rows of numbers, in memory where they fit, else in scratch files; an HDF5 file is read
+ * in slices; files of other formats (triangle/text/formats.h) are read into memory, or refused. */
 #ifndef DRIVERS_JUDGE_JUDGED_FILES_H
 #define DRIVERS_JUDGE_JUDGED_FILES_H
 
@@ -28,9 +28,7 @@ struct judged_files {
     /* of the mesh: one of three */
     struct tri_pslg mesh; /* points and subsegments */
     struct tri_elements elements;
-    int32_t *neighbors; /* [elements.n][3] */
     struct tri_check_mesh arrays;
-    bool listed; /* there is a .poly file */
     bool boundary_alone; /* it may have segments inside that its format does not keep */
     struct judged_text text;
     struct judged_h5 *h5;
@@ -39,6 +37,7 @@ struct judged_files {
 struct judged_ask {
     const char *base;    /* of the mesh's names; or the name of one file */
     bool is_base;        /* it is no name of a file, whatever it ends in */
+    bool may_lack_triangles; /* points and segments alone will do */
     const char *input;   /* NULL: none */
     double memory;       /* bytes that may be used */
     const char *scratch; /* folder */
@@ -47,14 +46,6 @@ struct judged_ask {
 
 /* Reads base.node or base.poly, base.ele and base.neigh, or base itself; and the input, a .poly or .node file. */
 enum tri_status judged_read(struct judged_files *files, const struct judged_ask *ask, struct tri_error *error);
-/* Is the mesh in one file of its own: HDF5, or of another program? NULL, or the format, in the second case. A name such
- * as mesh.14 is the base of Triangle's files where mesh.14.node is there, but no mesh.14. */
-bool judged_is_h5(const struct judged_ask *ask);
-const struct tri_format *judged_format(const struct judged_ask *ask);
-/* May a file that is read whole, with what works on it, take so much? TRI_NO_MEMORY. */
-enum tri_status judged_check_size(const char *path, double memory, struct tri_error *error);
-/* Would text files of that base, and what works on them, fit into so many bytes of memory? */
-bool judged_fits(const char *base, double memory);
 void judged_files_free(struct judged_files *files);
 
 /* Cuts the suffix off, if it is there; one of those of text files of a mesh. */

@@ -1,4 +1,4 @@
-/* The text files of a mesh on trial, of any size: turned into rows of numbers in scratch files, stretch by stretch. */
+/* The text files of a mesh on trial, of any size: turned into rows of numbers, stretch by stretch. */
 #ifndef DRIVERS_JUDGE_JUDGED_TEXT_H
 #define DRIVERS_JUDGE_JUDGED_TEXT_H
 
@@ -21,8 +21,9 @@ struct judged_text {
     bool stale_neighbors;      /* the .neigh file is of another mesh, and was not read */
 };
 
-/* A few MiB of memory; scratch files in that folder, of 20 bytes a point and 24 a triangle, 8 more for each attribute,
- * and 24 each where a triangle has six nodes, and neighbours. Errors: as triangle/text/read.h, TRI_CANNOT_WRITE. */
+/* A few MiB of memory; and, in scratch files in that folder (NULL: in memory), 20 bytes a point and 24 a triangle, 8
+ * more for each attribute, and 24 each where a triangle has six nodes, and neighbours. Errors: as triangle/text/read.h,
+ * TRI_CANNOT_WRITE. */
 enum tri_status judged_text_read(struct judged_text *text, const struct judged_names *names, const char *folder,
                                  const struct tri_executor *executor, struct tri_error *error);
 void judged_text_close(struct judged_text *text);

@@ -1,5 +1,5 @@
-/* Rows of numbers in a nameless file: written once from the first to the last, then read in slices. The file goes with
- * the process, however that ends. */
+/* Rows of numbers in memory, or in a nameless file: written once from the first to the last, then read in slices. The
+ * file goes with the process, however that ends. */
 #ifndef DRIVERS_JUDGE_SCRATCH_H
 #define DRIVERS_JUDGE_SCRATCH_H
 
@@ -9,15 +9,17 @@
 #include "triangle/base/status.h"
 
 struct scratch {
-    int file;     /* -1: not open */
-    size_t width; /* bytes of a row */
+    int file;     /* -1: in memory */
+    size_t width; /* bytes of a row; 0: not open */
     int64_t n;    /* rows */
+    char *bytes;  /* [room] in memory */
+    int64_t room;
 };
 
-/* In that folder. TRI_CANNOT_WRITE. */
+/* In that folder; NULL: in memory. TRI_CANNOT_WRITE. */
 enum tri_status scratch_open(struct scratch *scratch, const char *folder, size_t width, struct tri_error *error);
 
-/* Any number of times. Rows go to the end. TRI_CANNOT_WRITE. */
+/* Any number of times. Rows go to the end. TRI_CANNOT_WRITE; TRI_NO_MEMORY. */
 enum tri_status scratch_append(struct scratch *scratch, const void *rows, int64_t n, struct tri_error *error);
 
 /* TRI_CANNOT_READ. */

@@ -319,7 +319,8 @@ static int run(const struct settings *s, struct judged_files *f)
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
     const char *scratch = s->scratch != NULL ? s->scratch : usual_scratch();
-    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), scratch, &executor};
+    struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
+                             .scratch = scratch, .executor = &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)
         fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,

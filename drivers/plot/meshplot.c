@@ -1,13 +1,11 @@
 /* meshplot: draws a mesh from its files as PNG or SVG. Here are arguments and files; drivers/plot/plot.h draws.
  * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <cairo-svg.h>
 
@@ -20,7 +18,6 @@
 #include "drivers/start.h"
 #include "triangle/mesh/pslg.h"
 #include "triangle/text/names.h"
-#include "triangle/text/read.h"
 #include "triangle/text/text.h"
 #include "triangle/text/write.h"
 
@@ -90,28 +87,6 @@ static int fail_with(const struct tri_error *e)
 }
 
 /* --- reading */
-
-static enum tri_status read_text(struct files *f, const char *stem, struct tri_error *error)
-{
-    const struct tri_read_options options = {.default_base = 1};
-    char *node = tri_joined(stem, ".node"), *ele = tri_joined(stem, ".ele"), *poly = tri_joined(stem, ".poly");
-    enum tri_status status = TRI_OK;
-    int32_t base = 1;
-    bool has_poly = false, points_in_poly;
-    if (node == NULL || ele == NULL || poly == NULL) {
-        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    } else {
-        has_poly = access(poly, F_OK) == 0;
-        status = has_poly ? tri_read_poly(poly, node, &options, &f->mesh, &base, &points_in_poly, error)
-                          : tri_read_node(node, &options, &f->mesh, &base, error);
-    }
-    if (status == TRI_OK && access(ele, F_OK) == 0)
-        status = tri_read_ele(ele, &options, base, f->mesh.n_points, &f->elements, error);
-    free(node);
-    free(ele);
-    free(poly);
-    return status;
-}
 
 static const char *read_block_row(void *user, size_t i, struct tri_fields *fields)
 {
@@ -203,12 +178,13 @@ static enum tri_status take_densities(struct settings *s, struct files *f, const
 }
 
 /* What shows in the window; TRI_TOO_LARGE, and nothing: that is too much to be drawn. */
-static enum tri_status take_triangles(const struct settings *s, struct files *f, const struct tri_check_source *source,
-                                      bool all, struct tri_error *error)
+static enum tri_status take_triangles(const struct plot_box *window, struct files *f,
+                                      const struct tri_check_source *source, bool all, struct tri_error *error)
 {
     if (all && source->n_triangles > plot_most_triangles())
-        return TRI_TOO_LARGE;
-    enum tri_status status = plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
+        return tri_fail(error, TRI_TOO_LARGE, "", 0, "blocks are drawn of meshes of up to %d triangles",
+                        (int)plot_most_triangles());
+    enum tri_status status = plot_part_take(source, window, &f->mesh, &f->elements, error);
     if (status == TRI_TOO_LARGE) {
         tri_pslg_free(&f->mesh);
         tri_elements_free(&f->elements);
@@ -226,58 +202,36 @@ static void say_densities(struct settings *s)
 static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
                                  struct tri_error *error)
 {
-    const bool all = !s->has_window;
-    enum tri_status status = TRI_OK;
-    if (s->colour == BY_BLOCK)
-        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
-    if (all)
-        status = plot_part_box(source, &s->style.window, error);
-    s->has_window = true;
+    const bool all = !s->has_window || s->colour == BY_BLOCK;
+    struct plot_box box = s->style.window;
+    enum tri_status status = all ? plot_part_box(source, &box, error) : TRI_OK;
     f->all_points = source->n_points;
     f->all_triangles = source->n_triangles;
     if (status == TRI_OK && s->colour != BY_DENSITY)
-        status = take_triangles(s, f, source, all, error);
-    if (status == TRI_TOO_LARGE) {
+        status = take_triangles(&box, f, source, all, error);
+    if (status == TRI_TOO_LARGE && s->colour != BY_BLOCK) {
         say_densities(s);
         status = TRI_OK;
     }
-    return status != TRI_OK || s->colour != BY_DENSITY ? status : take_densities(s, f, source, error);
-}
-
-static enum tri_status read_part(struct settings *s, struct files *f, const struct judged_ask *ask,
-                                 struct tri_error *error)
-{
-    struct judged_files judged = {0};
-    enum tri_status status = judged_read(&judged, ask, error);
-    if (status == TRI_OK)
-        status = take_part(s, f, &judged.source, error);
-    judged_files_free(&judged);
-    return status;
-}
-
-static enum tri_status read_format(struct files *f, const struct judged_ask *ask, const struct tri_format *format,
-                                   struct tri_error *error)
-{
-    enum tri_status status = judged_check_size(ask->base, ask->memory, error);
-    return status ? status : format->read(ask->base, &f->mesh, &f->elements, NULL, error);
+    if (s->colour != BY_DENSITY)
+        return status;
+    s->style.window = box;
+    s->has_window = true;
+    return status != TRI_OK ? status : take_densities(s, f, source, error);
 }
 
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
     const char *folder = getenv("TMPDIR");
-    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .memory = 0.8 * resources_memory(),
+    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .may_lack_triangles = true,
+                                   .memory = 0.8 * resources_memory(),
                                    .scratch = folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
-    const struct tri_format *format = judged_format(&ask);
-    if (s->colour == BY_DENSITY || judged_is_h5(&ask) || (format == NULL && !judged_fits(s->base, ask.memory)))
-        return read_part(s, f, &ask, error);
-    enum tri_status status = format != NULL ? read_format(f, &ask, format, error) : read_text(f, s->base, error);
-    f->all_points = f->mesh.n_points;
-    f->all_triangles = f->elements.n;
-    if (status != TRI_OK || f->elements.n <= plot_most_triangles() || s->colour == BY_BLOCK)
-        return status;
-    tri_pslg_free(&f->mesh);
-    tri_elements_free(&f->elements);
-    return read_part(s, f, &ask, error);
+    struct judged_files judged = {0};
+    enum tri_status status = judged_read(&judged, &ask, error);
+    if (status == TRI_OK)
+        status = take_part(s, f, &judged.source, error);
+    judged_files_free(&judged);
+    return status;
 }
 
 /* --- drawing and writing */

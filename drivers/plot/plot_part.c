@@ -209,14 +209,16 @@ static void translate(const struct list *list, const int64_t *vertex, int64_t n,
 static enum tri_status number(struct part *p, struct tri_pslg *mesh, struct tri_elements *elements,
                               struct tri_error *error)
 {
-    int64_t n = p->corners.n + p->ends.n, *vertex = malloc((size_t)(n + 1) * sizeof *vertex);
+    const bool points_alone = p->cache.source->n_triangles == 0;
+    int64_t n = points_alone ? p->cache.source->n_points : p->corners.n + p->ends.n;
+    int64_t *vertex = malloc((size_t)(n + 1) * sizeof *vertex);
     mesh->segments = malloc((size_t)(p->ends.n + 1) * sizeof *mesh->segments);
     elements->corners = malloc((size_t)(p->corners.n + 1) * sizeof *elements->corners);
     mesh->points = malloc((size_t)(2 * n + 1) * sizeof *mesh->points);
     enum tri_status status =
         vertex && mesh->segments && elements->corners && mesh->points ? TRI_OK : plot_no_memory(error);
     for (int64_t i = 0; i < n && !status; i++)
-        vertex[i] = i < p->corners.n ? p->corners.at[i] : p->ends.at[i - p->corners.n];
+        vertex[i] = points_alone ? i : i < p->corners.n ? p->corners.at[i] : p->ends.at[i - p->corners.n];
     n = status ? 0 : plot_distinct(vertex, n);
     for (int64_t i = 0; i < n; i++)
         memcpy(mesh->points + 2 * i, place_of(&p->cache, vertex[i]), 2 * sizeof *mesh->points);
