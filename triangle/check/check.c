@@ -245,7 +245,7 @@ struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
     return (struct tri_check_source){.n_points = m->n_points, .n_triangles = m->n_triangles,
                                      .n_segments = m->n_segments, .n_nodes = m->n_nodes,
                                      .n_point_attributes = m->n_point_attributes, .given = given, .read = read_arrays,
-                                     .user = (void *)m, .arrays = m};
+                                     .user = (void *)m};
 }
 
 /* --- its memory */
@@ -306,7 +306,6 @@ static enum tri_status choose_part(struct checker *c, double least)
     }
     bool all = (double)c->n_triangles <= most;
     c->part_triangles = all ? (c->n_triangles > 0 ? c->n_triangles : 1) : (int64_t)most;
-    c->whole = all ? source->arrays : NULL;
     return status;
 }
 
@@ -315,7 +314,7 @@ static enum tri_status reckon_again(struct checker *c)
 {
     const struct tri_check_source *source = c->source;
     const double n = (double)c->boundary.n, least = least_bytes(source, c->input, n);
-    if (source->memory <= 0 || c->whole != NULL || n <= likely_boundary_edges(source))
+    if (source->memory <= 0 || n <= likely_boundary_edges(source))
         return TRI_OK;
     if (tri_check_bound(source, least) <= source->memory)
         return choose_part(c, least);
@@ -376,8 +375,7 @@ static enum tri_status judge_frame(struct checker *c)
     if (status != TRI_OK || !pairs_are_good(c))
         return status;
     tri_check_stars(c);
-    if (c->whole == NULL)
-        tri_check_release_part(c); /* the sweep takes its place */
+    tri_check_release_part(c); /* the sweep takes its place */
     status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
@@ -416,8 +414,8 @@ static enum tri_status run(struct checker *c)
 
 static void release(struct checker *c)
 {
-    void *arrays[] = {c->scaled[0], c->scaled[1], c->scaled[2], c->scaled[3], c->state, c->boundary.at, c->own_points,
-                      c->own_vertex, c->sides, c->listed, c->own_segments, c->own_markers, c->border, c->fan_first,
+    void *arrays[] = {c->scaled[0], c->scaled[1], c->scaled[2], c->state, c->boundary.at, c->points,
+                      c->vertex, c->sides, c->listed, c->segments, c->segment_markers, c->border, c->fan_first,
                       c->fan, c->found, c->twin, c->unused, c->unused_points, c->is_along, c->missing, c->queries};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);

@@ -10,7 +10,7 @@
  * segment's largest coordinate) off its line. Angles and areas may miss their bounds by a relative 1e-12 (of the
  * squared sine, of the area).
  *
- * Cost: O(n + b log b) time for n triangles and b boundary edges, subsegments and input points; about 60 bytes a
+ * Cost: O(n + b log b) time for n triangles and b boundary edges, subsegments and input points; about 90 bytes a
  * triangle beside the arrays given, or within a bound: see tri_check_source. */
 #ifndef TRIANGLE_CHECK_H
 #define TRIANGLE_CHECK_H
@@ -70,7 +70,6 @@ struct tri_check_source {
     enum tri_status (*read)(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                             struct tri_error *error);
     void *user;
-    const struct tri_check_mesh *arrays; /* the same in memory, or NULL */
     /* Bytes that the trial may use on top of what is used already; 0: no bound. It takes a byte for each vertex, what
      * subsegments, boundary edges and the input need, and shares out the rest; with too little it takes what it must.
      * Half-edges that wait for their other side are kept in nameless files in the folder `scratch` (NULL: /tmp)

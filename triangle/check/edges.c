@@ -243,7 +243,7 @@ enum tri_status tri_check_pair(struct checker *c)
 static int64_t given_neighbor(const struct checker *c, int32_t h)
 {
     const struct check_part *p = &c->part;
-    return p->whole_neighbors != NULL ? p->whole_neighbors[h] : p->neighbors != NULL ? p->neighbors[h] : -1;
+    return p->neighbors != NULL ? p->neighbors[h] : -1;
 }
 
 struct check_open tri_check_open(const struct checker *c, int32_t h)

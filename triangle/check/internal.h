@@ -4,8 +4,7 @@
  * them, where no bound is set). Vertices have numbers of their own in a part. What triangles of one part say by
  * themselves or as neighbours is judged there. Half-edges whose other side is not in the part are kept (store.h),
  * matched when all parts have been seen, and judged then. The boundary edges are left. These, the subsegments and the
- * input's points are the frame, in memory as a whole, on which all other checks work. Of vertices a byte is kept. A
- * mesh of one part is that part: nothing is copied.
+ * input's points are the frame, in memory as a whole, on which all other checks work. Of vertices a byte is kept.
  *
  * THEOREM (docs/theory.md, the judge). No faulty mesh passes over the cut into parts; only which kind of fault is told
  * may depend on them, where three half-edges lie on one edge.
@@ -75,18 +74,15 @@ struct check_boundary {
     struct check_boundary_edge *at;
 };
 
-/* Triangles in a row. Of a part the first arrays lie in its room; where the whole mesh is one part they are the
- * caller's. The others, and the room, are the part's own, and serve the next part again. */
+/* Triangles in a row. The first arrays lie in the part's room, which serves the next part again, as the others do. */
 struct check_part {
     int64_t first; /* triangle */
     int32_t n_triangles, n_points, n_half_edges;
     const int32_t *triangles;     /* [n_triangles][3] corners */
     const double *points;         /* [n_points][2] */
-    const int64_t *vertex;        /* [n_points] their numbers in the mesh, ascending; NULL: the same */
-    const int64_t *neighbors;       /* [n_triangles][3] as given, of a part, .. */
-    const int32_t *whole_neighbors; /* .. or of the whole mesh; both NULL: not given */
-    const double *attributes;     /* [n_triangles][n_attributes], the last counts; NULL: not given, or not looked at */
-    int32_t n_attributes;
+    const int64_t *vertex;        /* [n_points] their numbers in the mesh, ascending */
+    const int64_t *neighbors;     /* [n_triangles][3] as given; NULL: they are not */
+    const double *attributes;     /* [n_triangles] the last of each; NULL: not given, or not looked at */
 
     /* edges.c */
     int32_t *entry_of;    /* [n_points + 1] into entry */
@@ -112,7 +108,6 @@ enum { /* of each vertex of the mesh; the lower four bits count turns */
 
 struct checker {
     const struct tri_check_source *source;
-    const struct tri_check_mesh *whole; /* the mesh as arrays, where it is one part; else NULL */
     const struct tri_pslg *input;       /* or NULL */
     const struct tri_check_options *options;
     struct tri_check_report *report;
@@ -126,9 +121,8 @@ struct checker {
     int exponent;      /* the coordinates seen are the given ones times 2^exponent */
     bool rounded;      /* and rounded */
     double tolerance;  /* distance; see TRI_CHECK_ULPS */
-    struct tri_check_mesh scaled_mesh;
     struct tri_pslg scaled_input;
-    double *scaled[4]; /* their points, the input's, its hole points, its regions; NULL: not scaled */
+    double *scaled[3]; /* its points, hole points and regions; NULL: not scaled */
 
     uint8_t *state; /* [n_points] */
 
@@ -143,17 +137,14 @@ struct checker {
 
     /* The frame: vertices */
     int32_t n_frame;
-    const double *points;  /* [n_frame][2] */
-    const int64_t *vertex; /* [n_frame] their numbers in the mesh, ascending; NULL: the same */
-    double *own_points;    /* these two, if made here */
-    int64_t *own_vertex;
+    double *points;  /* [n_frame][2] */
+    int64_t *vertex; /* [n_frame] their numbers in the mesh, ascending */
     /* The frame: the listed subsegments, or where none are given the boundary edges */
     int32_t n_segments;
-    const int32_t *segments; /* [n_segments][2] vertices of the frame; -1, -1 where an end is no vertex or they equal */
-    const int32_t *segment_markers;     /* [n_segments] or NULL: not given */
+    int32_t *segments; /* [n_segments][2] vertices of the frame; -1, -1 where an end is no vertex or they equal */
+    int32_t *segment_markers;           /* [n_segments] or NULL: not given */
     struct check_side (*sides)[2];      /* [n_segments] left of it, from its first end to the second, and right */
     int64_t *listed;                    /* [n_segments][2] as they are given; NULL once `segments` is there */
-    int32_t *own_segments, *own_markers;
     int32_t (*border)[2];               /* [boundary.n] ends of the boundary edges, as vertices of the frame */
     int32_t *fan_first;                 /* [n_frame + 1] into fan */
     int32_t *fan; /* [2 * n_segments] 2 * s + end: subsegments, grouped by vertex, which is their given end */
@@ -320,7 +311,7 @@ static inline struct tri_point check_place(const struct checker *c, int32_t v)
 }
 static inline int64_t check_global(const struct checker *c, int32_t v)
 {
-    return c->part.vertex != NULL ? c->part.vertex[v] : v;
+    return c->part.vertex[v];
 }
 static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)
 {
@@ -329,8 +320,7 @@ static inline bool check_is_constrained(const struct checker *c, int32_t half_ed
 /* The last one of triangle t. */
 static inline double check_attribute(const struct checker *c, int32_t t)
 {
-    int32_t n = c->part.n_attributes;
-    return c->part.attributes == NULL ? 0 : c->part.attributes[(size_t)n * (size_t)t + (size_t)n - 1];
+    return c->part.attributes == NULL ? 0 : c->part.attributes[t];
 }
 
 /* --- the frame */
@@ -342,7 +332,7 @@ static inline struct tri_point check_point(const struct checker *c, int32_t v)
 }
 static inline int64_t check_vertex(const struct checker *c, int32_t v)
 {
-    return c->vertex != NULL ? c->vertex[v] : v;
+    return c->vertex[v];
 }
 /* Are the ends of subsegment s two vertices? */
 static inline bool check_is_listed_well(const struct checker *c, int32_t s)

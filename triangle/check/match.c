@@ -96,8 +96,7 @@ static void count(struct checker *c)
 enum tri_status tri_check_match(struct checker *c)
 {
     tri_check_begin(c, TRI_CHECK_EDGES);
-    if (c->whole == NULL)
-        tri_check_release_part(c); /* room for the others; it comes back when asked for */
+    tri_check_release_part(c); /* room for the others; it comes back when asked for */
     enum tri_status status = tri_check_store_drain(c, match_all);
     if (status != TRI_OK)
         return status;

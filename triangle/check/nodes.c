@@ -4,8 +4,7 @@
  * its subsegment, on other edges 0, and attributes half the way between those of the ends. Two triangles beside an edge
  * have one node there: nodes of different edges lie at different places, so that is so if there are as many as edges.
  *
- * Triangles are read again, some in a row, and, where the mesh is not in memory as it is to be seen, what is known of
- * the points that they name, in windows of the mesh. */
+ * Triangles are read again, some in a row, and what is known of the points that they name, in windows of the mesh. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,17 +17,14 @@ struct subsegment {
     int32_t marker;
 };
 
-/* Some triangles, and what is known of the points that they name, or of all points. */
+/* Some triangles, and what is known of the points that they name. */
 struct slice {
     int64_t first, n_triangles;
     int64_t *corners, *middles; /* [n_triangles][3] */
-    const double *places;       /* [n][2] */
-    const int32_t *markers;     /* [n], if they count */
-    const double *attributes;   /* [n][n_attributes] */
-    bool has_all;               /* n is the number of all nodes, and these are the mesh's; else n_named, and: */
     int64_t n_named, *named;    /* [n_named] ascending */
-    double *own_places, *own_attributes;
-    int32_t *own_markers;
+    double *places;             /* [n_named][2] */
+    int32_t *markers;           /* [n_named], if they count */
+    double *attributes;         /* [n_named][n_attributes] */
     char *window;
 };
 
@@ -65,7 +61,7 @@ static void list_subsegments(struct trial *t)
 {
     const struct checker *c = t->c;
     for (int64_t s = 0; s < t->n_subsegments; s++)
-        t->subsegments[s] = subsegment_of(c->listed[2 * s], c->listed[2 * s + 1], c->own_markers[s]);
+        t->subsegments[s] = subsegment_of(c->listed[2 * s], c->listed[2 * s + 1], c->segment_markers[s]);
     qsort(t->subsegments, (size_t)t->n_subsegments, sizeof *t->subsegments, compare_subsegments);
 }
 
@@ -120,23 +116,21 @@ static enum tri_status read_slice(struct trial *t)
     enum tri_status status = tri_check_read(t->c, TRI_CHECK_CORNERS, s->first, s->n_triangles, s->corners);
     if (status == TRI_OK)
         status = tri_check_read(t->c, TRI_CHECK_MIDDLES, s->first, s->n_triangles, s->middles);
-    if (status != TRI_OK || s->has_all)
+    if (status != TRI_OK)
         return status;
     list_named(t);
-    status = read_named(t, TRI_CHECK_POINTS, 2 * sizeof *s->places, s->own_places);
+    status = read_named(t, TRI_CHECK_POINTS, 2 * sizeof *s->places, s->places);
     if (status == TRI_OK && t->markers)
-        status = read_named(t, TRI_CHECK_POINT_MARKERS, sizeof *s->markers, s->own_markers);
+        status = read_named(t, TRI_CHECK_POINT_MARKERS, sizeof *s->markers, s->markers);
     if (status == TRI_OK && t->n_attributes > 0)
         status = read_named(t, TRI_CHECK_POINT_ATTRIBUTES, (size_t)t->n_attributes * sizeof *s->attributes,
-                            s->own_attributes);
+                            s->attributes);
     return status;
 }
 
 /* Its place in the arrays of the slice. */
 static size_t find(const struct slice *s, int64_t v)
 {
-    if (s->has_all)
-        return (size_t)v;
     const int64_t *at = bsearch(&v, s->named, (size_t)s->n_named, sizeof v, compare_numbers);
     return (size_t)(at - s->named);
 }
@@ -220,30 +214,19 @@ static bool get_room(struct trial *t)
     s->corners = tri_check_array(3 * SLICE, sizeof *s->corners);
     s->middles = tri_check_array(3 * SLICE, sizeof *s->middles);
     s->named = tri_check_array(6 * SLICE, sizeof *s->named);
-    s->own_places = tri_check_array(6 * SLICE, 2 * sizeof *s->places);
-    s->own_markers = tri_check_array(6 * SLICE, sizeof *s->markers);
-    s->own_attributes = tri_check_array(6 * SLICE, row > 0 ? row : 1);
+    s->places = tri_check_array(6 * SLICE, 2 * sizeof *s->places);
+    s->markers = tri_check_array(6 * SLICE, sizeof *s->markers);
+    s->attributes = tri_check_array(6 * SLICE, row > 0 ? row : 1);
     s->window = tri_check_array(WINDOW, row > 16 ? row : 16);
     return t->is_named != NULL && t->subsegments != NULL && s->corners != NULL && s->middles != NULL &&
-           s->named != NULL && s->own_places != NULL && s->own_markers != NULL && s->own_attributes != NULL &&
+           s->named != NULL && s->places != NULL && s->markers != NULL && s->attributes != NULL &&
            s->window != NULL;
-}
-
-/* Coordinates that are rounded on reading are not those in memory. */
-static void choose_arrays(struct trial *t)
-{
-    const struct tri_check_mesh *m = t->c->whole;
-    struct slice *s = &t->slice;
-    s->has_all = m != NULL && !t->c->rounded;
-    s->places = s->has_all ? m->points : s->own_places;
-    s->markers = s->has_all ? m->point_markers : s->own_markers;
-    s->attributes = s->has_all ? m->point_attributes : s->own_attributes;
 }
 
 static void release(struct trial *t)
 {
     void *arrays[] = {t->is_named, t->subsegments, t->slice.corners, t->slice.middles, t->slice.named,
-                      t->slice.own_places, t->slice.own_markers, t->slice.own_attributes, t->slice.window};
+                      t->slice.places, t->slice.markers, t->slice.attributes, t->slice.window};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);
 }
@@ -258,7 +241,6 @@ enum tri_status tri_check_nodes(struct checker *c)
     t.n_attributes = check_is_given(c, TRI_CHECK_POINT_ATTRIBUTES) ? c->source->n_point_attributes : 0;
     enum tri_status status = get_room(&t) ? TRI_OK : TRI_NO_MEMORY;
     tri_check_begin(c, TRI_CHECK_NODES);
-    choose_arrays(&t);
     if (status == TRI_OK)
         list_subsegments(&t);
     for (int64_t first = 0; first < c->n_triangles && status == TRI_OK; first += SLICE) {

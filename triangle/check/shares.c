@@ -40,8 +40,6 @@ static int32_t number_of(const struct check_room *r, int64_t v)
 
 int32_t tri_check_local(const struct checker *c, int64_t v)
 {
-    if (c->whole != NULL)
-        return (int32_t)v;
     const struct check_room *r = c->part.room;
     return (r->marked[v >> 6] >> (v & 63) & 1) != 0 ? number_of(r, v) : -1;
 }
@@ -50,7 +48,7 @@ int32_t tri_check_local(const struct checker *c, int64_t v)
 static enum tri_status make_room(struct checker *c)
 {
     struct check_part *p = &c->part;
-    int64_t n = c->whole != NULL ? c->n_triangles : c->part_triangles;
+    int64_t n = c->part_triangles;
     p->room = calloc(1, sizeof *p->room);
     p->entry = tri_check_array(3 * n, sizeof *p->entry);
     p->link = tri_check_array(3 * n, sizeof *p->link);
@@ -59,8 +57,6 @@ static enum tri_status make_room(struct checker *c)
         return TRI_NO_MEMORY;
     struct check_room *r = p->room;
     r->first = 1;
-    if (c->whole != NULL)
-        return TRI_OK;
     r->triangles = tri_check_array(3 * n, sizeof *r->triangles);
     r->window = tri_check_array(64 * WINDOW, 2 * sizeof *r->window);
     r->marked = tri_check_zeros(c->n_points / 64 + 1, sizeof *r->marked);
@@ -96,15 +92,9 @@ void tri_check_release_part(struct checker *c)
     *p = (struct check_part){0};
 }
 
-/* A corner of the part as it is given: in the caller's arrays, or as it has just been read. */
-static int64_t given_corner(const struct checker *c, int64_t h)
-{
-    return c->whole != NULL ? c->part.triangles[h] : c->part.corners[h];
-}
-
 static bool is_no_vertex(const struct checker *c, int64_t h)
 {
-    int64_t v = given_corner(c, h);
+    int64_t v = c->part.corners[h];
     return v < 0 || v >= c->n_points;
 }
 
@@ -116,7 +106,7 @@ static bool judge_corners(struct checker *c)
         return true;
     c->at = 3 * c->part.first + first;
     tri_check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex",
-                    check_part_triangle(c, (int32_t)(first / 3)), check_number(c, given_corner(c, first)));
+                    check_part_triangle(c, (int32_t)(first / 3)), check_number(c, c->part.corners[first]));
     c->at = 0;
     c->report->item[TRI_CHECK_ARRAYS].count = before + n_bad;
     return false;
@@ -163,7 +153,7 @@ static void number_corners(void *checker, const struct check_share *share)
 {
     const struct checker *c = checker;
     for (int64_t h = share->first; h < share->end; h++)
-        c->part.room->triangles[h] = number_of(c->part.room, given_corner(c, h));
+        c->part.room->triangles[h] = number_of(c->part.room, c->part.corners[h]);
 }
 
 /* Step 2. */
@@ -241,28 +231,14 @@ static enum tri_status read_part(struct checker *c, bool *good)
     p->vertex = r->vertex;
     p->neighbors = r->neighbors;
     p->attributes = r->attributes;
-    p->n_attributes = 1;
     return status;
-}
-
-static bool take_arrays(struct checker *c)
-{
-    struct check_part *p = &c->part;
-    const struct tri_check_mesh *m = c->whole;
-    p->n_points = m->n_points;
-    p->triangles = m->triangles;
-    p->points = m->points;
-    p->whole_neighbors = m->neighbors;
-    p->attributes = check_wants_regions(c) ? m->attributes : NULL;
-    p->n_attributes = m->n_attributes;
-    return judge_corners(c);
 }
 
 enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good)
 {
     struct check_part *p = &c->part;
     *good = true;
-    if (c->whole != NULL && p->triangles != NULL)
+    if (p->triangles != NULL && p->first == first)
         return TRI_OK; /* it is there */
     enum tri_status status = p->room == NULL ? make_room(c) : TRI_OK;
     if (status != TRI_OK)
@@ -271,8 +247,6 @@ enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good)
     p->first = first;
     p->n_triangles = (int32_t)(left < c->part_triangles ? left : c->part_triangles);
     p->n_half_edges = 3 * p->n_triangles;
-    if (c->whole == NULL)
-        return read_part(c, good);
-    *good = take_arrays(c);
-    return TRI_OK;
+    p->triangles = NULL;
+    return read_part(c, good);
 }

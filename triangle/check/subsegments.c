@@ -27,10 +27,9 @@ enum tri_status tri_check_list_segments(struct checker *c)
     }
     if (status != TRI_OK || !check_is_given(c, TRI_CHECK_SEGMENT_MARKERS))
         return status;
-    c->own_markers = tri_check_array(n, sizeof *c->own_markers);
-    c->segment_markers = c->own_markers;
-    return c->own_markers == NULL ? TRI_NO_MEMORY
-                                  : tri_check_read(c, TRI_CHECK_SEGMENT_MARKERS, 0, n, c->own_markers);
+    c->segment_markers = tri_check_array(n, sizeof *c->segment_markers);
+    return c->segment_markers == NULL ? TRI_NO_MEMORY
+                                      : tri_check_read(c, TRI_CHECK_SEGMENT_MARKERS, 0, n, c->segment_markers);
 }
 
 /* --- vertices of the frame */
@@ -56,7 +55,7 @@ static enum tri_status list_vertices(struct checker *c)
     int64_t n_listed = check_is_listed(c) ? 2 * c->source->n_segments : 0;
     int64_t n_input = c->input != NULL ? c->input->n_points : 0;
     int64_t *v = tri_check_array(n_listed + n_input + 2 * c->boundary.n, sizeof *v), n;
-    c->own_vertex = v;
+    c->vertex = v;
     if (v == NULL)
         return TRI_NO_MEMORY;
     n = take_ends(v, c->listed, n_listed);
@@ -73,9 +72,8 @@ static enum tri_status list_vertices(struct checker *c)
     }
     if (k > INT32_MAX / 2)
         return TRI_TOO_LARGE;
-    (void)tri_resize(&c->own_vertex, (size_t)k + 1, sizeof *v); /* those that are left */
+    (void)tri_resize(&c->vertex, (size_t)k + 1, sizeof *v); /* those that are left */
     c->n_frame = (int32_t)k;
-    c->vertex = c->own_vertex;
     return TRI_OK;
 }
 
@@ -84,8 +82,8 @@ static enum tri_status read_places(struct checker *c)
 {
     enum tri_status status = TRI_OK;
     double *window = tri_check_array(WINDOW, 2 * sizeof *window);
-    c->own_points = tri_check_array(c->n_frame, 2 * sizeof *c->own_points);
-    if (window == NULL || c->own_points == NULL)
+    c->points = tri_check_array(c->n_frame, 2 * sizeof *c->points);
+    if (window == NULL || c->points == NULL)
         status = TRI_NO_MEMORY;
     for (int32_t i = 0, j; i < c->n_frame && status == TRI_OK; i = j) {
         int64_t first = c->vertex[i];
@@ -94,18 +92,17 @@ static enum tri_status read_places(struct checker *c)
         }
         status = tri_check_read(c, TRI_CHECK_POINTS, first, c->vertex[j - 1] + 1 - first, window);
         for (int32_t k = i; k < j; k++)
-            memcpy(c->own_points + 2 * (size_t)k, window + 2 * (c->vertex[k] - first), 2 * sizeof *window);
+            memcpy(c->points + 2 * (size_t)k, window + 2 * (c->vertex[k] - first), 2 * sizeof *window);
     }
     free(window);
-    c->points = c->own_points;
     return status;
 }
 
 /* Number in the frame of a vertex that is there, or -1. */
 int32_t tri_check_in_frame(const struct checker *c, int64_t v)
 {
-    if (v < 0 || c->vertex == NULL)
-        return (int32_t)v;
+    if (v < 0)
+        return -1;
     int32_t low = 0, high = c->n_frame;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
@@ -123,11 +120,11 @@ static enum tri_status translate(struct checker *c)
     bool listed = check_is_listed(c);
     c->n_segments = (int32_t)(listed ? c->source->n_segments : c->boundary.n);
     c->border = tri_check_array(c->boundary.n, sizeof *c->border);
-    c->own_segments = tri_check_array(2 * (int64_t)c->n_segments, sizeof *c->own_segments);
+    c->segments = tri_check_array(2 * (int64_t)c->n_segments, sizeof *c->segments);
     if (!listed)
         c->sides = tri_check_array(c->n_segments, sizeof *c->sides);
     c->twin = tri_check_array(c->input != NULL ? c->input->n_points : 0, sizeof *c->twin);
-    if (c->border == NULL || c->own_segments == NULL || c->sides == NULL || c->twin == NULL)
+    if (c->border == NULL || c->segments == NULL || c->sides == NULL || c->twin == NULL)
         return TRI_NO_MEMORY;
     for (int64_t i = 0; i < c->boundary.n; i++) {
         c->border[i][0] = tri_check_in_frame(c, c->boundary.at[i].from);
@@ -135,7 +132,7 @@ static enum tri_status translate(struct checker *c)
     }
     for (int32_t s = 0; s < c->n_segments; s++) {
         for (int k = 0; k < 2; k++)
-            c->own_segments[2 * s + k] = listed ? tri_check_in_frame(c, c->listed[2 * s + k]) : c->border[s][k];
+            c->segments[2 * s + k] = listed ? tri_check_in_frame(c, c->listed[2 * s + k]) : c->border[s][k];
         if (!listed) {
             c->sides[s][0] = (struct check_side){c->boundary.at[s].half_edge, 0};
             c->sides[s][1] = (struct check_side){-1, 0};
@@ -143,7 +140,6 @@ static enum tri_status translate(struct checker *c)
     }
     for (int32_t i = 0; c->input != NULL && i < c->input->n_points; i++)
         c->twin[i] = tri_check_in_frame(c, c->found[i]);
-    c->segments = c->own_segments;
     free(c->listed);
     c->listed = NULL;
     return TRI_OK;
@@ -151,14 +147,8 @@ static enum tri_status translate(struct checker *c)
 
 enum tri_status tri_check_frame(struct checker *c)
 {
-    enum tri_status status = TRI_OK;
-    if (c->whole != NULL) {
-        c->n_frame = c->whole->n_points;
-        c->points = c->whole->points;
-    } else {
-        status = list_vertices(c);
-        status = status == TRI_OK ? read_places(c) : status;
-    }
+    enum tri_status status = list_vertices(c);
+    status = status == TRI_OK ? read_places(c) : status;
     return status == TRI_OK ? translate(c) : status;
 }
 

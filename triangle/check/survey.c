@@ -73,10 +73,6 @@ static void judge(struct checker *c, int64_t first, const double *points, int64_
 /* All points, slice by slice: looked at, or judged (s is NULL). */
 static enum tri_status pass(struct checker *c, struct survey *s)
 {
-    if (c->whole != NULL && s != NULL) {
-        look(c, s, c->whole->points, 2 * c->n_points);
-        return TRI_OK;
-    }
     double *points = tri_check_array(SLICE, 2 * sizeof *points);
     enum tri_status status = points == NULL ? TRI_NO_MEMORY : TRI_OK;
     for (int64_t i = 0; i < c->n_points && status == TRI_OK; i += SLICE) {
@@ -123,32 +119,19 @@ static double *scale_regions(const struct tri_pslg *input, int exponent)
     return scaled;
 }
 
-static enum tri_status scale_mesh(struct checker *c)
-{
-    if (c->whole == NULL)
-        return TRI_OK; /* slices are scaled on reading */
-    c->scaled[0] = scale(c->whole->points, 2 * c->n_points, c->exponent);
-    if (c->scaled[0] == NULL)
-        return TRI_NO_MEMORY;
-    c->scaled_mesh = *c->whole;
-    c->scaled_mesh.points = c->scaled[0];
-    c->whole = &c->scaled_mesh;
-    return TRI_OK;
-}
-
 static enum tri_status scale_input(struct checker *c)
 {
     if (c->input == NULL)
         return TRI_OK;
-    c->scaled[1] = scale(c->input->points, 2 * (int64_t)c->input->n_points, c->exponent);
-    c->scaled[2] = scale(c->input->holes, 2 * (int64_t)c->input->n_holes, c->exponent);
-    c->scaled[3] = scale_regions(c->input, c->exponent);
-    if (c->scaled[1] == NULL || c->scaled[2] == NULL || c->scaled[3] == NULL)
+    c->scaled[0] = scale(c->input->points, 2 * (int64_t)c->input->n_points, c->exponent);
+    c->scaled[1] = scale(c->input->holes, 2 * (int64_t)c->input->n_holes, c->exponent);
+    c->scaled[2] = scale_regions(c->input, c->exponent);
+    if (c->scaled[0] == NULL || c->scaled[1] == NULL || c->scaled[2] == NULL)
         return TRI_NO_MEMORY;
     c->scaled_input = *c->input;
-    c->scaled_input.points = c->scaled[1];
-    c->scaled_input.holes = c->scaled[2];
-    c->scaled_input.regions = c->scaled[3];
+    c->scaled_input.points = c->scaled[0];
+    c->scaled_input.holes = c->scaled[1];
+    c->scaled_input.regions = c->scaled[2];
     c->input = &c->scaled_input;
     return TRI_OK;
 }
@@ -163,9 +146,7 @@ enum tri_status tri_check_survey(struct checker *c)
     if (!s.exact || (c->input != NULL && !are_exact(c->input->points, 2 * (int64_t)c->input->n_points))) {
         c->exponent = choose_exponent(&s);
         c->rounded = true;
-        status = scale_mesh(c);
-        if (status == TRI_OK)
-            status = scale_input(c);
+        status = scale_input(c); /* the mesh is scaled on reading */
         if (status == TRI_OK)
             status = pass(c, NULL);
     }
