@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/tiles/deal.h"
 #include "triangle/geometry/hilbert.h"
 #include "triangle/refine/census.h"
 
@@ -15,7 +16,7 @@ struct ordering {
     const struct par_ids *worklist;
     int32_t first, end; /* tiles */
     int32_t *tile_of;   /* [worklist.n] TRI_NONE: it leaves */
-    int32_t *start;     /* [end - first + 2] where the triangles of each tile are put next; then where each begins */
+    struct par_deal deal;
     int32_t *item;      /* [worklist.n] tile by tile */
     uint64_t *key;      /* [worklist.n] */
     atomic_bool lost;   /* no memory */
@@ -30,41 +31,34 @@ static tri_vertex_id home_of(const struct tri_mesh *mesh, tri_triangle_id t)
 static void find_tiles(void *context, size_t share)
 {
     const struct ordering *o = context;
-    const struct tri_range range = tri_share(share, o->worklist->n);
+    const struct tri_range range = par_deal_share(&o->deal, share);
+    int32_t *count = par_deal_at(&o->deal, share);
     struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         const tri_triangle_id t = o->worklist->item[i];
         assert(tri_is_live(&o->mesh->tri[t]));
         int32_t tile = par_locate(&locator, o->tiles, 0, o->mesh->xy[home_of(o->mesh, t)]);
         o->tile_of[i] = tile >= o->first && tile < o->end ? tile - o->first : TRI_NONE;
+        if (o->tile_of[i] != TRI_NONE)
+            count[o->tile_of[i]]++;
     }
 }
 
-/* Returns how many there are. */
-static int32_t deal(struct ordering *o)
+static void deal_share(void *context, size_t share)
 {
-    const int32_t n = o->worklist->n, n_tiles = o->end - o->first;
-    for (int32_t i = 0; i < n; i++)
+    const struct ordering *o = context;
+    const struct tri_range range = par_deal_share(&o->deal, share);
+    int32_t *at = par_deal_at(&o->deal, share);
+    for (int32_t i = range.first; i < range.last; i++)
         if (o->tile_of[i] != TRI_NONE)
-            o->start[o->tile_of[i] + 2]++;
-    for (int32_t tile = 0; tile < n_tiles; tile++)
-        o->start[tile + 2] += o->start[tile + 1];
-    for (int32_t i = 0; i < n; i++)
-        if (o->tile_of[i] != TRI_NONE)
-            o->item[o->start[o->tile_of[i] + 1]++] = o->worklist->item[i];
-    return o->start[n_tiles];
-}
-
-static int compare_points(struct tri_point a, struct tri_point b)
-{
-    return a.x != b.x ? (a.x < b.x ? -1 : 1) : (a.y > b.y) - (a.y < b.y);
+            o->item[at[o->tile_of[i]]++] = o->worklist->item[i];
 }
 
 static bool is_before(const struct tri_mesh *mesh, tri_triangle_id a, tri_triangle_id b)
 {
     const tri_vertex_id *v = mesh->tri[a].v, *w = mesh->tri[b].v;
-    int order = compare_points(mesh->xy[v[0]], mesh->xy[w[0]]);
-    return order != 0 ? order < 0 : compare_points(mesh->xy[v[1]], mesh->xy[w[1]]) < 0;
+    int order = tri_compare_places(mesh->xy[v[0]], mesh->xy[w[0]]);
+    return order != 0 ? order < 0 : tri_compare_places(mesh->xy[v[1]], mesh->xy[w[1]]) < 0;
 }
 
 static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t)
@@ -105,7 +99,7 @@ static void put_in_order(const struct sorting *s, const struct tri_mesh *mesh, c
         const tri_triangle_id t = item[s->order[i]];
         const struct tri_point centre = s->centre[s->order[i]];
         int32_t at = i;
-        for (; at > 0 && compare_points(s->centre[s->order[at - 1]], centre) == 0 &&
+        for (; at > 0 && tri_compare_places(s->centre[s->order[at - 1]], centre) == 0 &&
                is_before(mesh, t, s->sorted[at - 1]); at--)
             s->sorted[at] = s->sorted[at - 1];
         s->sorted[at] = t;
@@ -133,7 +127,7 @@ static bool sort(const struct tri_mesh *mesh, int32_t *item, size_t n)
 static void sort_tile(void *context, size_t index)
 {
     struct ordering *o = context;
-    const int32_t begin = o->start[index], end = o->start[index + 1];
+    const int32_t begin = o->deal.start[index], end = o->deal.start[index + 1];
     if (begin == end)
         return;
     if (!sort(o->mesh, o->item + begin, (size_t)(end - begin)))
@@ -146,11 +140,11 @@ static void sort_tile(void *context, size_t index)
 static bool make_lists(struct ordering *o)
 {
     const size_t n = (size_t)o->worklist->n + 1;
+    bool room = par_deal_reserve(&o->deal, o->worklist->n, o->end - o->first);
     o->tile_of = malloc(n * sizeof *o->tile_of);
-    o->start = calloc((size_t)(o->end - o->first) + 2, sizeof *o->start);
     o->item = malloc(n * sizeof *o->item);
     o->key = malloc(n * sizeof *o->key);
-    return o->tile_of && o->start && o->item && o->key;
+    return room && o->tile_of && o->item && o->key;
 }
 
 /* Returns how many are in order now; TRI_NONE: no memory. */
@@ -158,8 +152,9 @@ static int32_t order(struct ordering *o, const struct tri_executor *executor)
 {
     if (!make_lists(o))
         return TRI_NONE;
-    tri_execute(executor, tri_shares(o->worklist->n), find_tiles, o);
-    int32_t n = deal(o);
+    tri_execute(executor, o->deal.shares, find_tiles, o);
+    int32_t n = par_deal_add_up(&o->deal);
+    tri_execute(executor, o->deal.shares, deal_share, o);
     tri_execute(executor, (size_t)(o->end - o->first), sort_tile, o);
     return atomic_load(&o->lost) ? TRI_NONE : n;
 }
@@ -170,7 +165,7 @@ bool par_order_by_tile(struct par_run *state, const struct par_partition *tiles,
     assert(first >= 0 && first <= end);
     const int32_t n = order(&o, &state->executor), capacity = state->worklist.n + 1;
     free(o.tile_of);
-    free(o.start);
+    par_deal_free(&o.deal);
     if (n == TRI_NONE) {
         free(o.item);
         free(o.key);

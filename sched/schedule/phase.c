@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sched/schedule/phase_tasks.h"
+#include "sched/tiles/deal.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
@@ -81,30 +82,25 @@ static int32_t expect(int phase, double work)
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
-/* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes
- * comes before all of them, and stays in the worklist; what has gone is dropped. */
+/* The worklist is dealt to blocks. These are counted from 1; what no block of this phase takes comes before all of
+ * them, and stays in the worklist; what has gone is dropped. */
 struct dealing {
     struct par_phase_run *p;
-    size_t shares, bins;
-    int32_t *at;   /* [shares][bins] how many; then where the next one goes */
-    double *work;  /* [shares][bins] */
+    struct par_deal deal;
+    double *work;  /* [shares][bins], as the counts of the deal */
     int32_t *kept; /* what stays, and its keys */
     uint64_t *key;
-    int32_t n_kept;
 };
 
-static struct tri_range dealt_share(const struct dealing *d, size_t share)
-{
-    return tri_share_of(share, d->shares, d->p->state->worklist.n);
-}
+static double *work_at(const struct dealing *d, size_t share) { return d->work + share * (size_t)d->deal.n_tiles; }
 
 static void count_share(void *context, size_t share)
 {
     const struct dealing *d = context;
     const struct par_phase_run *p = d->p;
-    int32_t *count = d->at + share * d->bins;
-    double *work = d->work + share * d->bins;
-    const struct tri_range range = dealt_share(d, share);
+    int32_t *count = par_deal_at(&d->deal, share);
+    double *work = work_at(d, share);
+    const struct tri_range range = par_deal_share(&d->deal, share);
     for (int32_t i = range.first; i < range.last; i++)
         if (p->block_of[i] != GONE) {
             count[p->block_of[i] + 1]++;
@@ -117,14 +113,14 @@ static void deal_share(void *context, size_t share)
     const struct dealing *d = context;
     const struct par_phase_run *p = d->p;
     const struct par_keys *key = &p->state->key;
-    int32_t *at = d->at + share * d->bins;
-    const struct tri_range range = dealt_share(d, share);
+    int32_t *at = par_deal_at(&d->deal, share);
+    const struct tri_range range = par_deal_share(&d->deal, share);
     for (int32_t i = range.first; i < range.last; i++) {
         if (p->block_of[i] == GONE)
             continue;
         int32_t to = at[p->block_of[i] + 1]++;
         if (p->block_of[i] != TRI_NONE) {
-            p->worklist[to - d->n_kept] = p->state->worklist.item[i];
+            p->worklist[to - d->deal.start[1]] = p->state->worklist.item[i];
             continue;
         }
         d->kept[to] = p->state->worklist.item[i];
@@ -133,69 +129,55 @@ static void deal_share(void *context, size_t share)
     }
 }
 
-/* Counts become places. Adds up the work of all shares in that of the first; returns how many blocks have any. */
-static int32_t add_up_shares(struct dealing *d)
-{
-    int32_t sum = 0, used = 0;
-    for (size_t bin = 0; bin < d->bins; bin++) {
-        int32_t before = sum;
-        for (size_t share = 0; share < d->shares; share++) {
-            int32_t count = d->at[share * d->bins + bin];
-            d->at[share * d->bins + bin] = sum;
-            sum += count;
-            d->work[bin] += share > 0 ? d->work[share * d->bins + bin] : 0;
-        }
-        d->n_kept = bin == 0 ? sum : d->n_kept;
-        used += bin > 0 && sum > before;
-    }
-    return used;
-}
-
-static bool make_tasks(const struct dealing *d, int32_t used)
+static bool make_tasks(const struct dealing *d)
 {
     struct par_phase_run *p = d->p;
-    p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
-    for (size_t bin = 1; p->tasks && bin < d->bins; bin++) {
-        int32_t end = d->at[(d->shares - 1) * d->bins + bin], begin = d->at[(d->shares - 1) * d->bins + bin - 1];
-        if (end > begin)
+    const int32_t *start = d->deal.start;
+    size_t used = 0;
+    for (int32_t bin = 1; bin < d->deal.n_tiles; bin++)
+        used += start[bin + 1] > start[bin];
+    p->tasks = calloc(used + 1, sizeof *p->tasks);
+    for (int32_t bin = 1; p->tasks && bin < d->deal.n_tiles; bin++) {
+        double work = 0;
+        for (size_t share = 0; share < d->deal.shares; share++)
+            work += work_at(d, share)[bin];
+        if (start[bin + 1] > start[bin])
             p->tasks[p->n_tasks++] = (struct par_task){
-                .block = (int32_t)bin - 1, .worklist = p->worklist + begin - d->n_kept, .n_worklist = end - begin,
-                .expected = expect(p->phase, d->work[bin])};
+                .block = bin - 1, .worklist = p->worklist + start[bin] - start[1],
+                .n_worklist = start[bin + 1] - start[bin], .expected = expect(p->phase, work)};
     }
-    assert(!p->tasks || p->n_tasks == used);
     return p->tasks;
 }
 
 static bool deal_all(struct dealing *d)
 {
     struct par_run *state = d->p->state;
-    tri_execute(&state->executor, d->shares, count_share, d);
-    int32_t used = add_up_shares(d);
-    d->kept = malloc(((size_t)d->n_kept + 1) * sizeof *d->kept);
-    d->key = state->key.n > 0 ? malloc(((size_t)d->n_kept + 1) * sizeof *d->key) : NULL;
+    tri_execute(&state->executor, d->deal.shares, count_share, d);
+    par_deal_add_up(&d->deal);
+    const int32_t n_kept = d->deal.start[1];
+    d->kept = malloc(((size_t)n_kept + 1) * sizeof *d->kept);
+    d->key = state->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
     if (!d->kept || (state->key.n > 0 && !d->key))
         return false;
-    tri_execute(&state->executor, d->shares, deal_share, d);
-    if (!make_tasks(d, used))
+    tri_execute(&state->executor, d->deal.shares, deal_share, d);
+    if (!make_tasks(d))
         return false;
     d->p->given = state->worklist;
     d->p->given_key = state->key;
-    state->worklist = (struct par_ids){d->kept, d->n_kept, d->n_kept};
-    state->key = (struct par_keys){d->key, d->key ? d->n_kept : 0, d->key ? d->n_kept : 0};
+    state->worklist = (struct par_ids){d->kept, n_kept, n_kept};
+    state->key = (struct par_keys){d->key, d->key ? n_kept : 0, d->key ? n_kept : 0};
     d->kept = NULL;
     d->key = NULL;
     return true;
 }
 
-/* Few enough shares for counts not to outgrow what is counted. */
 static bool deal_worklists(struct par_phase_run *p)
 {
-    size_t n = (size_t)p->state->worklist.n, bins = (size_t)par_blocks(p->partition) + 1, most = n / bins + 1;
-    struct dealing d = {.p = p, .bins = bins, .shares = most < TRI_MOST_SHARES ? most : TRI_MOST_SHARES};
-    d.at = calloc(d.shares * bins, sizeof *d.at);
-    d.work = calloc(d.shares * bins, sizeof *d.work);
-    bool memory = d.at && d.work && deal_all(&d);
-    free(d.at);
+    struct dealing d = {.p = p};
+    bool memory = par_deal_reserve(&d.deal, p->state->worklist.n, par_blocks(p->partition) + 1);
+    d.work = calloc(d.deal.shares * (size_t)d.deal.n_tiles, sizeof *d.work);
+    memory = memory && d.work && deal_all(&d);
+    par_deal_free(&d.deal);
     free(d.work);
     free(d.kept);
     free(d.key);

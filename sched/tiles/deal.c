@@ -7,7 +7,7 @@
 /* Few enough shares for counts not to outgrow what is counted. */
 bool par_deal_reserve(struct par_deal *deal, int32_t n, int32_t n_tiles)
 {
-    size_t most = (size_t)n / (size_t)n_tiles + 1, shares = tri_shares(n);
+    size_t most = (size_t)n / ((size_t)n_tiles + 1) + 1, shares = tri_shares(n);
     *deal = (struct par_deal){.n = n, .n_tiles = n_tiles, .shares = shares < most ? shares : most};
     deal->at = calloc(deal->shares * (size_t)n_tiles, sizeof *deal->at);
     deal->start = malloc(((size_t)n_tiles + 1) * sizeof *deal->start);
