@@ -224,7 +224,7 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
     areas.unsuitable = NULL;
     if (!tri_has_sizes(&areas))
         return 0;
-    const struct estimator e = estimator_for(mesh, &areas);
+    const struct estimator e = {.mesh = mesh, .asked = tri_asked_of(mesh, &areas)};
     sum_of(asked_works(&e), executor, &urgent);
     return TRI_MEAN_OVER_BOUND / TRI_MOST_OVER_BOUND * urgent;
 }
