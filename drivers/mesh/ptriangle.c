@@ -366,7 +366,7 @@ struct blocks {
     const struct tri_mesh *mesh;
 };
 
-static char *block_row(void *user, size_t i, char *at)
+static char *block_row(const void *user, int64_t i, char *at)
 {
     const struct blocks *blocks = user;
     int phase;
@@ -383,10 +383,10 @@ static enum tri_status write_blocks(const char *path, struct tri_output_set *set
                              const struct tri_mesh *mesh, struct tri_error *error)
 {
     struct blocks blocks = {report, mesh};
-    const size_t n = (size_t)mesh->n_triangles;
     struct tri_output *output;
     enum tri_status status = interrupt_open(set, path, &output, error);
-    return status ? status : tri_write_table(output, n, BLOCK_ROW_BYTES, block_row, &blocks, NULL, error);
+    return status ? status : tri_write_table(output, 0, mesh->n_triangles, BLOCK_ROW_BYTES, block_row, &blocks, NULL,
+                                             error);
 }
 
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
