@@ -139,10 +139,12 @@ static const char *by_options(const struct long_options *o)
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 
-const char *plan_obstacle(const struct run *run)
+/* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
+ * swept. */
+static const char *obstacle_of(const struct run *run)
 {
     const struct run_hooks *hooks = run->hooks;
-    if (!hooks->streams)
+    if (!hooks->refine)
         return "";
     if (!run->options.refine)
         return "no bounds";
@@ -375,7 +377,7 @@ static void say_way(const struct console *console, const struct run *run, const 
 static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
     const struct run_hooks *hooks = run->hooks;
-    return hooks->streams && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
+    return hooks->refine && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
            estimate_can_park(run, e->likely.whole);
 }
 
@@ -390,7 +392,7 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
 {
     bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
     double left = look ? plan_memory_left(run) : HUGE_VAL;
-    const char *obstacle = plan_obstacle(run);
+    const char *obstacle = obstacle_of(run);
     bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
     *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
                               .triangles = e->likely.triangles};

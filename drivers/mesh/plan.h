@@ -6,10 +6,6 @@
 
 #include "drivers/mesh/needs.h"
 
-/* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
- * swept. */
-const char *plan_obstacle(const struct run *run);
-
 /* Bytes of memory that the process may still take: what is left of the system's and of --memory. */
 double plan_memory_left(const struct run *run);
 

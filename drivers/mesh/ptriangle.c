@@ -57,7 +57,6 @@ struct program {
     struct run *run;           /* the mesh of this run is refined; */
     struct tri_mesh *mesh;
     const struct tri_quality *quality;
-    struct tri_error *error;
 };
 
 /* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
@@ -124,7 +123,7 @@ static enum tri_status refine_with(struct program *p, const struct par_options *
 {
     p->n_before = p->mesh->n_vertices;
     progress_begin(&p->progress, p->mesh->n_triangles, p->run->plan.triangles, p->threads);
-    enum tri_status status = par_refine(p->mesh, p->quality, options, &p->schedule, p->error);
+    enum tri_status status = par_refine(p->mesh, p->quality, options, &p->schedule, p->run->error);
     if (status)
         progress_drop(&p->progress);
     else
@@ -179,7 +178,8 @@ static enum tri_status join_files(struct program *p, enum tri_status status)
                                                      .markers = !p->run->arguments->switches.no_markers}};
     if (!status && p->launch.rank == 0)
         show_streams(p);
-    return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, p->error);
+    const bool wanted = p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1;
+    return joint_files_open(&p->joint, wanted, status, p->run->error);
 }
 
 static enum tri_status refine_into(struct program *p, const struct tri_sink *sink)
@@ -198,14 +198,14 @@ static enum tri_status refine_through_first(struct program *p, const struct tri_
     struct tri_sink queued;
     struct par_relay relay = {.carrier = p->launch.carrier};
     if (to && !par_queue_begin(&queue, to, waiting_bytes(p)))
-        return tri_fail(p->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+        return tri_fail(p->run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
     if (to)
         queued = par_queue_sink(&queue);
     relay.to = to ? &queued : NULL;
     if (p->options.memory > 0)
         relay.room = relay.most_bytes = (size_t)waiting_bytes(p);
     const struct tri_sink relayed = par_relay_sink(&relay);
-    enum tri_status status = par_relay_finish(&relay, refine_into(p, &relayed), p->error);
+    enum tri_status status = par_relay_finish(&relay, refine_into(p, &relayed), p->run->error);
     if (to)
         par_queue_free(&queue);
     return status;
@@ -218,7 +218,7 @@ static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink 
     const struct tri_sink joint = joint_files_sink(&p->joint);
     if (!status)
         status = p->joint.together ? refine_into(p, &joint) : refine_through_first(p, to);
-    return joint_files_close(&p->joint, status, p->error);
+    return joint_files_close(&p->joint, status, p->run->error);
 }
 
 /* What did not fit in memory, or could not be swept. */
@@ -232,16 +232,16 @@ static void tell_of_parking(const struct program *p)
 }
 
 /* Refines, and writes what is finished meanwhile. */
-static enum tri_status sweep(struct program *p, struct tri_output_set *set)
+static enum tri_status sweep(struct program *p)
 {
     struct run *run = p->run;
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
-    enum tri_status status = tri_count_mesh(&before, p->mesh, NULL, p->error);
+    enum tri_status status = tri_count_mesh(&before, p->mesh, NULL, p->run->error);
     int64_t unused = p->mesh->n_vertices - before.vertices;
-    status = status ? status : streams_open(&p->streams, run, set, p->error);
-    status = status ? status : streams_open_text(&p->streams, run, set, p->error);
-    status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, p->error);
+    status = status ? status : streams_open(&p->streams, run);
+    status = status ? status : streams_open_text(&p->streams, run);
+    status = status ? status : streams_open_exports(&p->streams, run);
     if (p->launch.carrier)
         status = refine_on_ranks(p, &streams, status);
     else if (!status)
@@ -260,22 +260,20 @@ static enum tri_status report_ranks(struct program *p, enum tri_status status)
 {
     const bool is_kept = status == TRI_STOPPED && p->options.write_partial;
     enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
-                                                p->error);
+                                                p->run->error);
     return shared ? shared : status;
 }
 
-static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                              const struct tri_quality *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
+static enum tri_status refine(void *user, struct run *run, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report)
 {
     struct program *p = user;
     enum tri_status status = TRI_OK;
     p->run = run;
     p->mesh = mesh;
     p->quality = quality;
-    p->error = error;
     if (run->plan.swept) {
-        status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p, set);
+        status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p);
         tri_mesh_free(mesh); /* what is left of it is no mesh */
     } else if (p->launch.rank == 0) { /* makes the whole, and keeps its checkpoints as one task does */
         struct par_options options = options_of(p);
@@ -289,10 +287,10 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
     return p->launch.carrier ? report_ranks(p, status) : status;
 }
 
-static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error)
+static enum tri_status make_room(void *user, struct run *run, double bytes)
 {
     struct program *p = user;
-    const enum tri_status status = par_park_expect(p->park, mesh, (size_t)bytes, error);
+    const enum tri_status status = par_park_expect(p->park, &run->mesh, (size_t)bytes, run->error);
     if (!p->park)
         return status;
     p->schedule.parked = par_park_bytes(p->park);
@@ -313,10 +311,10 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     return tri_estimate(mesh, quality, &executor, &sure);
 }
 
-static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)
+static enum tri_status share(void *user, struct run *run, enum tri_status status)
 {
     const struct program *p = user;
-    return shared_input(p->launch.carrier, run, status, error);
+    return shared_input(p->launch.carrier, run, status, run->error);
 }
 
 static enum tri_status agree(void *user, enum tri_status status, struct tri_error *error)
@@ -326,16 +324,15 @@ static enum tri_status agree(void *user, enum tri_status status, struct tri_erro
 }
 
 /* Of a mesh that is there as a whole. */
-static enum tri_status write_streams(struct program *p, struct run *run, struct tri_output_set *set,
-                                     struct tri_error *error)
+static enum tri_status write_streams(struct program *p, struct run *run)
 {
     const struct tri_sink sink = streams_sink(&p->streams);
     if (p->options.n_streams == 0)
         return TRI_OK;
-    enum tri_status status = make_room(p, &run->mesh, estimate_streams(run, run->mesh.n_triangles), error);
-    status = status ? status : streams_open(&p->streams, run, set, error);
+    enum tri_status status = make_room(p, run, estimate_streams(run, run->mesh.n_triangles));
+    status = status ? status : streams_open(&p->streams, run);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
-    status = status ? status : streams_hand_out(run, n_before, &sink, error);
+    status = status ? status : streams_hand_out(run, n_before, &sink);
     streams_close(&p->streams);
     return status;
 }
@@ -362,14 +359,13 @@ static char *block_row(const void *user, int64_t i, char *at)
 }
 
 /* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
-static enum tri_status write_blocks(const char *path, struct tri_output_set *set, const struct par_report *report,
-                             const struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status write_blocks(const struct program *p, const struct run *run)
 {
-    struct blocks blocks = {report, mesh};
+    struct blocks blocks = {&p->schedule, &run->mesh};
     struct tri_output *output;
-    enum tri_status status = interrupt_open(set, path, &output, error);
-    return status ? status : tri_write_table(output, 0, mesh->n_triangles, BLOCK_ROW_BYTES, block_row, &blocks, NULL,
-                                             error);
+    enum tri_status status = interrupt_open(run->outputs, p->options.blocks, &output, run->error);
+    return status ? status : tri_write_table(output, 0, run->mesh.n_triangles, BLOCK_ROW_BYTES, block_row, &blocks,
+                                             NULL, run->error);
 }
 
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
@@ -385,21 +381,19 @@ static void count_remaining(struct program *p, const struct run *run)
     p->schedule.remain_known = true;
 }
 
-static enum tri_status write_further(void *user, struct run *run, struct tri_output_set *set,
-                                     struct tri_error *error)
+static enum tri_status write_further(void *user, struct run *run)
 {
     struct program *p = user;
     char text[96];
     snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
     progress_stage(&p->progress, text);
-    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run);
     if (!status && p->options.blocks)
-        status = write_blocks(p->options.blocks, set, &p->schedule, &run->mesh, error);
+        status = write_blocks(p, run);
     if (status || !p->options.report)
         return status;
     count_remaining(p, run);
-    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads,
-                        error);
+    return report_write(run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads);
 }
 
 /* --- arguments */
@@ -489,7 +483,7 @@ static struct run_hooks hooks_of(struct program *p)
     const struct par_carrier *carrier = p->launch.carrier;
     const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     return (struct run_hooks){.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
-                              .write = write_further, .streams = true,
+                              .write = write_further,
                               .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
                               .written_elsewhere = p->launch.rank > 0, .n_ranks = carrier ? carrier->n_ranks : 0,
                               .share = carrier ? share : NULL, .agree = carrier ? agree : NULL,
