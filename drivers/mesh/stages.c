@@ -131,7 +131,7 @@ static enum tri_status read_input(struct run *r)
                                        .warn = warn_of_input,
                                        .warn_user = r};
     const struct file_names files = files_read(r);
-    enum tri_status status = plan_check_files(r, &files, r->error);
+    enum tri_status status = plan_check_files(r, &files);
     status = status ? status : read_pslg(r, &options);
     if (!status && s->mesh)
         status = read_mesh(r, &options);
@@ -150,7 +150,7 @@ static enum tri_status get_input(struct run *r)
     if (hooks->share)
         status = hooks->share(hooks->user, r, status);
     else if (!status)
-        status = plan_check_input(r, &r->console, r->error);
+        status = plan_check_input(r);
     end_stage(r, RUN_READ);
     return status;
 }
@@ -241,7 +241,7 @@ static enum tri_status notice_stop(struct run *r, enum tri_status status)
 static enum tri_status look_ahead(struct run *r)
 {
     struct estimate estimate = estimate_make(r, false);
-    return plan_make(&r->plan, r, &estimate, &r->console, r->error);
+    return plan_make(&r->plan, r, &estimate);
 }
 
 /* For a dry run. */
@@ -350,12 +350,7 @@ static void tell_of_quality(struct run *r)
         return; /* no triangle keeps anything */
     if (report->hit_limit && r->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
-    if (!r->console.quiet && !r->plan.swept) { /* a pass over all triangles */
-        summary_bounds(&r->console, &r->mesh, &r->options.quality, report, r->hooks->executor, r->remain);
-        r->remain_known = true;
-    } else if (r->remain_known) {
-        summary_remaining(&r->console, r->remain, &r->options.quality, report);
-    }
+    summary_bounds(r);
 }
 
 /* --- a run that is stopped */
@@ -418,15 +413,6 @@ static enum tri_status keep_partial(struct run *r, enum tri_status status)
     return TRI_OK;
 }
 
-/* What was odd about the input; said when the vertices have the numbers of the input again. */
-static void tell_of_input(const struct run *r)
-{
-    summary_duplicates(&r->console, r->plan.swept ? r->twin : r->mesh.twin, &r->pslg);
-    summary_segments(&r->console, &r->report.constrain);
-    summary_holes(&r->console, &r->report);
-    summary_notes(&r->console, &r->report.notes);
-}
-
 /* --- output */
 
 static enum tri_status make_room(struct run *r, double bytes)
@@ -464,12 +450,9 @@ static enum tri_status write_mesh(struct run *r)
 static enum tri_status check(struct run *r)
 {
     const double OF_FILES = 0.75;
-    const struct long_options *limits = r->hooks->options;
     enum tri_status status = make_room(r, self_check_least_bytes(&r->mesh));
     const double left = r->mesh.storage ? OF_FILES * plan_memory_left(r) : plan_memory_left(r);
-    return status ? status
-                  : self_check(&r->console, r->arguments->switches.conforming, &r->mesh, r->base,
-                               limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch, r->error);
+    return status ? status : self_check(r, r->hooks->options->memory > 0 ? fmax(left, 1) : 0);
 }
 
 static enum tri_status tell(struct run *r)
@@ -486,9 +469,9 @@ static enum tri_status tell(struct run *r)
     say_milliseconds(r, "Total running", r->total_seconds);
     r->counts.interior += r->report.loose; /* as Triangle counts */
     r->counts.subsegments += r->report.loose;
-    summary_counts(&r->console, s, &r->pslg, r->elements.n, &r->counts);
+    summary_counts(r);
     if (s->verbosity > 0)
-        summary_shapes(&r->mesh, &r->report, r->hooks->executor);
+        summary_shapes(r);
     return s->check ? check(r) : TRI_OK;
 }
 
@@ -540,7 +523,7 @@ static enum tri_status make_mesh(struct run *r)
     if (status)
         return status;
     tell_of_quality(r);
-    tell_of_input(r);
+    summary_input(r); /* when the vertices have the numbers of the input again */
     return TRI_OK;
 }
 
@@ -550,10 +533,10 @@ static enum tri_status print_estimate(struct run *r)
     enum tri_status status = generate(r, false);
     if (status)
         return status;
-    summary_notes(&r->console, &r->report.notes);
+    summary_notes(r);
     struct estimate estimate = estimate_make(r, true);
     if (r->options.refine)
-        status = plan_make(&r->plan, r, &estimate, &r->console, r->error);
+        status = plan_make(&r->plan, r, &estimate);
     plan_print(r, &estimate);
     return status;
 }
