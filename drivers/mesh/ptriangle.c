@@ -115,8 +115,7 @@ static struct par_options options_of(struct program *p)
 /* Vertices, triangles or segments, by 0, 1, 2, that have been handed out, by all ranks. */
 static int64_t handed_out(const struct program *p, int which)
 {
-    const int64_t here[] = {p->streams.vertices, p->streams.triangles, p->streams.segments};
-    return p->joint.together ? p->joint.total[which] : here[which];
+    return p->joint.together ? p->joint.total[which] : p->streams.taken[which];
 }
 
 static enum tri_status refine_with(struct program *p, const struct par_options *options)

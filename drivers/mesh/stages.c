@@ -244,14 +244,6 @@ static enum tri_status look_ahead(struct run *r)
     return plan_make(&r->plan, r, &estimate);
 }
 
-/* For a dry run. */
-static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
-                             struct tri_refine_report *report, struct tri_error *error)
-{
-    (void)user, (void)mesh, (void)quality, (void)report, (void)error;
-    return TRI_OK;
-}
-
 /* Files of a mesh that is there are written though somebody asks for the end, as long as there is time. */
 static void begin_outputs(const struct run *r)
 {
@@ -274,14 +266,6 @@ static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
     return TRI_OK;
 }
 
-/* Files are written while the mesh is refined. */
-static enum tri_status begin_sweep(struct run *r, const struct tri_mesh *mesh)
-{
-    if (!r->hooks->written_elsewhere)
-        begin_outputs(r);
-    return keep_twins(r, mesh);
-}
-
 /* Counts the vertices of no triangle while the mesh is small: refinement makes none (tri_count_refined). */
 static enum tri_status count_unused(struct run *r, const struct tri_mesh *mesh, struct tri_error *error)
 {
@@ -296,13 +280,15 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 {
     struct run *r = user;
     const struct run_hooks *hooks = r->hooks;
-    enum tri_status status = look_ahead(r);
-    if (status)
+    enum tri_status status = hooks->options->dry_run ? TRI_OK : look_ahead(r);
+    if (status || hooks->options->dry_run)
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
     interrupt_reached(mesh->n_triangles, " triangles");
-    status = r->plan.swept ? begin_sweep(r, mesh) : count_unused(r, mesh, error);
+    if (r->plan.swept && !hooks->written_elsewhere)
+        begin_outputs(r);
+    status = r->plan.swept ? keep_twins(r, mesh) : count_unused(r, mesh, error);
     if (!status)
         status = hooks->refine ? hooks->refine(hooks->user, r, mesh, quality, report)
                                : tri_refine(mesh, quality, report, error);
@@ -312,8 +298,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     return status;
 }
 
-/* The mesh, refined or, for an estimate, as it is before. */
-static enum tri_status generate(struct run *r, bool refined)
+/* The mesh, refined or, in a dry run, as it is before. */
+static enum tri_status generate(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
     struct tri_options options = r->options;
@@ -322,7 +308,7 @@ static enum tri_status generate(struct run *r, bool refined)
     r->is_edge = s->mesh ? malloc(((size_t)r->pslg.n_segments + 1) * sizeof *r->is_edge) : NULL;
     if (s->mesh && !r->is_edge)
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)r->pslg.n_segments);
-    options.refine_call = refined ? refine : leave;
+    options.refine_call = refine;
     options.refine_user = options.stage_user = r;
     options.stage = follow_stage;
     options.executor = r->hooks->executor;
@@ -509,16 +495,9 @@ static enum tri_status write_output(struct run *r)
 
 /* --- all together */
 
-/* Does each file have a place of its own? */
-static enum tri_status check_files(const struct run *r)
-{
-    const struct file_names read = files_read(r);
-    return mesh_files_check(r, &read);
-}
-
 static enum tri_status make_mesh(struct run *r)
 {
-    enum tri_status status = keep_partial(r, generate(r, true));
+    enum tri_status status = keep_partial(r, generate(r));
     end_stage(r, RUN_QUALITY);
     if (status)
         return status;
@@ -530,7 +509,7 @@ static enum tri_status make_mesh(struct run *r)
 /* A dry run ends here, and says where the true one would be refused. */
 static enum tri_status print_estimate(struct run *r)
 {
-    enum tri_status status = generate(r, false);
+    enum tri_status status = generate(r);
     if (status)
         return status;
     summary_notes(r);
@@ -551,7 +530,8 @@ static enum tri_status run_stages(struct run *r)
         return status;
     if (r->hooks->options->dry_run)
         return print_estimate(r);
-    status = r->hooks->written_elsewhere ? TRI_OK : check_files(r);
+    const struct file_names read = files_read(r);
+    status = r->hooks->written_elsewhere ? TRI_OK : mesh_files_check(r, &read);
     status = status ? status : make_mesh(r);
     return status ? status : write_output(r);
 }

@@ -35,7 +35,7 @@ enum tri_status streams_open(struct streams *streams, const struct run *run)
 {
     const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    *streams = (struct streams){0};
+    *streams = (struct streams){.run = run};
     for (int i = 0; !status && i < o->n_streams; i++)
         status = open_stream(&streams->stream[streams->n++], o->streams[i], !run->arguments->switches.no_markers,
                              &streams->sink[streams->n_sinks++], run->outputs, run->error);
@@ -73,8 +73,6 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
 {
     const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    streams->markers = !run->arguments->switches.no_markers;
-    streams->executor = run->hooks->executor;
     for (int i = 0; !status && i < o->n_exports; i++) {
         streams->export[i] = export_of(o->exports[i], o->n_parts);
         status = export_open(&streams->export[i], o->exports[i], run->outputs, run->error);
@@ -104,7 +102,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     enum tri_status status = TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].begin(streams->sink[i].user, stream, error);
-    streams->vertices = streams->triangles = streams->segments = 0;
+    memset(streams->taken, 0, sizeof streams->taken);
     return status;
 }
 
@@ -114,18 +112,19 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     enum tri_status status = TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].take(streams->sink[i].user, tile, error);
-    streams->vertices += tile->n_vertices;
-    streams->triangles += tile->n_triangles;
-    streams->segments += tile->n_segments;
+    streams->taken[0] += tile->n_vertices;
+    streams->taken[1] += tile->n_triangles;
+    streams->taken[2] += tile->n_segments;
     return status;
 }
 
 static enum tri_status write_exports(struct streams *streams, struct tri_error *error)
 {
     struct tri_grid grid;
-    enum tri_status status = tri_tile_store_grid(streams->store, streams->markers, &grid, error);
+    const struct run *run = streams->run;
+    enum tri_status status = tri_tile_store_grid(streams->store, !run->arguments->switches.no_markers, &grid, error);
     for (int i = 0; !status && i < streams->n_exports; i++)
-        status = export_write(&streams->export[i], &grid, streams->executor, error);
+        status = export_write(&streams->export[i], &grid, run->hooks->executor, error);
     return status;
 }
 

@@ -27,11 +27,10 @@ struct streams {
     int n_exports;
     struct export export[LONG_OPTIONS_MOST_EXPORTS]; /* in other formats, at the end: */
     struct tri_tile_store *store;  /* NULL: none of them */
-    bool markers;                  /* are written */
-    const struct tri_executor *executor;
+    const struct run *run;
     int n_sinks;
     struct tri_sink sink[LONG_OPTIONS_MOST_EXPORTS + 2]; /* of the HDF5 files, of the texts, of the store */
-    int64_t vertices, triangles, segments; /* taken so far */
+    int64_t taken[3]; /* vertices, triangles, segments so far */
 };
 
 #define STREAM_SUFFIX ".h5"
