@@ -336,7 +336,7 @@ static void test_rows_as_bytes(void **state)
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         char room[32] = {0};
-        tri_h5_put_of(wanted[i].kind, wanted[i].type)(&rows, 0, 1, room + 1);
+        tri_h5_put(&rows, wanted[i].kind, wanted[i].type, 0, 1, room + 1);
         assert_memory_equal(room + 1, wanted[i].bytes, wanted[i].n);
         assert_int_equal(room[0], 0);
         assert_int_equal(room[1 + wanted[i].n], 0);

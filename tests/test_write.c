@@ -290,10 +290,10 @@ static void rows_like_printf(void **state)
 
 /* --- tables */
 
-static char *row_of_words(void *user, size_t i, char *at)
+static char *row_of_words(const void *user, int64_t i, char *at)
 {
     const size_t max_bytes = *(const size_t *)user;
-    const size_t n = i % max_bytes;
+    const size_t n = (size_t)i % max_bytes;
     memset(at, 'a' + (int)(i % 26), n);
     at[n] = '\n';
     return at + n + 1;
@@ -303,7 +303,8 @@ static void tables_in_any_order(void **state)
 {
     (void)state;
     const struct {
-        size_t n_rows, max_bytes;
+        int64_t n_rows;
+        size_t max_bytes;
     } cases[] = {{0, 8},          {1, 8},            {32767, 8},         {32768, 8},     {32769, 8},
                  {32768 * 15, 8}, {32768 * 15 + 1, 8}, {32768 * 64, 8}, {32768 * 64 + 1, 8},
                  {100000, 300},   {3, 400000},       {70, 300000}};
@@ -315,17 +316,19 @@ static void tables_in_any_order(void **state)
         tri_outputs_begin(&set);
         assert_int_equal(tri_output_open(&set, in_directory("a"), &a, NULL), TRI_OK);
         assert_int_equal(tri_output_open(&set, in_directory("b"), &b, NULL), TRI_OK);
-        assert_int_equal(tri_write_table(a, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, NULL, NULL), TRI_OK);
-        assert_int_equal(tri_write_table(b, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, &backwards, NULL),
+        assert_int_equal(tri_write_table(a, 0, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, NULL, NULL),
+                         TRI_OK);
+        assert_int_equal(tri_write_table(b, 0, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, &backwards,
+                                         NULL),
                          TRI_OK);
         assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
-        size_t rows = max_bytes < 262144 ? 262144 / max_bytes : 1, chunks = (cases[i].n_rows + rows - 1) / rows;
+        size_t rows = max_bytes < 262144 ? 262144 / max_bytes : 1, chunks = ((size_t)cases[i].n_rows + rows - 1) / rows;
         assert_int_equal(n_tasks >= chunks, chunks >= 16 || chunks == 0); /* few are not worth waking threads */
         assert_true(chunks >= 16 || n_tasks == 0);
         char *const text = contents(in_directory("a")), *const other = contents(in_directory("b"));
         assert_string_equal(text, other);
         const char *at = text;
-        for (size_t row = 0; row < cases[i].n_rows; row++, at++) {
+        for (int64_t row = 0; row < cases[i].n_rows; row++, at++) {
             assert_true(*at == '\n' || *at == 'a' + (int)(row % 26));
             at += strcspn(at, "\n");
         }
@@ -540,7 +543,7 @@ static void full_disk_leaves_old_files(void **state)
     assert_int_equal(tri_output_open(&set, in_directory("a"), &a, NULL), TRI_OK);
     put_text(b, "complete");
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    assert_int_equal(tri_write_table(a, 1000000, max_bytes, row_of_words, &max_bytes, &backwards, &error),
+    assert_int_equal(tri_write_table(a, 0, 1000000, max_bytes, row_of_words, &max_bytes, &backwards, &error),
                      TRI_CANNOT_WRITE);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     sigaction(SIGXFSZ, &old_action, NULL);

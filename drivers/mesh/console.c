@@ -20,23 +20,13 @@ void console_open(void)
     setvbuf(stdout, NULL, _IOLBF, 0); /* whoever reads it from a pipe or a log sees each line at once */
 }
 
-void console_say(const struct console *console, const char *format, ...)
+void console_print(const struct console *console, const char *before, const char *format, ...)
 {
     if (console->quiet)
         return;
     va_list arguments;
     va_start(arguments, format);
-    one_line_print(stdout, format, arguments);
-    va_end(arguments);
-}
-
-void console_warn(const struct console *console, const char *format, ...)
-{
-    if (console->quiet)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    fputs("Warning:  ", stdout);
+    fputs(before, stdout);
     one_line_print(stdout, format, arguments);
     va_end(arguments);
 }

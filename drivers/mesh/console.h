@@ -26,11 +26,10 @@ enum { CONSOLE_SERIES_LINES = 10 }; /* of the warnings of one kind only the firs
  * that is opened would receive what is printed. To be called before anything else. */
 void console_open(void);
 
-/* A line or a part of one, unless quiet. */
-void console_say(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
-
-/* "Warning:  " and the text; the caller ends the line. */
-void console_warn(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
+/* A line or a part of one behind some words, unless quiet; the caller ends the line. */
+void console_print(const struct console *console, const char *before, const char *format, ...) CONSOLE_FORMAT(3, 4);
+#define console_say(console, ...) console_print(console, "", __VA_ARGS__)
+#define console_warn(console, ...) console_print(console, "Warning:  ", __VA_ARGS__)
 
 /* Of n warnings of a kind: a last line that tells how many were not said. */
 void console_series_end(const struct console *console, int64_t n, const char *what);

@@ -109,82 +109,76 @@ static enum tri_status try_all(struct tri_output_set *set, const struct run *run
     return status || !o->blocks ? status : try_file(set, o->blocks, read, error);
 }
 
-enum tri_status mesh_files_check(const struct run *run, const struct file_names *read, struct tri_error *error)
+enum tri_status mesh_files_check(const struct run *run, const struct file_names *read)
 {
     static struct tri_output_set set; /* large; handlers know its names until interrupt_drop */
     interrupt_begin(&set);
     set.trial = true;
-    enum tri_status status = try_all(&set, run, read, error);
+    enum tri_status status = try_all(&set, run, read, run->error);
     interrupt_drop(&set);
     return status;
 }
 
-/* What is written to one file after the other. */
-struct writer {
-    const struct run *run;
-    const struct console *console;
-    struct tri_grid grid;
-    struct tri_output_set *set;
-    struct tri_error *error;
-};
-
-static enum tri_status write_file(struct writer *w, const struct kind *kind)
+static enum tri_status write_file(const struct run *run, const struct tri_grid *grid, const struct kind *kind)
 {
-    const struct arguments *arguments = w->run->arguments;
-    const struct tri_executor *executor = w->run->hooks->executor;
+    const struct arguments *arguments = run->arguments;
     char *path = tri_joined(arguments->output, kind->suffix);
     if (!path)
-        return tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    console_say(w->console, "Writing %s.\n", path);
+        return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    console_say(&run->console, "Writing %s.\n", path);
     struct tri_output *output;
-    const struct tri_grid voronoi = tri_grid_voronoi(&w->grid);
-    enum tri_status status = interrupt_open(w->set, path, &output, w->error);
+    const struct tri_grid voronoi = tri_grid_voronoi(grid);
+    enum tri_status status = interrupt_open(run->outputs, path, &output, run->error);
     free(path);
-    status = status ? status : kind->write(output, kind->of_voronoi ? &voronoi : &w->grid, executor, w->error);
-    return status ? status : tri_write_comment(output, arguments->argc, arguments->argv, w->error);
+    if (!status)
+        status = kind->write(output, kind->of_voronoi ? &voronoi : grid, run->hooks->executor, run->error);
+    return status ? status : tri_write_comment(output, arguments->argc, arguments->argv, run->error);
 }
 
 /* In another program's format, which need not know comments. */
-static enum tri_status write_export(struct writer *w, const char *path)
+static enum tri_status write_export(const struct run *run, const struct tri_grid *grid, const char *path)
 {
-    struct export export = export_of(path, w->run->hooks->options->n_parts);
+    struct export export = export_of(path, run->hooks->options->n_parts);
     char *first = export_name(&export, path, 0), *last = export_name(&export, path, export_files(&export) - 1);
     if (first && last)
-        console_say(w->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
+        console_say(&run->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
                     export.n_parts > 1 ? last : "");
     free(first);
     free(last);
-    enum tri_status status = export_open(&export, path, w->set, w->error);
-    return status ? status : export_write(&export, &w->grid, w->run->hooks->executor, w->error);
+    enum tri_status status = export_open(&export, path, run->outputs, run->error);
+    return status ? status : export_write(&export, grid, run->hooks->executor, run->error);
 }
 
-static enum tri_status write_all(struct writer *w)
+static enum tri_status write_all(const struct run *run, const struct tri_grid *grid)
 {
-    const struct long_options *o = w->run->hooks->options;
+    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    for (int k = 0; k < N_KINDS; k++) {
-        enum plan plan = plan_of(w->run, k);
+    for (int k = 0; k < N_KINDS && !status; k++) {
+        enum plan plan = plan_of(run, k);
         if (plan == SUPPRESSED)
-            console_say(w->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
-        status = plan == WRITTEN ? write_file(w, &kinds[k]) : TRI_OK;
-        if (status)
-            return status;
+            console_say(&run->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
+        status = plan == WRITTEN ? write_file(run, grid, &kinds[k]) : TRI_OK;
     }
     for (int i = 0; i < o->n_exports && !status; i++)
-        status = write_export(w, o->exports[i]);
+        status = write_export(run, grid, o->exports[i]);
     return status;
 }
 
-enum tri_status mesh_files_write(const struct run *run, const struct console *console, struct tri_output_set *set,
-                                 struct tri_error *error)
+struct tri_grid_options mesh_files_grid(const struct run *run)
 {
     const struct tri_switches *s = &run->arguments->switches;
-    struct writer w = {.run = run, .console = console, .set = set, .error = error};
     struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
     options.is_edge = s->segments ? run->is_edge : NULL;
     options.base = run->base;
-    enum tri_status status = tri_grid_make(&w.grid, &options, error);
-    status = status ? status : write_all(&w);
-    tri_grid_free(&w.grid);
+    return options;
+}
+
+enum tri_status mesh_files_write(const struct run *run)
+{
+    const struct tri_grid_options options = mesh_files_grid(run);
+    struct tri_grid grid;
+    enum tri_status status = tri_grid_make(&grid, &options, run->error);
+    status = status ? status : write_all(run, &grid);
+    tri_grid_free(&grid);
     return status;
 }

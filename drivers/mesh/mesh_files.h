@@ -4,8 +4,7 @@
 
 #include <stdbool.h>
 
-#include "drivers/mesh/console.h"
-#include "triangle/text/output.h"
+#include "triangle/mesh/grid.h"
 
 struct run; /* drivers/mesh/stages.h */
 
@@ -26,12 +25,13 @@ bool mesh_files_has(const struct run *run, const char *suffix);
 /* Looks whether all files of the run could be created, so that nobody waits for a mesh that cannot be kept, and whether
  * each is a file of its own that nobody has read. Leaves nothing behind. After the input has been read.
  * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status mesh_files_check(const struct run *run, const struct file_names *read, struct tri_error *error);
+enum tri_status mesh_files_check(const struct run *run, const struct file_names *read);
 
-/* Writes the mesh, which has no free numbers, into the guarded set (drivers/interrupt.h), whoever fails: its caller
- * commits or aborts. Input points are written bit by bit as they were read. Says a line for each file, and one for all
- * parts of a mesh. */
-enum tri_status mesh_files_write(const struct run *run, const struct console *console, struct tri_output_set *set,
-                                 struct tri_error *error);
+/* The mesh as its files show it. */
+struct tri_grid_options mesh_files_grid(const struct run *run);
+
+/* Writes the mesh, which has no free numbers, into run->outputs, whoever fails: its caller commits or aborts. Input
+ * points are written bit by bit as they were read. Says a line for each file, and one for all parts of a mesh. */
+enum tri_status mesh_files_write(const struct run *run);
 
 #endif

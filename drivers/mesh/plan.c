@@ -65,7 +65,7 @@ static double size_of(const char *name)
 }
 
 /* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
-enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error)
+enum tri_status plan_check_files(const struct run *run, const struct file_names *files)
 {
     double size = 0;
     for (int i = 0; i < files->n; i++)
@@ -74,7 +74,7 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
         return TRI_OK;
     const double left = plan_memory_left(run);
     if (size > left)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+        return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0,
                         "the input has %s of text, which is read into memory; %s are left", tri_size_text(size).text,
                         tri_size_text(left).text);
     return TRI_OK;
@@ -97,20 +97,20 @@ static double input_bytes(const struct run *run)
     return PROCESS_BYTES + fmax(made, made / 2 + unrefined_streams(run));
 }
 
-enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error)
+enum tri_status plan_check_input(const struct run *run)
 {
     const double needed = input_bytes(run);
     if (needed < WORTH_A_LOOK && !is_strict(run))
         return TRI_OK;
     const double all = resources_memory_used() + plan_memory_left(run);
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+        return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0,
                         "to triangulate the input, %s points and %s segments,%s takes about %s of memory; there are %s",
                         tri_count_text(run->pslg.n_points).text, tri_count_text(run->pslg.n_segments).text,
                         unrefined_streams(run) > 0 ? " and write it as HDF5," : "",
                         tri_size_text(needed).text, tri_size_text(all).text);
     if (needed > all)
-        console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",
+        console_warn(&run->console, "to triangulate the input may take about %s of memory; there are %s.\n",
                      tri_size_text(needed).text, tri_size_text(all).text);
     return TRI_OK;
 }
@@ -139,10 +139,12 @@ static const char *by_options(const struct long_options *o)
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 
-const char *plan_obstacle(const struct run *run)
+/* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
+ * swept. */
+static const char *obstacle_of(const struct run *run)
 {
     const struct run_hooks *hooks = run->hooks;
-    if (!hooks->streams)
+    if (!hooks->refine)
         return "";
     if (!run->options.refine)
         return "no bounds";
@@ -154,9 +156,9 @@ const char *plan_obstacle(const struct run *run)
 
 /* --- refusals and warnings */
 
-static enum tri_status fail_too_many(const struct needs *n, bool sure, const char *why, struct tri_error *error)
+static enum tri_status fail_too_many(const struct run *run, const struct needs *n, bool sure, const char *why)
 {
-    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+    return tri_fail(run->error, TRI_TOO_LARGE, NULL, 0,
                     "the %sbounds ask for %s %s triangles, and a mesh holds %s%s%s", sure ? "area " : "",
                     sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_count_text(TRI_MAX_TRIANGLES).text,
@@ -164,16 +166,15 @@ static enum tri_status fail_too_many(const struct needs *n, bool sure, const cha
 }
 
 /* why: all triangles of the mesh must be there at a time. */
-static enum tri_status check_number(const struct estimate *e, const char *why, const struct console *console,
-                                    struct tri_error *error)
+static enum tri_status check_number(const struct run *run, const struct estimate *e, const char *why)
 {
     const double most = TRI_MAX_TRIANGLES, likely = e->likely.triangles, least = e->least.triangles;
     if (least > most)
-        return fail_too_many(&e->least, true, why, error);
+        return fail_too_many(run, &e->least, true, why);
     if (likely > most && likely <= AREAS_DECIDE * least)
-        return fail_too_many(&e->likely, false, why, error);
+        return fail_too_many(run, &e->likely, false, why);
     if (likely > most)
-        console_warn(console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
+        console_warn(&run->console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
                      tri_count_text(most).text);
     return TRI_OK;
 }
@@ -187,11 +188,11 @@ static void suggest(const struct run *run, double needed, char *text, size_t siz
 }
 
 static enum tri_status fail_memory(const struct run *run, const struct needs *n, bool sure, double needed, double left,
-                                   const char *obstacle, struct tri_error *error)
+                                   const char *obstacle)
 {
     char would_do[64];
     suggest(run, needed, would_do, sizeof would_do);
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+    return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0,
                     "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s%s",
                     sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_size_text(needed).text, tri_size_text(left).text, would_do,
@@ -201,39 +202,37 @@ static enum tri_status fail_memory(const struct run *run, const struct needs *n,
 /* least, likely: bytes of memory. Where what is likely refuses, it does so first: who gives what is then said to be
  * needed is not refused again. */
 static enum tri_status check_memory(const struct run *run, const struct estimate *e, double least, double likely,
-                                    double left, const char *obstacle, const struct console *console,
-                                    struct tri_error *error)
+                                    double left, const char *obstacle)
 {
     if (is_strict(run) && likely > left && likely >= least)
-        return fail_memory(run, &e->likely, false, likely, left, obstacle, error);
+        return fail_memory(run, &e->likely, false, likely, left, obstacle);
     if (least > left)
-        return fail_memory(run, &e->least, true, least, left, obstacle, error);
+        return fail_memory(run, &e->least, true, least, left, obstacle);
     if (likely > left)
-        console_warn(console, "the bounds may take about %s of memory; %s are left.\n",
+        console_warn(&run->console, "the bounds may take about %s of memory; %s are left.\n",
                      tri_size_text(likely).text, tri_size_text(left).text);
     return TRI_OK;
 }
 
-static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle,
-                                   const struct console *console, struct tri_error *error)
+static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle)
 {
-    enum tri_status status = check_number(e, obstacle, console, error);
+    obstacle = obstacle ? obstacle : "";
+    enum tri_status status = check_number(run, e, obstacle);
     if (status)
         return status;
     if (run->plan.filed)
-        return check_memory(run, e, e->least.filed, e->likely.filed, left, "", console, error);
-    return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle, console, error);
+        return check_memory(run, e, e->least.filed, e->likely.filed, left, "");
+    return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle);
 }
 
 /* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
-static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
-                                    const struct console *console, struct tri_error *error)
+static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left)
 {
     const char *why = run->hooks->n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
-    enum tri_status status = e->sweeps ? TRI_OK : check_number(e, why, console, error);
+    enum tri_status status = e->sweeps ? TRI_OK : check_number(run, e, why);
     if (status)
         return status;
-    return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
+    return check_memory(run, e, e->least.floor, e->likely.floor, left, "");
 }
 
 /* --- disks */
@@ -297,8 +296,7 @@ static double sum_of(const struct disk_place places[DISK_PLACES])
     return places[0].bytes + places[1].bytes + places[2].bytes;
 }
 
-static enum tri_status check_disk(const struct run *run, const struct estimate *e, double memory,
-                                  const struct console *console, struct tri_error *error)
+static enum tri_status check_disk(const struct run *run, const struct estimate *e, double memory)
 {
     struct disk_place sure[DISK_PLACES], likely[DISK_PLACES];
     double needed;
@@ -306,23 +304,24 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     list_places(likely, run, &e->likely, memory);
     const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? too_small(sure, &needed) : NULL;
     if (place)
-        return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
+        return tri_fail(run->error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
                         tri_size_text(needed).text, tri_size_text(resources_disk(place->path)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;
     if (place)
-        console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
+        console_warn(&run->console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
                      place->path, place->what, tri_size_text(needed).text,
                      tri_size_text(resources_disk(place->path)).text);
     return TRI_OK;
 }
 
 /* A folder is tried before the work, which may take hours until it is needed. */
-static enum tri_status check_scratch(const char *folder, struct tri_error *error)
+static enum tri_status check_scratch(const struct run *run)
 {
+    const char *folder = run->hooks->options->scratch;
     if (access(folder, W_OK | X_OK) != 0)
-        return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
+        return tri_fail(run->error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
     return TRI_OK;
 }
@@ -345,29 +344,29 @@ static bool fits(const struct run *run, const struct estimate *e, double left)
            margin * e->likely.whole <= left;
 }
 
-static void say_parking(const struct console *console, const struct run *run, double bytes)
+static void say_parking(const struct run *run, double bytes)
 {
-    console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n", run->hooks->options->scratch,
-                tri_size_text(bytes).text);
+    console_say(&run->console, "Parking: what does not fit in memory goes to %s, about %s.\n",
+                run->hooks->options->scratch, tri_size_text(bytes).text);
 }
 
-static void say_way(const struct console *console, const struct run *run, const struct estimate *e, double left)
+static void say_way(const struct run *run, const struct estimate *e, double left)
 {
     const struct needs *n = &e->likely;
     char whole[64] = "are too many for a mesh in memory";
     if (n->triangles <= TRI_MAX_TRIANGLES)
         snprintf(whole, sizeof whole, "would take %s of memory", tri_size_text(n->whole).text);
     if (e->sweeps && run->hooks->n_ranks > 0)
-        console_say(console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
+        console_say(&run->console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
                     tri_count_text(n->triangles).text, run->hooks->n_ranks, tri_size_text(n->held).text);
     else if (run->hooks->n_ranks > 1)
-        console_say(console, "Each of %d tasks makes all of the mesh: -S is not shared.\n",
+        console_say(&run->console, "Each of %d tasks makes all of the mesh: -S is not shared.\n",
                     run->hooks->n_ranks);
     else if (e->sweeps)
-        console_say(console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
+        console_say(&run->console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
                     tri_count_text(n->triangles).text, whole, tri_size_text(n->held).text);
     if (n->held > left)
-        say_parking(console, run, n->away);
+        say_parking(run, n->away);
 }
 
 /* A mesh that stays one, where --memory bounds what is in memory of it. Of several tasks one makes all of it, whose
@@ -375,7 +374,7 @@ static void say_way(const struct console *console, const struct run *run, const 
 static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
     const struct run_hooks *hooks = run->hooks;
-    return hooks->streams && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
+    return hooks->refine && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
            estimate_can_park(run, e->likely.whole);
 }
 
@@ -385,25 +384,23 @@ static bool takes_less_whole(const struct run *run, const struct estimate *e, do
     return may_lie_in_files(run, e) && e->likely.floor > left && e->likely.filed <= left;
 }
 
-enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e,
-                          const struct console *console, struct tri_error *error)
+enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e)
 {
     bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
     double left = look ? plan_memory_left(run) : HUGE_VAL;
-    const char *obstacle = plan_obstacle(run);
+    const char *obstacle = obstacle_of(run);
     bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
     *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
                               .triangles = e->likely.triangles};
     plan->filed = !plan->swept && may_lie_in_files(run, e);
-    enum tri_status status = plan->swept ? check_stream(run, e, left, console, error)
-                                         : check_whole(run, e, left, obstacle ? obstacle : "", console, error);
+    enum tri_status status = plan->swept ? check_stream(run, e, left) : check_whole(run, e, left, obstacle);
     if (!status && (plan->swept || (plan->filed && (stream || e->likely.whole > left))))
-        status = check_scratch(run->hooks->options->scratch, error);
-    status = status ? status : check_disk(run, e, left, console, error);
+        status = check_scratch(run);
+    status = status ? status : check_disk(run, e, left);
     if (!status && plan->swept)
-        say_way(console, run, e, left);
+        say_way(run, e, left);
     else if (!status && plan->filed && e->likely.whole > left)
-        say_parking(console, run, e->likely.filed_away);
+        say_parking(run, e->likely.filed_away);
     return status;
 }
 

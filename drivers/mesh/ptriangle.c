@@ -53,6 +53,9 @@ struct program {
     struct par_report schedule;
     struct launch launch;
     struct rank_report ranks;
+    struct run *run;           /* the mesh of this run is refined; */
+    struct tri_mesh *mesh;
+    const struct tri_quality *quality;
 };
 
 /* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
@@ -86,8 +89,9 @@ static void follow(void *user, const struct par_place *place)
     progress_step(&p->progress, place);
 }
 
-static struct par_options options_of(struct program *p, const struct run *run)
+static struct par_options options_of(struct program *p)
 {
+    const struct run *run = p->run;
     const struct tri_switches *s = &run->arguments->switches;
     struct par_options options = par_defaults();
     options.threads = p->threads;
@@ -98,10 +102,10 @@ static struct par_options options_of(struct program *p, const struct run *run)
     options.figure = &run->pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
-    bool bounded = run->hooks->options->memory > 0 || (run->plan.swept && !p->launch.carrier);
+    bool bounded = p->options.memory > 0 || (run->plan.swept && !p->launch.carrier);
     if (bounded && run->plan.memory < HUGE_VAL)
         options.memory = (int64_t)run->plan.memory;
-    options.count_remaining = !run->arguments->switches.quiet || p->options.report;
+    options.count_remaining = !s->quiet || p->options.report;
     options.scratch = p->scratch;
     options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
     return options;
@@ -110,35 +114,32 @@ static struct par_options options_of(struct program *p, const struct run *run)
 /* Vertices, triangles or segments, by 0, 1, 2, that have been handed out, by all ranks. */
 static int64_t handed_out(const struct program *p, int which)
 {
-    const int64_t here[] = {p->streams.vertices, p->streams.triangles, p->streams.segments};
-    return p->joint.together ? p->joint.total[which] : here[which];
+    return p->joint.together ? p->joint.total[which] : p->streams.taken[which];
 }
 
-static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
-                                   struct tri_mesh *mesh, const struct tri_quality *quality,
-                                   struct tri_error *error)
+static enum tri_status refine_with(struct program *p, const struct par_options *options)
 {
-    p->n_before = mesh->n_vertices;
-    progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
-    enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
+    p->n_before = p->mesh->n_vertices;
+    progress_begin(&p->progress, p->mesh->n_triangles, p->run->plan.triangles, p->threads);
+    enum tri_status status = par_refine(p->mesh, p->quality, options, &p->schedule, p->run->error);
     if (status)
         progress_drop(&p->progress);
     else
-        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
+        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : p->mesh->n_triangles,
                      options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
         interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* of all ranks */
     else if (status == TRI_STOPPED && !options->sweep)
-        tell_reached(p, mesh->n_triangles);
+        tell_reached(p, p->mesh->n_triangles);
     return status;
 }
 
 /* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
  * boundary is a subsegment. */
-static void count_streamed(struct tri_counts *c, const struct tri_counts *before, int64_t unused,
-                           const struct program *p)
+static void count_streamed(const struct program *p, const struct tri_counts *before, int64_t unused)
 {
+    struct tri_counts *c = &p->run->counts;
     c->vertices = handed_out(p, 0) - unused;
     c->triangles = handed_out(p, 1);
     c->subsegments = handed_out(p, 2);
@@ -148,9 +149,9 @@ static void count_streamed(struct tri_counts *c, const struct tri_counts *before
 }
 
 /* Bytes of tiles that may wait for the disk. */
-static int64_t waiting_bytes(const struct run_plan *plan)
+static int64_t waiting_bytes(const struct program *p)
 {
-    return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
+    return (int64_t)fmin(fmax(p->run->plan.memory / 32, 0x1p20), 0x1p26);
 }
 
 /* What others than the first rank cannot know of its files. */
@@ -166,74 +167,56 @@ static void show_streams(struct program *p)
 }
 
 /* Do all ranks write the files? Not where a format wants the whole mesh. Collective. */
-static enum tri_status join_files(struct program *p, const struct run *run, enum tri_status status,
-                                  struct tri_error *error)
+static enum tri_status join_files(struct program *p, enum tri_status status)
 {
-    const struct long_options *limits = run->hooks->options;
-    const bool ends_at_once = !limits->write_partial && !long_options_state(limits);
+    const bool ends_at_once = !p->options.write_partial && !long_options_state(&p->options);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
-                                    .text_options = {.base = run->base, .figure = &run->pslg,
-                                                     .markers = !run->arguments->switches.no_markers}};
+                                    .text_options = {.base = p->run->base, .figure = &p->run->pslg,
+                                                     .markers = !p->run->arguments->switches.no_markers}};
     if (!status && p->launch.rank == 0)
         show_streams(p);
-    return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, error);
+    const bool wanted = p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1;
+    return joint_files_open(&p->joint, wanted, status, p->run->error);
 }
 
-static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
-                                   struct tri_mesh *mesh, const struct tri_quality *quality,
-                                   struct tri_error *error)
+static enum tri_status refine_into(struct program *p, const struct tri_sink *sink)
 {
-    struct par_options options = options_of(p, run);
+    struct par_options options = options_of(p);
     options.carrier = p->launch.carrier;
     options.sink = sink;
-    return refine_with(p, run, &options, mesh, quality, error);
+    return refine_with(p, &options);
 }
 
 /* On several ranks into the sink of the first, behind a queue: who receives tiles of others does not wait for the disk.
  * to: on that rank. */
-static enum tri_status refine_through_first(struct program *p, struct run *run, const struct tri_sink *to,
-                                            struct tri_mesh *mesh, const struct tri_quality *quality,
-                                            struct tri_error *error)
+static enum tri_status refine_through_first(struct program *p, const struct tri_sink *to)
 {
     struct par_queue queue;
     struct tri_sink queued;
     struct par_relay relay = {.carrier = p->launch.carrier};
-    if (to && !par_queue_begin(&queue, to, waiting_bytes(&run->plan)))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    if (to && !par_queue_begin(&queue, to, waiting_bytes(p)))
+        return tri_fail(p->run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
     if (to)
         queued = par_queue_sink(&queue);
     relay.to = to ? &queued : NULL;
-    if (run->hooks->options->memory > 0)
-        relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
+    if (p->options.memory > 0)
+        relay.room = relay.most_bytes = (size_t)waiting_bytes(p);
     const struct tri_sink relayed = par_relay_sink(&relay);
-    enum tri_status status = refine_into(p, run, &relayed, mesh, quality, error);
-    status = par_relay_finish(&relay, status, error);
+    enum tri_status status = par_relay_finish(&relay, refine_into(p, &relayed), p->run->error);
     if (to)
         par_queue_free(&queue);
     return status;
 }
 
 /* Refines on several ranks. to: where rank 0 takes tiles of all, if all cannot write together. */
-static enum tri_status refine_on_ranks(struct program *p, struct run *run, const struct tri_sink *to,
-                                       struct tri_mesh *mesh, const struct tri_quality *quality,
-                                       enum tri_status status, struct tri_error *error)
+static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink *to, enum tri_status status)
 {
-    status = join_files(p, run, status, error);
+    status = join_files(p, status);
     const struct tri_sink joint = joint_files_sink(&p->joint);
     if (!status)
-        status = p->joint.together ? refine_into(p, run, &joint, mesh, quality, error)
-                                   : refine_through_first(p, run, to, mesh, quality, error);
-    return joint_files_close(&p->joint, status, error);
-}
-
-/* A rank whose files another one commits. */
-static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
-                                   const struct tri_quality *quality, struct tri_error *error)
-{
-    enum tri_status status = refine_on_ranks(p, run, NULL, mesh, quality, TRI_OK, error);
-    tri_mesh_free(mesh);
-    return status;
+        status = p->joint.together ? refine_into(p, &joint) : refine_through_first(p, to);
+    return joint_files_close(&p->joint, status, p->run->error);
 }
 
 /* What did not fit in memory, or could not be swept. */
@@ -247,68 +230,65 @@ static void tell_of_parking(const struct program *p)
 }
 
 /* Refines, and writes what is finished meanwhile. */
-static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                             const struct tri_quality *quality, struct tri_error *error)
+static enum tri_status sweep(struct program *p)
 {
+    struct run *run = p->run;
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
-    enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
-    int64_t unused = mesh->n_vertices - before.vertices;
-    status = status ? status : streams_open(&p->streams, run, set, error);
-    status = status ? status : streams_open_text(&p->streams, run, set, error);
-    status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
+    enum tri_status status = tri_count_mesh(&before, p->mesh, NULL, p->run->error);
+    int64_t unused = p->mesh->n_vertices - before.vertices;
+    status = status ? status : streams_open(&p->streams, run);
+    status = status ? status : streams_open_text(&p->streams, run);
+    status = status ? status : streams_open_exports(&p->streams, run);
     if (p->launch.carrier)
-        status = refine_on_ranks(p, run, &streams, mesh, quality, status, error);
+        status = refine_on_ranks(p, &streams, status);
     else if (!status)
-        status = refine_into(p, run, &streams, mesh, quality, error);
+        status = refine_into(p, &streams);
     streams_close(&p->streams);
-    tri_mesh_free(mesh); /* what is left of it is no mesh */
     tell_of_parking(p);
     if (!status)
-        count_streamed(&run->counts, &before, unused, p);
+        count_streamed(p, &before, unused);
     run->remain_known = !status && p->schedule.remain_known;
     memcpy(run->remain, p->schedule.remain, sizeof run->remain);
     return status;
 }
 
 /* A stop is no failure that others have to share where the mesh that is there will be written. */
-static enum tri_status report_ranks(struct program *p, const struct run *run, enum tri_status status,
-                                    struct tri_error *error)
+static enum tri_status report_ranks(struct program *p, enum tri_status status)
 {
-    const bool is_kept = status == TRI_STOPPED && run->hooks->options->write_partial;
+    const bool is_kept = status == TRI_STOPPED && p->options.write_partial;
     enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
-                                                error);
+                                                p->run->error);
     return shared ? shared : status;
 }
 
-static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                              const struct tri_quality *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
+static enum tri_status refine(void *user, struct run *run, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report)
 {
     struct program *p = user;
-    enum tri_status status;
-    if (run->plan.swept && p->launch.rank > 0) {
-        status = help_others(p, run, mesh, quality, error);
-    } else if (run->plan.swept) {
-        status = sweep(p, run, set, mesh, quality, error);
-    } else if (p->launch.rank > 0) {
-        status = TRI_OK; /* the first rank makes the whole, and keeps its checkpoints as one task does */
-    } else {
-        struct par_options options = options_of(p, run);
+    enum tri_status status = TRI_OK;
+    p->run = run;
+    p->mesh = mesh;
+    p->quality = quality;
+    if (run->plan.swept) {
+        status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p);
+        tri_mesh_free(mesh); /* what is left of it is no mesh */
+    } else if (p->launch.rank == 0) { /* makes the whole, and keeps its checkpoints as one task does */
+        struct par_options options = options_of(p);
         options.park = run->plan.filed ? &p->park : NULL;
-        status = refine_with(p, run, &options, mesh, quality, error);
+        status = refine_with(p, &options);
         tell_of_parking(p);
         if (!status)
             progress_stage(&p->progress, "writing");
     }
     *report = p->schedule.total;
-    return p->launch.carrier ? report_ranks(p, run, status, error) : status;
+    return p->launch.carrier ? report_ranks(p, status) : status;
 }
 
-static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error)
+static enum tri_status make_room(void *user, struct run *run, double bytes)
 {
     struct program *p = user;
-    const enum tri_status status = par_park_expect(p->park, mesh, (size_t)bytes, error);
+    const enum tri_status status = par_park_expect(p->park, &run->mesh, (size_t)bytes, run->error);
     if (!p->park)
         return status;
     p->schedule.parked = par_park_bytes(p->park);
@@ -327,10 +307,10 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     return tri_estimate(mesh, quality, &executor, &sure);
 }
 
-static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)
+static enum tri_status share(void *user, struct run *run, enum tri_status status)
 {
     const struct program *p = user;
-    return shared_input(p->launch.carrier, run, status, error);
+    return shared_input(p->launch.carrier, run, status, run->error);
 }
 
 static enum tri_status agree(void *user, enum tri_status status, struct tri_error *error)
@@ -340,16 +320,15 @@ static enum tri_status agree(void *user, enum tri_status status, struct tri_erro
 }
 
 /* Of a mesh that is there as a whole. */
-static enum tri_status write_streams(struct program *p, struct run *run, struct tri_output_set *set,
-                                     struct tri_error *error)
+static enum tri_status write_streams(struct program *p, struct run *run)
 {
     const struct tri_sink sink = streams_sink(&p->streams);
     if (p->options.n_streams == 0)
         return TRI_OK;
-    enum tri_status status = make_room(p, &run->mesh, estimate_streams(run, run->mesh.n_triangles), error);
-    status = status ? status : streams_open(&p->streams, run, set, error);
+    enum tri_status status = make_room(p, run, estimate_streams(run, run->mesh.n_triangles));
+    status = status ? status : streams_open(&p->streams, run);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
-    status = status ? status : streams_hand_out(run, n_before, &sink, error);
+    status = status ? status : streams_hand_out(run, n_before, &sink);
     streams_close(&p->streams);
     return status;
 }
@@ -363,7 +342,7 @@ struct blocks {
     const struct tri_mesh *mesh;
 };
 
-static char *block_row(void *user, size_t i, char *at)
+static char *block_row(const void *user, int64_t i, char *at)
 {
     const struct blocks *blocks = user;
     int phase;
@@ -376,14 +355,13 @@ static char *block_row(void *user, size_t i, char *at)
 }
 
 /* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
-static enum tri_status write_blocks(const char *path, struct tri_output_set *set, const struct par_report *report,
-                             const struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status write_blocks(const struct program *p, const struct run *run)
 {
-    struct blocks blocks = {report, mesh};
-    const size_t n = (size_t)mesh->n_triangles;
+    struct blocks blocks = {&p->schedule, &run->mesh};
     struct tri_output *output;
-    enum tri_status status = interrupt_open(set, path, &output, error);
-    return status ? status : tri_write_table(output, n, BLOCK_ROW_BYTES, block_row, &blocks, NULL, error);
+    enum tri_status status = interrupt_open(run->outputs, p->options.blocks, &output, run->error);
+    return status ? status : tri_write_table(output, 0, run->mesh.n_triangles, BLOCK_ROW_BYTES, block_row, &blocks,
+                                             NULL, run->error);
 }
 
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
@@ -399,21 +377,19 @@ static void count_remaining(struct program *p, const struct run *run)
     p->schedule.remain_known = true;
 }
 
-static enum tri_status write_further(void *user, struct run *run, struct tri_output_set *set,
-                                     struct tri_error *error)
+static enum tri_status write_further(void *user, struct run *run)
 {
     struct program *p = user;
     char text[96];
     snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
     progress_stage(&p->progress, text);
-    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run);
     if (!status && p->options.blocks)
-        status = write_blocks(p->options.blocks, set, &p->schedule, &run->mesh, error);
+        status = write_blocks(p, run);
     if (status || !p->options.report)
         return status;
     count_remaining(p, run);
-    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads,
-                        error);
+    return report_write(run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads);
 }
 
 /* --- arguments */
@@ -503,7 +479,7 @@ static struct run_hooks hooks_of(struct program *p)
     const struct par_carrier *carrier = p->launch.carrier;
     const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     return (struct run_hooks){.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
-                              .write = write_further, .streams = true,
+                              .write = write_further,
                               .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
                               .written_elsewhere = p->launch.rank > 0, .n_ranks = carrier ? carrier->n_ranks : 0,
                               .share = carrier ? share : NULL, .agree = carrier ? agree : NULL,

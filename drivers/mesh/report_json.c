@@ -216,27 +216,26 @@ enum tri_status report_check(struct tri_error *error)
     return TRI_OK;
 }
 
-static enum tri_status write_text(const char *path, struct tri_output_set *set, const char *text,
-                                  struct tri_error *error)
+static enum tri_status write_text(const struct run *run, const char *text)
 {
     struct tri_output *output;
-    if (path[0] == '-' && path[1] == 0) {
+    if (long_options_report_is_printed(run->hooks->options)) {
         puts(text);
         return TRI_OK; /* the caller looks whether all that was printed is out */
     }
-    enum tri_status status = interrupt_open(set, path, &output, error);
-    status = status ? status : tri_output_write(output, text, strlen(text), error);
-    return status ? status : tri_output_write(output, "\n", 1, error);
+    enum tri_status status = interrupt_open(run->outputs, run->hooks->options->report, &output, run->error);
+    status = status ? status : tri_output_write(output, text, strlen(text), run->error);
+    return status ? status : tri_output_write(output, "\n", 1, run->error);
 }
 
-enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
-                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
-                             struct tri_error *error)
+enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
+                             int threads)
 {
     json_t *report = report_of(run, schedule, ranks, threads);
     char *text = report ? json_dumps(report, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
-    enum tri_status status = text ? write_text(path, set, text, error)
-                                  : tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for the report");
+    enum tri_status status = text ? write_text(run, text)
+                                  : tri_fail(run->error, TRI_NO_MEMORY, run->hooks->options->report, 0,
+                                             "out of memory for the report");
     free(text);
     json_decref(report);
     return status;

@@ -10,10 +10,9 @@
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);
 
-/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh; of several ranks that
- * of the first. Takes a pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
-                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
-                             struct tri_error *error);
+/* Writes it into run->outputs. schedule: NULL, or what refined the mesh; of several ranks that of the first. Takes a
+ * pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
+                             int threads);
 
 #endif

@@ -70,19 +70,19 @@ static void tell(const struct console *console, const struct tri_check_report *r
     console_say(console, "  Delaunay property: %s.\n", conforming ? "conforming Delaunay" : "constrained Delaunay");
 }
 
-enum tri_status self_check(const struct console *console, bool conforming, const struct tri_mesh *mesh, int32_t base,
-                           double memory, const char *scratch, struct tri_error *error)
+enum tri_status self_check(const struct run *run, double memory)
 {
+    const bool conforming = run->arguments->switches.conforming;
     struct tri_check_report report;
     const struct tri_check_options options = {
-        .max_bad = INT64_MAX, .ignore_lost = true, .base = base,
+        .max_bad = INT64_MAX, .ignore_lost = true, .base = run->base,
         .delaunay = conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED};
-    struct tri_check_source source = source_of(mesh);
+    struct tri_check_source source = source_of(&run->mesh);
     source.memory = memory > 0 ? fmax(memory, least_bytes(&source)) : 0;
-    source.scratch = scratch;
-    console_say(console, "Checking the mesh.\n");
-    enum tri_status status = tri_check_from(&source, NULL, &options, &report, error);
+    source.scratch = run->hooks->options->scratch;
+    console_say(&run->console, "Checking the mesh.\n");
+    enum tri_status status = tri_check_from(&source, NULL, &options, &report, run->error);
     if (!status)
-        tell(console, &report, conforming);
+        tell(&run->console, &report, conforming);
     return status;
 }

@@ -9,41 +9,25 @@
 #include <unistd.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/console.h"
 #include "drivers/mesh/help.h"
-#include "drivers/mesh/mesh_files.h"
 #include "drivers/mesh/plan.h"
 #include "drivers/mesh/self_check.h"
 #include "drivers/mesh/summary.h"
 #include "drivers/resources.h"
 #include "triangle/base/clock.h"
 #include "triangle/refine/census.h"
-#include "triangle/text/names.h"
-
-/* A run and its clock. */
-struct runner {
-    struct run run;
-    struct console console;
-    struct tri_names names; /* of what is read */
-    int64_t input_warnings;
-    double begin, mark; /* when the run and the stage began */
-    int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
-    int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
-    bool built;         /* there is a mesh: what stops now leaves one that is valid */
-    struct tri_error *error;
-};
 
 static struct tri_output_set outputs; /* its temporary names are published to the handlers (interrupt.c) */
 
 /* Ends a stage; the next one begins. */
-static void end_stage(struct runner *r, enum run_stage stage)
+static void end_stage(struct run *r, enum run_stage stage)
 {
     double time = tri_seconds();
-    r->run.seconds[stage] += time - r->mark;
+    r->seconds[stage] += time - r->mark;
     r->mark = time;
 }
 
-static void say_milliseconds(const struct runner *r, const char *what, double seconds)
+static void say_milliseconds(const struct run *r, const char *what, double seconds)
 {
     console_say(&r->console, "%s milliseconds:  %.0f\n", what, floor(1000 * seconds));
 }
@@ -52,16 +36,16 @@ static void say_milliseconds(const struct runner *r, const char *what, double se
 
 static void warn_of_switch(void *user, const char *text, bool misread)
 {
-    const struct runner *r = user;
+    const struct run *r = user;
     if (misread) /* which cannot have been meant */
         console_remark(&r->console, "warning: %s\n", text);
     else
         console_warn(&r->console, "%s.\n", text);
 }
 
-static enum tri_status check_switches(struct runner *r)
+static enum tri_status check_switches(struct run *r)
 {
-    const struct tri_switches *s = &r->run.arguments->switches;
+    const struct tri_switches *s = &r->arguments->switches;
     tri_switches_warn(s, warn_of_switch, r);
     enum tri_status status = tri_switches_check(s, r->error);
     if (!status && s->mesh && s->no_iteration)
@@ -74,45 +58,42 @@ static enum tri_status check_switches(struct runner *r)
 
 static void warn_of_input(void *user, const char *file, long line, const char *text)
 {
-    struct runner *r = user;
+    struct run *r = user;
     if (r->input_warnings++ < CONSOLE_SERIES_LINES)
         console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
 }
 
-static enum tri_status read_pslg(struct runner *r, const struct tri_names *names,
-                                 const struct tri_read_options *options)
+static enum tri_status read_pslg(struct run *r, const struct tri_read_options *options)
 {
-    struct run *run = &r->run;
-    if (!run->arguments->switches.segments) {
+    const struct tri_names *names = &r->names;
+    if (!r->arguments->switches.segments) {
         console_say(&r->console, "Opening %s.\n", names->node);
-        return tri_read_node(names->node, options, &run->pslg, &run->base, r->error);
+        return tri_read_node(names->node, options, &r->pslg, &r->base, r->error);
     }
     console_say(&r->console, "Opening %s.\n", names->poly);
-    enum tri_status status = tri_read_poly(names->poly, names->node, options, &run->pslg, &run->base,
-                                           &run->points_in_poly, r->error);
-    if (!status && !run->points_in_poly)
+    enum tri_status status = tri_read_poly(names->poly, names->node, options, &r->pslg, &r->base, &r->points_in_poly,
+                                           r->error);
+    if (!status && !r->points_in_poly)
         console_say(&r->console, "Opening %s.\n", names->node);
     return status;
 }
 
 /* The triangles of a mesh that is to be refined, and their area bounds. */
-static enum tri_status read_mesh(struct runner *r, const struct tri_names *names,
-                                 const struct tri_read_options *options)
+static enum tri_status read_mesh(struct run *r, const struct tri_read_options *options)
 {
-    struct run *run = &r->run;
+    const struct tri_names *names = &r->names;
     console_say(&r->console, "Opening %s.\n", names->ele);
-    enum tri_status status =
-        tri_read_ele(names->ele, options, run->base, run->pslg.n_points, &run->elements, r->error);
-    if (status || !run->arguments->switches.area_lists)
+    enum tri_status status = tri_read_ele(names->ele, options, r->base, r->pslg.n_points, &r->elements, r->error);
+    if (status || !r->arguments->switches.area_lists)
         return status;
     console_say(&r->console, "Opening %s.\n", names->area);
-    return tri_read_area(names->area, options, run->base, &run->elements, r->error);
+    return tri_read_area(names->area, options, r->base, &r->elements, r->error);
 }
 
 /* Where the file that was named is there, but not of a kind that is read, the error says which kinds are. */
-static void add_hint(const struct runner *r)
+static void add_hint(const struct run *r)
 {
-    const char *file = r->run.arguments->file;
+    const char *file = r->arguments->file;
     struct tri_error *error = r->error;
     bool is_another = error->status == TRI_CANNOT_READ && access(file, F_OK) == 0 && strcmp(file, error->file) != 0;
     bool is_no_text = error->status == TRI_BAD_INPUT && strstr(error->text, "not a text file");
@@ -123,13 +104,13 @@ static void add_hint(const struct runner *r)
 }
 
 /* Once the .poly has been read it is known whether the .node is, too. */
-static struct file_names files_read(const struct runner *r)
+static struct file_names files_read(const struct run *r)
 {
-    const struct tri_switches *s = &r->run.arguments->switches;
+    const struct tri_switches *s = &r->arguments->switches;
     struct file_names read = {0};
     if (s->segments)
         read.name[read.n++] = r->names.poly;
-    if (!r->run.points_in_poly)
+    if (!r->points_in_poly)
         read.name[read.n++] = r->names.node;
     if (s->mesh)
         read.name[read.n++] = r->names.ele;
@@ -138,22 +119,22 @@ static struct file_names files_read(const struct runner *r)
     return read;
 }
 
-static enum tri_status read_input(struct runner *r)
+static enum tri_status read_input(struct run *r)
 {
-    const struct tri_switches *s = &r->run.arguments->switches;
+    const struct tri_switches *s = &r->arguments->switches;
     struct tri_read_options options = {.default_base = s->from_zero ? 0 : 1,
                                        .want_regions = tri_switches_use_regions(s),
                                        .may_be_empty = s->mesh,
                                        .refining = s->mesh,
-                                       .executor = r->run.hooks->executor,
+                                       .executor = r->hooks->executor,
                                        .stop = interrupt_stop(),
                                        .warn = warn_of_input,
                                        .warn_user = r};
     const struct file_names files = files_read(r);
-    enum tri_status status = plan_check_files(&r->run, &files, r->error);
-    status = status ? status : read_pslg(r, &r->names, &options);
+    enum tri_status status = plan_check_files(r, &files);
+    status = status ? status : read_pslg(r, &options);
     if (!status && s->mesh)
-        status = read_mesh(r, &r->names, &options);
+        status = read_mesh(r, &options);
     console_series_end(&r->console, r->input_warnings, "of this kind");
     if (status)
         add_hint(r);
@@ -161,60 +142,60 @@ static enum tri_status read_input(struct runner *r)
 }
 
 /* Of several ranks one reads. */
-static enum tri_status get_input(struct runner *r)
+static enum tri_status get_input(struct run *r)
 {
-    const struct run_hooks *hooks = r->run.hooks;
+    const struct run_hooks *hooks = r->hooks;
     interrupt_stage("reading");
     enum tri_status status = hooks->written_elsewhere ? TRI_OK : read_input(r);
     if (hooks->share)
-        status = hooks->share(hooks->user, &r->run, status, r->error);
+        status = hooks->share(hooks->user, r, status);
     else if (!status)
-        status = plan_check_input(&r->run, &r->console, r->error);
+        status = plan_check_input(r);
     end_stage(r, RUN_READ);
     return status;
 }
 
 /* --- mesh */
 
-static void say_carving(const struct runner *r)
+static void say_carving(const struct run *r)
 {
-    const struct tri_switches *s = &r->run.arguments->switches;
-    const struct tri_pslg *pslg = &r->run.pslg;
+    const struct tri_switches *s = &r->arguments->switches;
+    const struct tri_pslg *pslg = &r->pslg;
     if (!s->segments)
         return;
     if (!s->keep_hull || (pslg->n_holes > 0 && !s->ignore_holes))
         console_say(&r->console, "Removing triangles outside and in holes.\n");
-    if (r->run.options.spread_regions && pslg->n_regions > 0)
+    if (r->options.spread_regions && pslg->n_regions > 0)
         console_say(&r->console, "Spreading %s%s%s of regions.\n", s->regions ? "attributes" : "",
                     s->regions && s->area_lists ? " and " : "", s->area_lists ? "area bounds" : "");
 }
 
-static void warn_of_loose(const struct runner *r)
+static void warn_of_loose(const struct run *r)
 {
-    const int32_t loose = r->run.report.loose;
+    const int32_t loose = r->report.loose;
     if (loose > 0)
         console_warn(&r->console, "%ld segments are no edges of the mesh. They are copied, but not kept by the mesh.\n",
                      (long)loose);
 }
 
 /* There is a mesh. */
-static void say_built(struct runner *r)
+static void say_built(struct run *r)
 {
-    const struct tri_switches *s = &r->run.arguments->switches;
+    const struct tri_switches *s = &r->arguments->switches;
     end_stage(r, s->mesh ? RUN_DELAUNAY : RUN_HOLES);
     if (s->mesh) {
-        say_milliseconds(r, "Mesh reconstruction", r->run.seconds[RUN_DELAUNAY]);
+        say_milliseconds(r, "Mesh reconstruction", r->seconds[RUN_DELAUNAY]);
         warn_of_loose(r);
     } else if (s->segments) {
-        say_milliseconds(r, "Hole", r->run.seconds[RUN_HOLES]);
+        say_milliseconds(r, "Hole", r->seconds[RUN_HOLES]);
     }
 }
 
 /* Called when a stage begins: the lines that end the one before, then those of the new one. */
 static void follow_stage(void *user, enum tri_stage begins)
 {
-    struct runner *r = user;
-    const struct tri_switches *s = &r->run.arguments->switches;
+    struct run *r = user;
+    const struct tri_switches *s = &r->arguments->switches;
     switch (begins) {
     case TRI_STAGE_DELAUNAY:
         interrupt_stage("building the Delaunay triangulation");
@@ -222,7 +203,7 @@ static void follow_stage(void *user, enum tri_stage begins)
         break;
     case TRI_STAGE_SEGMENTS:
         end_stage(r, RUN_DELAUNAY);
-        say_milliseconds(r, "Delaunay", r->run.seconds[RUN_DELAUNAY]);
+        say_milliseconds(r, "Delaunay", r->seconds[RUN_DELAUNAY]);
         interrupt_stage("recovering segments");
         if (s->segments)
             console_say(&r->console, "Recovering segments.\n");
@@ -231,7 +212,7 @@ static void follow_stage(void *user, enum tri_stage begins)
         interrupt_stage(s->segments ? "removing holes" : "preparing the mesh");
         end_stage(r, RUN_SEGMENTS);
         if (s->segments || s->keep_hull)
-            say_milliseconds(r, "Segment", r->run.seconds[RUN_SEGMENTS]);
+            say_milliseconds(r, "Segment", r->seconds[RUN_SEGMENTS]);
         say_carving(r);
         break;
     case TRI_STAGE_REBUILD:
@@ -249,38 +230,30 @@ static void follow_stage(void *user, enum tri_stage begins)
 }
 
 /* A stop that nobody has noticed counts as one up to here, unless the mesh is finished, and not kept elsewhere. */
-static enum tri_status notice_stop(struct runner *r, enum tri_status status)
+static enum tri_status notice_stop(struct run *r, enum tri_status status)
 {
-    if (r->built && long_options_state(r->run.hooks->options))
+    if (r->built && long_options_state(r->hooks->options))
         return status;
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
 
 /* Refuses what cannot be before it costs time. */
-static enum tri_status look_ahead(struct runner *r)
+static enum tri_status look_ahead(struct run *r)
 {
-    struct estimate estimate = estimate_make(&r->run, false);
-    return plan_make(&r->run.plan, &r->run, &estimate, &r->console, r->error);
-}
-
-/* For a dry run. */
-static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
-                             struct tri_refine_report *report, struct tri_error *error)
-{
-    (void)user, (void)mesh, (void)quality, (void)report, (void)error;
-    return TRI_OK;
+    struct estimate estimate = estimate_make(r, false);
+    return plan_make(&r->plan, r, &estimate);
 }
 
 /* Files of a mesh that is there are written though somebody asks for the end, as long as there is time. */
-static void begin_outputs(const struct runner *r)
+static void begin_outputs(const struct run *r)
 {
     interrupt_begin(&outputs);
-    if (r->run.hooks->options->write_partial || long_options_state(r->run.hooks->options))
+    if (r->hooks->options->write_partial || long_options_state(r->hooks->options))
         outputs.stop = interrupt_end();
 }
 
 /* What will be told of the input, though its vertices will be gone then. */
-static enum tri_status keep_twins(struct runner *r, const struct tri_mesh *mesh)
+static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
 {
     const int32_t *origin = mesh->origin, n = mesh->n_input;
     if (!mesh->twin)
@@ -293,19 +266,11 @@ static enum tri_status keep_twins(struct runner *r, const struct tri_mesh *mesh)
     return TRI_OK;
 }
 
-/* Files are written while the mesh is refined. */
-static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh)
-{
-    if (!r->run.hooks->written_elsewhere)
-        begin_outputs(r);
-    return keep_twins(r, mesh);
-}
-
 /* Counts the vertices of no triangle while the mesh is small: refinement makes none (tri_count_refined). */
-static enum tri_status count_unused(struct runner *r, const struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status count_unused(struct run *r, const struct tri_mesh *mesh, struct tri_error *error)
 {
     struct tri_counts before;
-    enum tri_status status = tri_count_mesh(&before, mesh, r->run.hooks->executor, error);
+    enum tri_status status = tri_count_mesh(&before, mesh, r->hooks->executor, error);
     r->unused = status ? -1 : mesh->n_vertices - before.vertices;
     return status;
 }
@@ -313,107 +278,100 @@ static enum tri_status count_unused(struct runner *r, const struct tri_mesh *mes
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
-    struct runner *r = user;
-    const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = look_ahead(r);
-    if (status)
+    struct run *r = user;
+    const struct run_hooks *hooks = r->hooks;
+    enum tri_status status = hooks->options->dry_run ? TRI_OK : look_ahead(r);
+    if (status || hooks->options->dry_run)
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
     interrupt_reached(mesh->n_triangles, " triangles");
-    status = r->run.plan.swept ? begin_sweep(r, mesh) : count_unused(r, mesh, error);
+    if (r->plan.swept && !hooks->written_elsewhere)
+        begin_outputs(r);
+    status = r->plan.swept ? keep_twins(r, mesh) : count_unused(r, mesh, error);
     if (!status)
-        status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
+        status = hooks->refine ? hooks->refine(hooks->user, r, mesh, quality, report)
                                : tri_refine(mesh, quality, report, error);
     status = notice_stop(r, status);
-    if (status && r->run.plan.swept && !hooks->written_elsewhere)
+    if (status && r->plan.swept && !hooks->written_elsewhere)
         interrupt_drop(&outputs);
     return status;
 }
 
-/* The mesh, refined or, for an estimate, as it is before. */
-static enum tri_status generate(struct runner *r, bool refined)
+/* The mesh, refined or, in a dry run, as it is before. */
+static enum tri_status generate(struct run *r)
 {
-    struct run *run = &r->run;
-    const struct tri_switches *s = &run->arguments->switches;
-    struct tri_options options = run->options;
-    if (!s->mesh && tri_pslg_is_one_place(&run->pslg))
-        return tri_fail(r->error, TRI_BAD_INPUT, run->arguments->file, 0, "all vertices are at the same place");
-    run->is_edge = s->mesh ? malloc(((size_t)run->pslg.n_segments + 1) * sizeof *run->is_edge) : NULL;
-    if (s->mesh && !run->is_edge)
-        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)run->pslg.n_segments);
-    options.refine_call = refined ? refine : leave;
+    const struct tri_switches *s = &r->arguments->switches;
+    struct tri_options options = r->options;
+    if (!s->mesh && tri_pslg_is_one_place(&r->pslg))
+        return tri_fail(r->error, TRI_BAD_INPUT, r->arguments->file, 0, "all vertices are at the same place");
+    r->is_edge = s->mesh ? malloc(((size_t)r->pslg.n_segments + 1) * sizeof *r->is_edge) : NULL;
+    if (s->mesh && !r->is_edge)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)r->pslg.n_segments);
+    options.refine_call = refine;
     options.refine_user = options.stage_user = r;
     options.stage = follow_stage;
-    options.executor = run->hooks->executor;
+    options.executor = r->hooks->executor;
     options.stop = interrupt_stop();
-    options.elements = s->mesh ? &run->elements : NULL;
-    options.is_edge = run->is_edge;
-    options.base = run->base;
-    enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    options.elements = s->mesh ? &r->elements : NULL;
+    options.is_edge = r->is_edge;
+    options.base = r->base;
+    enum tri_status status = tri_generate(&r->mesh, &r->pslg, &options, &r->report, r->error);
     if (r->built) /* not the input's fault */
         return notice_stop(r, status);
     if (status == TRI_BAD_INPUT && s->mesh)
-        snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
+        snprintf(r->error->file, sizeof r->error->file, "%s.ele", r->arguments->input);
     else if (status == TRI_BAD_INPUT)
-        snprintf(r->error->file, sizeof r->error->file, "%s", run->arguments->file);
+        snprintf(r->error->file, sizeof r->error->file, "%s", r->arguments->file);
     return notice_stop(r, status);
 }
 
-static void tell_of_quality(struct runner *r)
+static void tell_of_quality(struct run *r)
 {
-    struct run *run = &r->run;
-    const struct tri_refine_report *report = &run->report.quality;
-    if (!run->options.refine)
+    const struct tri_refine_report *report = &r->report.quality;
+    if (!r->options.refine)
         return;
-    say_milliseconds(r, run->plan.swept ? "Quality and output" : "Quality", run->seconds[RUN_QUALITY]);
-    if (run->report.notes.empty[0])
+    say_milliseconds(r, r->plan.swept ? "Quality and output" : "Quality", r->seconds[RUN_QUALITY]);
+    if (r->report.notes.empty[0])
         return; /* no triangle keeps anything */
-    if (report->hit_limit && run->options.quality.conforming)
+    if (report->hit_limit && r->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
-    if (!r->console.quiet && !run->plan.swept) { /* a pass over all triangles */
-        summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor, run->remain);
-        run->remain_known = true;
-    } else if (run->remain_known) {
-        summary_remaining(&r->console, run->remain, &run->options.quality, report);
-    }
+    summary_bounds(r);
 }
 
 /* --- a run that is stopped */
 
 /* Triangles below the bounds, where counting them takes no time to speak of; else -1. */
-static int64_t count_bad(const struct runner *r)
+static int64_t count_bad(const struct run *r)
 {
     enum { SOON_COUNTED = 1 << 22 };
-    const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
-    if (!run->options.refine || run->plan.swept || run->mesh.n_triangles > SOON_COUNTED)
+    if (!r->options.refine || r->plan.swept || r->mesh.n_triangles > SOON_COUNTED)
         return -1;
-    tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor, count);
+    tri_count_bad(&r->mesh, &r->options.quality, &r->report.quality, r->hooks->executor, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     return sum;
 }
 
 /* What there is of the mesh, as far as this process knows: on several ranks each has a part. */
-static void tell_how_far(const struct runner *r, char *far, size_t size)
+static void tell_how_far(const struct run *r, char *far, size_t size)
 {
-    const struct run *run = &r->run;
     const int64_t bad = r->built ? count_bad(r) : -1;
-    if (run->plan.swept) {
+    if (r->plan.swept) {
         const char *what;
         const int64_t reached = interrupt_reached_now(&what);
         if (reached > 0)
             snprintf(far, size, ": about %" PRId64 "%s", reached, what);
         return;
     }
-    int length = r->built ? snprintf(far, size, ": %ld triangles", (long)run->mesh.n_triangles) : 0;
+    int length = r->built ? snprintf(far, size, ": %ld triangles", (long)r->mesh.n_triangles) : 0;
     if (bad >= 0)
         snprintf(far + length, size - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
 }
 
 /* By what, when, where, how far; and what is kept. */
-static void tell_of_stop(struct runner *r, bool partial)
+static void tell_of_stop(struct run *r, bool partial)
 {
     struct tri_error line = {.status = TRI_STOPPED};
     char far[160] = "";
@@ -430,32 +388,23 @@ static void tell_of_stop(struct runner *r, bool partial)
 }
 
 /* After a stop: is there a mesh, and is it wanted? Then on with it. */
-static enum tri_status keep_partial(struct runner *r, enum tri_status status)
+static enum tri_status keep_partial(struct run *r, enum tri_status status)
 {
-    if (status != TRI_STOPPED || !r->built || !r->run.hooks->options->write_partial)
+    if (status != TRI_STOPPED || !r->built || !r->hooks->options->write_partial)
         return status;
     tell_of_stop(r, true);
-    r->run.stopped = interrupt_cause();
-    r->run.mesh.stop = NULL;
+    r->stopped = interrupt_cause();
+    r->mesh.stop = NULL;
     interrupt_go_on();
     return TRI_OK;
 }
 
-/* What was odd about the input; said when the vertices have the numbers of the input again. */
-static void tell_of_input(const struct runner *r)
-{
-    summary_duplicates(&r->console, r->run.plan.swept ? r->twin : r->run.mesh.twin, &r->run.pslg);
-    summary_segments(&r->console, &r->run.report.constrain);
-    summary_holes(&r->console, &r->run.report);
-    summary_notes(&r->console, &r->run.report.notes);
-}
-
 /* --- output */
 
-static enum tri_status make_room(struct runner *r, double bytes)
+static enum tri_status make_room(struct run *r, double bytes)
 {
-    const struct run_hooks *hooks = r->run.hooks;
-    return hooks->make_room ? hooks->make_room(hooks->user, &r->run.mesh, bytes, r->error) : TRI_OK;
+    const struct run_hooks *hooks = r->hooks;
+    return hooks->make_room ? hooks->make_room(hooks->user, r, bytes) : TRI_OK;
 }
 
 /* Lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and 12 a triangle for the
@@ -466,82 +415,76 @@ static double list_bytes(const struct tri_switches *s, const struct tri_mesh *me
     return ((s->second_order ? 18 : edges ? 6 : 0) + (s->jettison ? 4 : 0)) * (double)mesh->n_triangles;
 }
 
-static enum tri_status write_mesh(struct runner *r)
+static enum tri_status write_mesh(struct run *r)
 {
-    struct run *run = &r->run;
-    if (run->arguments->switches.second_order)
+    if (r->arguments->switches.second_order)
         console_say(&r->console, "Adding nodes amid edges.\n");
     console_say(&r->console, "\n");
     r->mark = tri_seconds();
-    const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)run->mesh.n_triangles);
-    enum tri_status status = make_room(r, waiting + list_bytes(&run->arguments->switches, &run->mesh));
-    status = status ? status : mesh_files_write(run, &r->console, &outputs, r->error);
+    const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)r->mesh.n_triangles);
+    enum tri_status status = make_room(r, waiting + list_bytes(&r->arguments->switches, &r->mesh));
+    status = status ? status : mesh_files_write(r);
     end_stage(r, RUN_WRITE);
     if (status)
         return status;
     console_say(&r->console, "\n");
-    say_milliseconds(r, "Output", run->seconds[RUN_WRITE]);
+    say_milliseconds(r, "Output", r->seconds[RUN_WRITE]);
     return TRI_OK;
 }
 
 /* -C. The judge keeps to what is left of a bound; pages of a mesh that lies in files take some of that, too. */
-static enum tri_status check(struct runner *r)
+static enum tri_status check(struct run *r)
 {
     const double OF_FILES = 0.75;
-    const struct run *run = &r->run;
-    const struct long_options *limits = run->hooks->options;
-    enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
-    const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
-    return status ? status
-                  : self_check(&r->console, run->arguments->switches.conforming, &run->mesh, run->base,
-                               limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch, r->error);
+    enum tri_status status = make_room(r, self_check_least_bytes(&r->mesh));
+    const double left = r->mesh.storage ? OF_FILES * plan_memory_left(r) : plan_memory_left(r);
+    return status ? status : self_check(r, r->hooks->options->memory > 0 ? fmax(left, 1) : 0);
 }
 
-static enum tri_status tell(struct runner *r)
+static enum tri_status tell(struct run *r)
 {
-    struct run *run = &r->run;
-    const struct tri_switches *s = &run->arguments->switches;
+    const struct tri_switches *s = &r->arguments->switches;
     enum tri_status status = TRI_OK;
-    if (!run->plan.swept && r->unused >= 0)
-        tri_count_refined(&run->counts, &run->mesh, r->unused);
-    else if (!run->plan.swept)
-        status = tri_count_mesh(&run->counts, &run->mesh, run->hooks->executor, r->error);
-    run->total_seconds = tri_seconds() - r->begin;
+    if (!r->plan.swept && r->unused >= 0)
+        tri_count_refined(&r->counts, &r->mesh, r->unused);
+    else if (!r->plan.swept)
+        status = tri_count_mesh(&r->counts, &r->mesh, r->hooks->executor, r->error);
+    r->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
-    say_milliseconds(r, "Total running", run->total_seconds);
-    run->counts.interior += run->report.loose; /* as Triangle counts */
-    run->counts.subsegments += run->report.loose;
-    summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
+    say_milliseconds(r, "Total running", r->total_seconds);
+    r->counts.interior += r->report.loose; /* as Triangle counts */
+    r->counts.subsegments += r->report.loose;
+    summary_counts(r);
     if (s->verbosity > 0)
-        summary_shapes(&run->mesh, &run->report, run->hooks->executor);
+        summary_shapes(r);
     return s->check ? check(r) : TRI_OK;
 }
 
-static enum tri_status write_all(struct runner *r)
+static enum tri_status write_all(struct run *r)
 {
-    const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r);
+    const struct run_hooks *hooks = r->hooks;
+    enum tri_status status = r->plan.swept ? TRI_OK : write_mesh(r);
     status = status ? status : tell(r);
     if (!status && hooks->write)
-        status = hooks->write(hooks->user, &r->run, &outputs, r->error);
+        status = hooks->write(hooks->user, r);
     return status ? status : console_flush(r->error);
 }
 
 /* One word for all ranks. */
-static enum tri_status agree(struct runner *r, enum tri_status status)
+static enum tri_status agree(struct run *r, enum tri_status status)
 {
-    const struct run_hooks *hooks = r->run.hooks;
+    const struct run_hooks *hooks = r->hooks;
     return hooks->agree ? hooks->agree(hooks->user, status, r->error) : status;
 }
 
 /* Whatever can fail comes before the commit, what is printed included, and what others do. */
-static enum tri_status write_output(struct runner *r)
+static enum tri_status write_output(struct run *r)
 {
-    if (r->run.hooks->written_elsewhere)
+    if (r->hooks->written_elsewhere)
         return agree(r, TRI_OK);
     interrupt_stage("writing");
-    if (!r->run.plan.swept)
+    if (!r->plan.swept)
         begin_outputs(r);
     enum tri_status status = agree(r, write_all(r));
     if (!status)
@@ -552,50 +495,43 @@ static enum tri_status write_output(struct runner *r)
 
 /* --- all together */
 
-/* Does each file have a place of its own? */
-static enum tri_status check_files(const struct runner *r)
+static enum tri_status make_mesh(struct run *r)
 {
-    const struct file_names read = files_read(r);
-    return mesh_files_check(&r->run, &read, r->error);
-}
-
-static enum tri_status make_mesh(struct runner *r)
-{
-    enum tri_status status = keep_partial(r, generate(r, true));
+    enum tri_status status = keep_partial(r, generate(r));
     end_stage(r, RUN_QUALITY);
     if (status)
         return status;
     tell_of_quality(r);
-    tell_of_input(r);
+    summary_input(r); /* when the vertices have the numbers of the input again */
     return TRI_OK;
 }
 
 /* A dry run ends here, and says where the true one would be refused. */
-static enum tri_status print_estimate(struct runner *r)
+static enum tri_status print_estimate(struct run *r)
 {
-    enum tri_status status = generate(r, false);
+    enum tri_status status = generate(r);
     if (status)
         return status;
-    summary_notes(&r->console, &r->run.report.notes);
-    struct estimate estimate = estimate_make(&r->run, true);
-    if (r->run.options.refine)
-        status = plan_make(&r->run.plan, &r->run, &estimate, &r->console, r->error);
-    plan_print(&r->run, &estimate);
+    summary_notes(r);
+    struct estimate estimate = estimate_make(r, true);
+    if (r->options.refine)
+        status = plan_make(&r->plan, r, &estimate);
+    plan_print(r, &estimate);
     return status;
 }
 
-static enum tri_status run_stages(struct runner *r)
+static enum tri_status run_stages(struct run *r)
 {
-    struct run *run = &r->run;
     enum tri_status status = check_switches(r);
-    const char *input = run->arguments->input;
+    const char *input = r->arguments->input;
     status = status ? status : tri_names_make(&r->names, input, strlen(input), r->error);
     status = status ? status : get_input(r);
     if (status)
         return status;
-    if (run->hooks->options->dry_run)
+    if (r->hooks->options->dry_run)
         return print_estimate(r);
-    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r);
+    const struct file_names read = files_read(r);
+    status = r->hooks->written_elsewhere ? TRI_OK : mesh_files_check(r, &read);
     status = status ? status : make_mesh(r);
     return status ? status : write_output(r);
 }
@@ -609,12 +545,12 @@ static double patience_of(const struct run_hooks *hooks)
     return !long_options_state(hooks->options) ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
 }
 
-static enum tri_status run_file(struct runner *r)
+static enum tri_status run_file(struct run *r)
 {
-    const struct long_options *limits = r->run.hooks->options;
+    const struct long_options *limits = r->hooks->options;
     r->begin = r->mark = tri_seconds();
     resources_save_address_space();
-    if (!interrupt_start(r->run.hooks->program, limits->time_limit, patience_of(r->run.hooks)))
+    if (!interrupt_start(r->hooks->program, limits->time_limit, patience_of(r->hooks)))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status)
@@ -626,12 +562,12 @@ static enum tri_status run_file(struct runner *r)
     return status;
 }
 
-static void free_run(struct runner *r)
+static void free_run(struct run *r)
 {
-    tri_mesh_free(&r->run.mesh);
-    tri_pslg_free(&r->run.pslg);
-    tri_elements_free(&r->run.elements);
-    free(r->run.is_edge);
+    tri_mesh_free(&r->mesh);
+    tri_pslg_free(&r->pslg);
+    tri_elements_free(&r->elements);
+    free(r->is_edge);
     free(r->twin);
     tri_names_free(&r->names);
 }
@@ -640,9 +576,8 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
 {
     const struct tri_switches *s = &arguments->switches;
     struct tri_error error = {0};
-    struct runner r = {.run = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s)},
-                       .unused = -1,
-                       .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
+    struct run r = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s), .unused = -1,
+                    .outputs = &outputs, .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)
         help_full(hooks->program, "on one core", NULL); /* another program has taken this word itself */
@@ -651,23 +586,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
     else
         status = run_file(&r);
     free_run(&r);
-    if (interrupt_code() != 0 && (status == TRI_STOPPED || (!status && r.run.stopped)))
+    if (interrupt_code() != 0 && (status == TRI_STOPPED || (!status && r.stopped)))
         return interrupt_code();
     return console_close(&r.console) && !status ? EXIT_SUCCESS : EXIT_FAILURE;
-}
-
-int run_words(int argc, char **argv, const struct run_hooks *hooks)
-{
-    struct arguments arguments = arguments_begin(argc, argv);
-    struct tri_error error = {0};
-    console_open();
-    for (int i = 1; i < argc; i++)
-        arguments_word(&arguments, argv[i]);
-    if (arguments_end(&arguments, &error)) {
-        console_error(&(struct console){.program = hooks->program}, &error);
-        return EXIT_FAILURE;
-    }
-    int code = run_arguments(&arguments, hooks);
-    arguments_free(&arguments);
-    return code;
 }

@@ -7,11 +7,13 @@
 #define DRIVERS_MESH_STAGES_H
 
 #include "drivers/mesh/arguments.h"
+#include "drivers/mesh/console.h"
 #include "drivers/mesh/long_options.h"
 #include "drivers/mesh/mesh_files.h"
 #include "triangle/base/executor.h"
 #include "triangle/refine/generate.h"
 #include "triangle/refine/stats.h"
+#include "triangle/text/names.h"
 #include "triangle/text/read.h"
 
 enum run_stage {
@@ -51,37 +53,45 @@ struct run {
     double seconds[RUN_STAGES];
     double total_seconds;
     const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
+    struct console console;
+    struct tri_output_set *outputs; /* the guarded set (drivers/interrupt.h) of its files */
+    struct tri_error *error;
+
+    /* Of the stages alone: */
+    struct tri_names names; /* of what is read */
+    int64_t input_warnings;
+    double begin, mark; /* when the run and the stage began */
+    int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
+    int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
+    bool built;         /* there is a mesh: what stops now leaves one that is valid */
 };
 
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into
-     * the guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
-    enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
-                              const struct tri_quality *options, struct tri_refine_report *report,
-                              struct tri_error *error);
+    /* Refines the mesh as run->plan says; NULL: tri_refine does. Where run->plan.swept, also writes its files into
+     * run->outputs, and counts it: run->counts. The mesh is gone then. */
+    enum tri_status (*refine)(void *user, struct run *run, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report);
     /* Beside a mesh that is not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
      * files. NULL: nothing moves. */
-    enum tri_status (*make_room)(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error);
+    enum tri_status (*make_room)(void *user, struct run *run, double bytes);
     /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_quality *options);
-    bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */
     int n_ranks;                    /* that share the mesh; 0: it is all here */
     /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
      * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
      * on all, with the same error. NULL: there is one. */
-    enum tri_status (*share)(void *user, struct run *run, enum tri_status status, struct tri_error *error);
+    enum tri_status (*share)(void *user, struct run *run, enum tri_status status);
     enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
     int threads;                    /* to refine with, for estimates */
     /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
     double (*cell_triangles)(double triangles);
     const struct long_options *options; /* what the command line says beyond the switches of Triangle; maybe all 0 */
-    /* Writes what the options want beside the mesh into the guarded set of files (drivers/interrupt.h) that holds those
-     * of the mesh; NULL: nothing. */
-    enum tri_status (*write)(void *user, struct run *run, struct tri_output_set *set, struct tri_error *error);
+    /* Writes what the options want beside the mesh into run->outputs; NULL: nothing. */
+    enum tri_status (*write)(void *user, struct run *run);
     void *user;
 };
 
@@ -90,8 +100,5 @@ struct run_hooks {
  * unless partial meshes are wanted and it says where one is. All files appear together, as the last thing that can
  * fail. */
 int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks);
-
-/* All of the above for a program without arguments of its own. */
-int run_words(int argc, char **argv, const struct run_hooks *hooks);
 
 #endif

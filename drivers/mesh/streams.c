@@ -31,62 +31,56 @@ static enum tri_status open_stream(struct stream *s, const char *name, bool mark
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
-                             struct tri_error *error)
+enum tri_status streams_open(struct streams *streams, const struct run *run)
 {
     const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    *streams = (struct streams){0};
+    *streams = (struct streams){.run = run};
     for (int i = 0; !status && i < o->n_streams; i++)
         status = open_stream(&streams->stream[streams->n++], o->streams[i], !run->arguments->switches.no_markers,
-                             &streams->sink[streams->n_sinks++], set, error);
+                             &streams->sink[streams->n_sinks++], run->outputs, run->error);
     return status;
 }
 
 /* One of Triangle's files, if it is wanted. */
-static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix,
-                                 struct tri_output_set *set, struct tri_error *error)
+static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix)
 {
     if (!mesh_files_has(run, suffix))
         return TRI_OK;
     char *path = tri_joined(run->arguments->output, suffix);
     if (!path)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    enum tri_status status = interrupt_open(set, path, output, error);
+        return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    enum tri_status status = interrupt_open(run->outputs, path, output, run->error);
     free(path);
     return status;
 }
 
-enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
-                                  struct tri_error *error)
+enum tri_status streams_open_text(struct streams *streams, const struct run *run)
 {
     const struct arguments *a = run->arguments;
     struct tri_text_options *o = &streams->text_options;
     *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
                                    .argc = a->argc, .argv = a->argv};
-    enum tri_status status = open_text(&o->node, run, ".node", set, error);
-    status = status ? status : open_text(&o->ele, run, ".ele", set, error);
-    status = status ? status : open_text(&o->poly, run, ".poly", set, error);
+    enum tri_status status = open_text(&o->node, run, ".node");
+    status = status ? status : open_text(&o->ele, run, ".ele");
+    status = status ? status : open_text(&o->poly, run, ".poly");
     if (status || !(o->node || o->ele || o->poly))
         return status;
-    return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], error);
+    return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], run->error);
 }
 
-enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
-                                     struct tri_output_set *set, struct tri_error *error)
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run)
 {
     const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
-    streams->markers = !run->arguments->switches.no_markers;
-    streams->executor = run->hooks->executor;
     for (int i = 0; !status && i < o->n_exports; i++) {
         streams->export[i] = export_of(o->exports[i], o->n_parts);
-        status = export_open(&streams->export[i], o->exports[i], set, error);
+        status = export_open(&streams->export[i], o->exports[i], run->outputs, run->error);
     }
     streams->n_exports = o->n_exports;
     if (status || o->n_exports == 0)
         return status;
-    return tri_tile_store_new(&streams->store, folder, &streams->sink[streams->n_sinks++], error);
+    return tri_tile_store_new(&streams->store, o->scratch, &streams->sink[streams->n_sinks++], run->error);
 }
 
 void streams_close(struct streams *streams)
@@ -108,7 +102,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     enum tri_status status = TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].begin(streams->sink[i].user, stream, error);
-    streams->vertices = streams->triangles = streams->segments = 0;
+    memset(streams->taken, 0, sizeof streams->taken);
     return status;
 }
 
@@ -118,18 +112,19 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     enum tri_status status = TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].take(streams->sink[i].user, tile, error);
-    streams->vertices += tile->n_vertices;
-    streams->triangles += tile->n_triangles;
-    streams->segments += tile->n_segments;
+    streams->taken[0] += tile->n_vertices;
+    streams->taken[1] += tile->n_triangles;
+    streams->taken[2] += tile->n_segments;
     return status;
 }
 
 static enum tri_status write_exports(struct streams *streams, struct tri_error *error)
 {
     struct tri_grid grid;
-    enum tri_status status = tri_tile_store_grid(streams->store, streams->markers, &grid, error);
+    const struct run *run = streams->run;
+    enum tri_status status = tri_tile_store_grid(streams->store, !run->arguments->switches.no_markers, &grid, error);
     for (int i = 0; !status && i < streams->n_exports; i++)
-        status = export_write(&streams->export[i], &grid, streams->executor, error);
+        status = export_write(&streams->export[i], &grid, run->hooks->executor, error);
     return status;
 }
 
@@ -245,14 +240,11 @@ static enum tri_status hand_out(struct piece *p, const double *columns, struct t
     return status ? status : hand_out_all(p, error);
 }
 
-enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
-                                 struct tri_error *error)
+enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink)
 {
-    const struct tri_switches *s = &run->arguments->switches;
-    struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
-    options.is_edge = s->segments ? run->is_edge : NULL;
+    const struct tri_grid_options options = mesh_files_grid(run);
     struct tri_grid grid;
-    enum tri_status status = tri_grid_make(&grid, &options, error);
+    enum tri_status status = tri_grid_make(&grid, &options, run->error);
     if (status)
         return status;
     struct piece *piece = malloc(sizeof *piece + PIECE * (size_t)grid.n_attributes * sizeof *piece->attributes);
@@ -262,9 +254,9 @@ enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const 
         piece->mesh = &run->mesh;
         piece->sink = sink;
         piece->n_before = n_before - (run->mesh.n_vertices - grid.n_points); /* with -j: none of these is new */
-        status = hand_out(piece, columns, error);
+        status = hand_out(piece, columns, run->error);
     } else {
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+        status = tri_fail(run->error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
     }
     free(piece);
     free(columns);

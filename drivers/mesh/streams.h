@@ -27,11 +27,10 @@ struct streams {
     int n_exports;
     struct export export[LONG_OPTIONS_MOST_EXPORTS]; /* in other formats, at the end: */
     struct tri_tile_store *store;  /* NULL: none of them */
-    bool markers;                  /* are written */
-    const struct tri_executor *executor;
+    const struct run *run;
     int n_sinks;
     struct tri_sink sink[LONG_OPTIONS_MOST_EXPORTS + 2]; /* of the HDF5 files, of the texts, of the store */
-    int64_t vertices, triangles, segments; /* taken so far */
+    int64_t taken[3]; /* vertices, triangles, segments so far */
 };
 
 #define STREAM_SUFFIX ".h5"
@@ -48,25 +47,21 @@ static inline char *stream_xdmf(const char *name)
     return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf");
 }
 
-/* Opens the HDF5 files of the run in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
- * committed. */
-enum tri_status streams_open(struct streams *streams, const struct run *run, struct tri_output_set *set,
-                             struct tri_error *error);
+/* Opens the HDF5 files of the run in run->outputs. To be closed in any case, before the set is committed. */
+enum tri_status streams_open(struct streams *streams, const struct run *run);
 
 /* And those of Triangle's files that the run asks for. */
-enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
-                                  struct tri_error *error);
+enum tri_status streams_open_text(struct streams *streams, const struct run *run);
 
-/* And those in formats that are written when all of the mesh is there; until then it lies in files in this folder. */
-enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
-                                     struct tri_output_set *set, struct tri_error *error);
+/* And those in formats that are written when all of the mesh is there; until then it lies in files in the scratch
+ * folder. */
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run);
 void streams_close(struct streams *streams);
 
 /* Hands everything to all of them. */
 struct tri_sink streams_sink(struct streams *streams);
 
 /* Hands a mesh that is in memory to a sink: n_before vertices were there before refinement. */
-enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink,
-                                 struct tri_error *error);
+enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink);
 
 #endif

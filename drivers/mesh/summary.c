@@ -8,48 +8,52 @@
 
 /* --- what went otherwise */
 
-void summary_segments(const struct console *console, const struct tri_constrain_report *report)
+static void warn_of_duplicates(const struct run *run)
 {
-    if (report->crossings > 0)
-        console_say(console, "Segments cross: %" PRId32 " vertices were made where they do.\n", report->crossings);
-    if (report->bent > 0)
-        console_warn(console, "segments were led through a vertex that lies nearly on them %" PRId32 " times.\n",
-                     report->bent);
+    const int32_t *twin = run->plan.swept ? run->twin : run->mesh.twin;
+    const double *points = run->pslg.points;
+    int64_t n = 0;
+    for (int32_t v = 0; twin && v < run->pslg.n_points; v++)
+        if (twin[v] != v && n++ < CONSOLE_SERIES_LINES)
+            console_warn(&run->console, "duplicate vertex at (%.12g, %.12g) ignored.\n", points[2 * (size_t)v],
+                         points[2 * (size_t)v + 1]);
+    console_series_end(&run->console, n, "duplicate vertices ignored");
 }
 
-void summary_holes(const struct console *console, const struct tri_report *report)
+void summary_notes(const struct run *run)
 {
+    const struct tri_notes *notes = &run->report.notes;
+    if (notes->skipped[0] && !run->console.quiet)
+        console_remark(&run->console, "warning: %s\n", notes->skipped);
+    if (notes->empty[0])
+        console_remark(&run->console, "warning: %s\n", notes->empty);
+}
+
+void summary_input(const struct run *run)
+{
+    const struct console *console = &run->console;
+    const struct tri_report *report = &run->report;
+    warn_of_duplicates(run);
+    if (report->constrain.crossings > 0)
+        console_say(console, "Segments cross: %" PRId32 " vertices were made where they do.\n",
+                    report->constrain.crossings);
+    if (report->constrain.bent > 0)
+        console_warn(console, "segments were led through a vertex that lies nearly on them %" PRId32 " times.\n",
+                     report->constrain.bent);
     if (report->carve.between > 0)
         console_warn(console, "hole points on segments, which empty nothing: %" PRId32 ".\n", report->carve.between);
+    summary_notes(run);
 }
 
-void summary_notes(const struct console *console, const struct tri_notes *notes)
-{
-    if (notes->skipped[0] && !console->quiet)
-        console_remark(console, "warning: %s\n", notes->skipped);
-    if (notes->empty[0])
-        console_remark(console, "warning: %s\n", notes->empty);
-}
-
-void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)
-{
-    int64_t n = 0;
-    for (int32_t v = 0; twin && v < pslg->n_points; v++)
-        if (twin[v] != v && n++ < CONSOLE_SERIES_LINES)
-            console_warn(console, "duplicate vertex at (%.12g, %.12g) ignored.\n", pslg->points[2 * (size_t)v],
-                         pslg->points[2 * (size_t)v + 1]);
-    console_series_end(console, n, "duplicate vertices ignored");
-}
-
-static const char *reason_of(enum tri_excuse excuse, const struct tri_quality *options,
-                             const struct tri_refine_report *report)
+static const char *reason_of(const struct run *run, enum tri_excuse excuse)
 {
     switch (excuse) {
     case TRI_EXCUSE_INPUT_ANGLE: return "at small angles of the input";
     case TRI_EXCUSE_NARROW_GAP: return "between segments too near to each other";
     case TRI_EXCUSE_PROTECTED:
-        return options->protect > 1 ? "for segments that -YY protects" : "for the boundary that -Y protects";
-    case TRI_EXCUSE_LIMIT: return report->hit_limit ? "for the limit of -S" : "where vertices ran away";
+        return run->options.quality.protect > 1 ? "for segments that -YY protects"
+                                                : "for the boundary that -Y protects";
+    case TRI_EXCUSE_LIMIT: return run->report.quality.hit_limit ? "for the limit of -S" : "where vertices ran away";
     case TRI_EXCUSE_PRECISION: return "at features too fine for the coordinates";
     default: return "for other reasons";
     }
@@ -64,60 +68,63 @@ static int64_t sum_of(const int64_t count[TRI_EXCUSES])
 }
 
 /* The rest of a line: how many for each reason. Nothing where there are none. */
-static void say_reasons(const struct console *console, const int64_t count[TRI_EXCUSES],
-                        const struct tri_quality *options, const struct tri_refine_report *report)
+static void say_reasons(const struct run *run, const int64_t count[TRI_EXCUSES])
 {
     const char *comma = "";
     for (int k = 0; k < TRI_EXCUSES; k++) {
         if (count[k] == 0)
             continue;
-        console_say(console, "%s %" PRId64 " %s", comma, count[k], reason_of((enum tri_excuse)k, options, report));
+        console_say(&run->console, "%s %" PRId64 " %s", comma, count[k], reason_of(run, (enum tri_excuse)k));
         comma = ",";
     }
     if (*comma)
-        console_say(console, ".\n");
+        console_say(&run->console, ".\n");
 }
 
-void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_quality *options, const struct tri_refine_report *report,
-                    const struct tri_executor *executor, int64_t remain[TRI_EXCUSES])
+static void say_encroached(const struct run *run)
 {
-    if (options->conforming) {
-        int64_t count[TRI_EXCUSES];
-        tri_count_encroached(mesh, options, report, count);
-        int64_t n = sum_of(count);
-        if (n > 0)
-            console_say(console, "%" PRId64 " subsegment%s a vertex in the diametral circle:", n,
-                        n == 1 ? " keeps" : "s keep");
-        say_reasons(console, count, options, report);
+    int64_t count[TRI_EXCUSES];
+    tri_count_encroached(&run->mesh, &run->options.quality, &run->report.quality, count);
+    const int64_t n = sum_of(count);
+    if (n > 0)
+        console_say(&run->console, "%" PRId64 " subsegment%s a vertex in the diametral circle:", n,
+                    n == 1 ? " keeps" : "s keep");
+    say_reasons(run, count);
+}
+
+void summary_bounds(struct run *run)
+{
+    const struct console *console = &run->console;
+    const struct tri_quality *quality = &run->options.quality;
+    if (!console->quiet && !run->plan.swept) { /* a pass over all triangles */
+        if (quality->conforming)
+            say_encroached(run);
+        tri_count_bad(&run->mesh, quality, &run->report.quality, run->hooks->executor, run->remain);
+        run->remain_known = true;
     }
-    tri_count_bad(mesh, options, report, executor, remain);
-    summary_remaining(console, remain, options, report);
-}
-
-void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],
-                       const struct tri_quality *options, const struct tri_refine_report *report)
-{
-    int64_t n = sum_of(count);
+    const int64_t n = run->remain_known ? sum_of(run->remain) : -1;
     if (n == 0)
-        console_say(console, "All triangles keep the bounds%s.\n", options->conforming ? " on angles and sizes" : "");
-    else
+        console_say(console, "All triangles keep the bounds%s.\n", quality->conforming ? " on angles and sizes" : "");
+    else if (n > 0)
         console_say(console, "%" PRId64 " triangle%s below the bounds:", n, n == 1 ? " stays" : "s stay");
-    say_reasons(console, count, options, report);
+    if (n > 0)
+        say_reasons(run, run->remain);
 }
 
 /* --- Statistics */
 
-void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,
-                    int32_t n_input_triangles, const struct tri_counts *counts)
+void summary_counts(const struct run *run)
 {
-    console_say(console, "\nStatistics:\n\n  Input vertices: %" PRId32 "\n", pslg->n_points);
+    const struct console *console = &run->console;
+    const struct tri_switches *switches = &run->arguments->switches;
+    const struct tri_counts *counts = &run->counts;
+    console_say(console, "\nStatistics:\n\n  Input vertices: %" PRId32 "\n", run->pslg.n_points);
     if (switches->mesh)
-        console_say(console, "  Input triangles: %" PRId32 "\n", n_input_triangles);
+        console_say(console, "  Input triangles: %" PRId32 "\n", run->elements.n);
     if (switches->segments)
-        console_say(console, "  Input segments: %" PRId32 "\n", pslg->n_segments);
+        console_say(console, "  Input segments: %" PRId32 "\n", run->pslg.n_segments);
     if (switches->segments && !switches->mesh)
-        console_say(console, "  Input holes: %" PRId32 "\n", pslg->n_holes);
+        console_say(console, "  Input holes: %" PRId32 "\n", run->pslg.n_holes);
     int64_t nodes_amid = switches->second_order ? counts->edges : 0;
     console_say(console, "\n  Mesh vertices: %" PRId64 "\n", counts->vertices + nodes_amid);
     console_say(console, "  Mesh triangles: %" PRId64 "\n", counts->triangles);
@@ -140,9 +147,9 @@ static void print_aspects(const struct tri_shapes *shapes)
         char beyond[16] = "";
         if (k + ROWS + 1 < TRI_ASPECT_BINS)
             snprintf(beyond, sizeof beyond, "%.6g", tri_aspect_limits[k + ROWS + 1]);
-        printf("  %6.6g - %-10.6g:%10" PRId64 "    | %6.6g - %-11s:%10" PRId64 "\n",
-                       tri_aspect_limits[k], tri_aspect_limits[k + 1], shapes->aspects[k], tri_aspect_limits[k + ROWS],
-                       beyond, shapes->aspects[k + ROWS]);
+        printf("  %6.6g - %-10.6g:%10" PRId64 "    | %6.6g - %-11s:%10" PRId64 "\n", tri_aspect_limits[k],
+               tri_aspect_limits[k + 1], shapes->aspects[k], tri_aspect_limits[k + ROWS], beyond,
+               shapes->aspects[k + ROWS]);
     }
     printf("  (Longest edge divided by shortest altitude)\n\n");
 }
@@ -151,12 +158,11 @@ static void print_angles(const struct tri_shapes *shapes)
 {
     enum { ROWS = TRI_ANGLE_BINS / 2 };
     printf("  Smallest angle: %15.5g   |  Largest angle: %15.5g\n\n", shapes->smallest_angle,
-                   shapes->largest_angle);
+           shapes->largest_angle);
     printf("  Angle histogram:\n");
     for (int k = 0; k < ROWS; k++)
-        printf("    %3d - %3d degrees:%10" PRId64 "    |    %3d - %3d degrees:%10" PRId64 "\n",
-                       10 * k, 10 * k + 10, shapes->angles[k], 10 * (k + ROWS), 10 * (k + ROWS) + 10,
-                       shapes->angles[k + ROWS]);
+        printf("    %3d - %3d degrees:%10" PRId64 "    |    %3d - %3d degrees:%10" PRId64 "\n", 10 * k, 10 * k + 10,
+               shapes->angles[k], 10 * (k + ROWS), 10 * (k + ROWS) + 10, shapes->angles[k + ROWS]);
     printf("\n");
 }
 
@@ -168,26 +174,24 @@ static int64_t bytes_of(const struct tri_mesh *mesh)
            (int64_t)mesh->parent_capacity * (int64_t)sizeof *mesh->parents;
 }
 
-void summary_shapes(const struct tri_mesh *mesh, const struct tri_report *report, const struct tri_executor *executor)
+void summary_shapes(const struct run *run)
 {
+    const struct tri_mesh *mesh = &run->mesh;
     struct tri_shapes shapes;
-    tri_measure_shapes(&shapes, mesh, executor);
+    tri_measure_shapes(&shapes, mesh, run->hooks->executor);
     printf("Mesh quality statistics:\n\n");
-    printf("  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area,
-                   shapes.largest_area);
-    printf("  Shortest edge: %16.5g   |  Longest edge: %16.5g\n", shapes.shortest_edge,
-                   shapes.longest_edge);
-    printf("  Shortest altitude: %12.5g   |  Largest aspect ratio: %8.5g\n\n",
-                   shapes.shortest_altitude, shapes.largest_aspect);
+    printf("  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area, shapes.largest_area);
+    printf("  Shortest edge: %16.5g   |  Longest edge: %16.5g\n", shapes.shortest_edge, shapes.longest_edge);
+    printf("  Shortest altitude: %12.5g   |  Largest aspect ratio: %8.5g\n\n", shapes.shortest_altitude,
+           shapes.largest_aspect);
     print_aspects(&shapes);
     print_angles(&shapes);
-    printf("Memory allocation statistics:\n\n  Maximum number of vertices: %" PRId32 "\n",
-                   mesh->n_vertices);
+    printf("Memory allocation statistics:\n\n  Maximum number of vertices: %" PRId32 "\n", mesh->n_vertices);
     printf("  Maximum number of triangles: %" PRId32 "\n", mesh->n_triangles);
     printf("  Maximum number of subsegments: %" PRId32 "\n", mesh->n_subs);
     printf("  Approximate heap memory use (bytes): %" PRId64 "\n\n", bytes_of(mesh));
     printf("Algorithmic statistics:\n\n  Vertices at crossings of segments: %" PRId32 "\n",
-                   report->constrain.crossings);
-    printf("  Vertices put on segments: %" PRId64 "\n", report->quality.inserted_on_segments);
-    printf("  Vertices put into triangles: %" PRId64 "\n\n", report->quality.inserted_free);
+           run->report.constrain.crossings);
+    printf("  Vertices put on segments: %" PRId64 "\n", run->report.quality.inserted_on_segments);
+    printf("  Vertices put into triangles: %" PRId64 "\n\n", run->report.quality.inserted_free);
 }

@@ -18,7 +18,6 @@ static int take_long(const char *word)
     const struct console console = {.program = PROGRAM};
     struct tri_error error = {0};
     int code = EXIT_SUCCESS;
-    console_open();
     if (strcmp(word, "--version") == 0) {
         printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
     } else if (strcmp(word, "--help") == 0) {
@@ -35,8 +34,19 @@ int main(int argc, char **argv)
 {
     static const struct long_options none;
     const struct run_hooks hooks = {.program = PROGRAM, .options = &none};
-    for (int i = 1; i < argc; i++)
+    struct arguments arguments = arguments_begin(argc, argv);
+    struct tri_error error = {0};
+    int code = EXIT_FAILURE;
+    console_open();
+    for (int i = 1; i < argc; i++) {
         if (is_long(argv[i]))
             return take_long(argv[i]);
-    return run_words(argc, argv, &hooks);
+        arguments_word(&arguments, argv[i]);
+    }
+    if (arguments_end(&arguments, &error))
+        console_error(&(struct console){.program = PROGRAM}, &error);
+    else
+        code = run_arguments(&arguments, &hooks);
+    arguments_free(&arguments);
+    return code;
 }

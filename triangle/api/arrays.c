@@ -31,8 +31,7 @@ struct tri_ints tri_mesh_point_markers(const struct tri_mesh *mesh)
 
 struct tri_ints tri_mesh_triangles(const struct tri_mesh *mesh)
 {
-    struct tri_ints corners = {mesh->n_triangles > 0 ? mesh->tri[0].v : NULL, mesh->n_triangles, 3, TRIANGLE_STRIDE};
-    return corners;
+    return (struct tri_ints){mesh->n_triangles > 0 ? mesh->tri[0].v : NULL, mesh->n_triangles, 3, TRIANGLE_STRIDE};
 }
 
 struct tri_reals tri_mesh_triangle_attributes(const struct tri_mesh *mesh)
@@ -43,14 +42,12 @@ struct tri_reals tri_mesh_triangle_attributes(const struct tri_mesh *mesh)
 
 struct tri_ints tri_mesh_segments(const struct tri_mesh *mesh)
 {
-    struct tri_ints ends = {mesh->n_subs > 0 ? mesh->sub[0].v : NULL, mesh->n_subs, 2, SEGMENT_STRIDE};
-    return ends;
+    return (struct tri_ints){mesh->n_subs > 0 ? mesh->sub[0].v : NULL, mesh->n_subs, 2, SEGMENT_STRIDE};
 }
 
 struct tri_ints tri_mesh_segment_markers(const struct tri_mesh *mesh)
 {
-    struct tri_ints markers = {mesh->n_subs > 0 ? &mesh->sub[0].marker : NULL, mesh->n_subs, 1, SEGMENT_STRIDE};
-    return markers;
+    return (struct tri_ints){mesh->n_subs > 0 ? &mesh->sub[0].marker : NULL, mesh->n_subs, 1, SEGMENT_STRIDE};
 }
 
 void tri_mesh_figure(const struct tri_mesh *mesh, struct tri_figure *figure)

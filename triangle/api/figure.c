@@ -7,128 +7,112 @@
 
 enum { MOST_ROWS = 1 << 29, MOST_COLUMNS = 1 << 20 };
 
-/* What an array has to be: n rows (ANY), this wide (ANY). */
-struct shape {
-    const char *what;
-    int64_t n, width;
-};
-
 enum { ANY = -1 };
 
-static enum tri_status check_shape(const void *at, int64_t n, int64_t width, int64_t stride, const struct shape *shape,
+/* A figure on its way; after a failure nothing more is taken. */
+struct taking {
+    struct tri_api_figure *taken;
+    enum tri_status status;
+    struct tri_error *error;
+};
+
+/* An array of either kind. */
+struct rows {
+    const void *at;
+    int64_t n, width, stride;
+    size_t item; /* bytes */
+};
+
+/* Has the array n rows (ANY), this wide (ANY)? */
+static enum tri_status check_shape(const struct rows *a, const char *what, int64_t n, int64_t width,
                                    struct tri_error *error)
 {
-    if (n == 0)
+    if (a->n == 0)
         return TRI_OK;
-    if (n < 0 || !at)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows without an array", shape->what, (long long)n);
-    if (width < 1 || stride < width || (shape->width != ANY && width != shape->width))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld have no meaning", shape->what,
-                        (long long)width, (long long)stride);
-    if (shape->n != ANY && n != shape->n)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows instead of %lld", shape->what, (long long)n,
-                        (long long)shape->n);
-    if (n > MOST_ROWS || width > MOST_COLUMNS)
-        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%s: %lld x %lld numbers are more than one mesh can hold",
-                        shape->what, (long long)n, (long long)width);
+    if (a->n < 0 || !a->at)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows without an array", what, (long long)a->n);
+    if (a->width < 1 || a->stride < a->width || (width != ANY && a->width != width))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld have no meaning", what,
+                        (long long)a->width, (long long)a->stride);
+    if (n != ANY && a->n != n)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows instead of %lld", what, (long long)a->n,
+                        (long long)n);
+    if (a->n > MOST_ROWS || a->width > MOST_COLUMNS)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%s: %lld x %lld numbers are more than one mesh can hold", what,
+                        (long long)a->n, (long long)a->width);
     return TRI_OK;
 }
 
 /* The rows of an array that has its shape, without gaps; only read. NULL where there are none. */
-static enum tri_status pack(struct tri_api_figure *taken, void **packed, const void *at, int64_t n, int64_t width,
-                            int64_t stride, size_t item, const struct shape *shape, struct tri_error *error)
+static void *pack(struct taking *t, struct rows a, const char *what, int64_t n, int64_t width)
 {
-    size_t row = (size_t)width * item;
-    enum tri_status status = check_shape(at, n, width, stride, shape, error);
-    *packed = status || n == 0 ? NULL : (void *)at;
-    if (!*packed || stride == width)
-        return status;
-    assert(taken->n_copies < TRI_API_MOST_COPIES);
-    char *copy = malloc((size_t)n * row);
-    if (!copy) {
-        *packed = NULL;
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the input");
-    }
-    for (size_t i = 0; i < (size_t)n; i++)
-        memcpy(copy + i * row, (const char *)at + i * (size_t)stride * item, row);
-    taken->copies[taken->n_copies++] = copy;
-    *packed = copy;
-    return TRI_OK;
+    const size_t row = (size_t)a.width * a.item;
+    t->status = t->status ? t->status : check_shape(&a, what, n, width, t->error);
+    if (t->status || a.n == 0 || a.stride == a.width)
+        return t->status || a.n == 0 ? NULL : (void *)a.at;
+    assert(t->taken->n_copies < TRI_API_MOST_COPIES);
+    char *copy = malloc((size_t)a.n * row);
+    if (!copy)
+        t->status = tri_fail(t->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the input");
+    for (size_t i = 0; copy && i < (size_t)a.n; i++)
+        memcpy(copy + i * row, (const char *)a.at + i * (size_t)a.stride * a.item, row);
+    if (copy)
+        t->taken->copies[t->taken->n_copies++] = copy;
+    return copy;
 }
 
-static enum tri_status take_reals(struct tri_api_figure *taken, double **to, struct tri_reals given, struct shape shape,
-                                  struct tri_error *error)
+static double *take_reals(struct taking *t, struct tri_reals a, const char *what, int64_t n, int64_t width)
 {
-    void *packed;
-    enum tri_status status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at,
-                                  &shape, error);
-    *to = packed;
-    return status;
+    return pack(t, (struct rows){a.at, a.n, a.width, a.stride, sizeof *a.at}, what, n, width);
 }
 
-static enum tri_status take_ints(struct tri_api_figure *taken, int32_t **to, struct tri_ints given, struct shape shape,
-                                 struct tri_error *error)
+static int32_t *take_ints(struct taking *t, struct tri_ints a, const char *what, int64_t n, int64_t width)
 {
-    void *packed;
-    enum tri_status status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at,
-                                  &shape, error);
-    *to = packed;
-    return status;
+    return pack(t, (struct rows){a.at, a.n, a.width, a.stride, sizeof *a.at}, what, n, width);
 }
 
-static enum tri_status take_pslg(struct tri_api_figure *taken, const struct tri_figure *f, struct tri_error *error)
+static void take_pslg(struct taking *t, const struct tri_figure *f)
 {
-    struct tri_pslg *pslg = &taken->pslg;
-    int64_t n = f->points.n, m = f->segments.n;
-    enum tri_status status = take_reals(taken, &pslg->points, f->points, (struct shape){"points", ANY, 2}, error);
-    status = status ? status : take_reals(taken, &pslg->attributes, f->point_attributes,
-                                          (struct shape){"attributes of points", n, ANY}, error);
-    status = status ? status : take_ints(taken, &pslg->markers, f->point_markers,
-                                         (struct shape){"markers of points", n, 1}, error);
-    status = status ? status : take_ints(taken, &pslg->segments, f->segments,
-                                         (struct shape){"segments", ANY, 2}, error);
-    status = status ? status : take_ints(taken, &pslg->segment_markers, f->segment_markers,
-                                         (struct shape){"markers of segments", m, 1}, error);
-    status = status ? status : take_reals(taken, &pslg->holes, f->holes, (struct shape){"holes", ANY, 2}, error);
-    status = status ? status : take_reals(taken, &pslg->regions, f->regions, (struct shape){"regions", ANY, 4}, error);
-    if (status)
-        return status;
+    struct tri_pslg *pslg = &t->taken->pslg;
+    const int64_t n = f->points.n, m = f->segments.n;
+    pslg->points = take_reals(t, f->points, "points", ANY, 2);
+    pslg->attributes = take_reals(t, f->point_attributes, "attributes of points", n, ANY);
+    pslg->markers = take_ints(t, f->point_markers, "markers of points", n, 1);
+    pslg->segments = take_ints(t, f->segments, "segments", ANY, 2);
+    pslg->segment_markers = take_ints(t, f->segment_markers, "markers of segments", m, 1);
+    pslg->holes = take_reals(t, f->holes, "holes", ANY, 2);
+    pslg->regions = take_reals(t, f->regions, "regions", ANY, 4);
     pslg->n_points = (int32_t)n;
     pslg->n_attributes = f->point_attributes.n > 0 ? (int32_t)f->point_attributes.width : 0;
     pslg->n_segments = (int32_t)m;
     pslg->n_holes = (int32_t)f->holes.n;
     pslg->n_regions = (int32_t)f->regions.n;
-    return TRI_OK;
 }
 
-static enum tri_status take_elements(struct tri_api_figure *taken, const struct tri_figure *f, struct tri_error *error)
+static void take_elements(struct taking *t, const struct tri_figure *f)
 {
-    struct tri_elements *elements = &taken->elements;
-    int64_t n = f->triangles.n;
-    enum tri_status status = take_ints(taken, &elements->corners, f->triangles,
-                                       (struct shape){"triangles", ANY, 3}, error);
-    status = status ? status : take_reals(taken, &elements->attributes, f->triangle_attributes,
-                                          (struct shape){"attributes of triangles", n, ANY}, error);
-    status = status ? status : take_reals(taken, &elements->areas, f->triangle_areas,
-                                          (struct shape){"areas of triangles", n, 1}, error);
-    if (status)
-        return status;
+    struct tri_elements *elements = &t->taken->elements;
+    const int64_t n = f->triangles.n;
+    elements->corners = take_ints(t, f->triangles, "triangles", ANY, 3);
+    elements->attributes = take_reals(t, f->triangle_attributes, "attributes of triangles", n, ANY);
+    elements->areas = take_reals(t, f->triangle_areas, "areas of triangles", n, 1);
     elements->n = (int32_t)n;
     elements->n_nodes = 3;
     elements->n_attributes = f->triangle_attributes.n > 0 ? (int32_t)f->triangle_attributes.width : 0;
-    return TRI_OK;
 }
 
 enum tri_status tri_api_figure_take(struct tri_api_figure *taken, const struct tri_figure *figure,
                                     struct tri_error *error)
 {
     struct tri_figure own;
+    struct taking t = {taken, TRI_OK, error};
     *taken = (struct tri_api_figure){0};
     if (!figure)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "there is no figure");
-    enum tri_status status = tri_api_struct_take(&own, sizeof own, figure, "tri_figure", error);
-    status = status ? status : take_pslg(taken, &own, error);
-    return status ? status : take_elements(taken, &own, error);
+    t.status = tri_api_struct_take(&own, sizeof own, figure, "tri_figure", error);
+    take_pslg(&t, &own);
+    take_elements(&t, &own);
+    return t.status;
 }
 
 void tri_api_figure_free(struct tri_api_figure *taken)

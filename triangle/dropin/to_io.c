@@ -20,9 +20,14 @@ struct output {
     bool failed;             /* one of them could not be */
 };
 
+static bool lists_segments(const struct output *o)
+{
+    return tri_switches_show_segments(o->switches) && !o->switches->no_poly;
+}
+
 /* --- arrays */
 
-/* The caller's array, or a new one of n items; empty ones are allocated too. */
+/* The caller's array, or a new one of n rows; empty ones are allocated too. */
 static void *provide(struct output *o, void *given, int n, int width, size_t item)
 {
     if (given || o->failed)
@@ -37,59 +42,32 @@ static void *provide(struct output *o, void *given, int n, int width, size_t ite
     return made;
 }
 
-/* Provides a field of out or vorout. */
-#define PROVIDE(o, field, n, width) ((field) = provide(o, field, n, width, sizeof *(field)))
+/* Provides a field of out or vorout, if it is wanted. */
+#define PROVIDE(o, wanted, field, n, width) \
+    ((field) = (wanted) ? provide(o, field, n, width, sizeof *(field)) : (field))
 
-static void provide_points(struct output *o)
-{
-    struct triangulateio *out = &o->out;
-    if (o->switches->no_node)
-        return;
-    PROVIDE(o, out->pointlist, out->numberofpoints, 2);
-    if (out->numberofpointattributes > 0)
-        PROVIDE(o, out->pointattributelist, out->numberofpoints, out->numberofpointattributes);
-    if (!o->switches->no_markers)
-        PROVIDE(o, out->pointmarkerlist, out->numberofpoints, 1);
-}
-
-static void provide_triangles(struct output *o)
-{
-    struct triangulateio *out = &o->out;
-    if (!o->switches->no_ele) {
-        PROVIDE(o, out->trianglelist, out->numberoftriangles, out->numberofcorners);
-        if (out->numberoftriangleattributes > 0)
-            PROVIDE(o, out->triangleattributelist, out->numberoftriangles, out->numberoftriangleattributes);
-    }
-    if (o->switches->neighbors)
-        PROVIDE(o, out->neighborlist, out->numberoftriangles, 3);
-}
-
-static void provide_edges(struct output *o)
+static void provide_arrays(struct output *o)
 {
     const struct tri_switches *s = o->switches;
-    struct triangulateio *out = &o->out;
-    if (tri_switches_show_segments(s) && !s->no_poly) {
-        PROVIDE(o, out->segmentlist, out->numberofsegments, 2);
-        if (!s->no_markers)
-            PROVIDE(o, out->segmentmarkerlist, out->numberofsegments, 1);
-    }
-    if (s->edges) {
-        PROVIDE(o, out->edgelist, out->numberofedges, 2);
-        if (!s->no_markers)
-            PROVIDE(o, out->edgemarkerlist, out->numberofedges, 1);
-    }
-}
-
-static void provide_voronoi(struct output *o)
-{
-    struct triangulateio *v = &o->vorout;
-    if (!o->switches->voronoi)
-        return;
-    PROVIDE(o, v->pointlist, v->numberofpoints, 2);
-    if (v->numberofpointattributes > 0)
-        PROVIDE(o, v->pointattributelist, v->numberofpoints, v->numberofpointattributes);
-    PROVIDE(o, v->edgelist, v->numberofedges, 2);
-    PROVIDE(o, v->normlist, v->numberofedges, 2);
+    struct triangulateio *out = &o->out, *v = &o->vorout;
+    const int n = out->numberofpoints, n_attributes = out->numberofpointattributes, m = out->numberoftriangles;
+    const int n_columns = out->numberoftriangleattributes, n_segments = out->numberofsegments;
+    const bool markers = !s->no_markers;
+    PROVIDE(o, !s->no_node, out->pointlist, n, 2);
+    PROVIDE(o, !s->no_node && n_attributes > 0, out->pointattributelist, n, n_attributes);
+    PROVIDE(o, !s->no_node && markers, out->pointmarkerlist, n, 1);
+    PROVIDE(o, !s->no_ele, out->trianglelist, m, out->numberofcorners);
+    PROVIDE(o, !s->no_ele && n_columns > 0, out->triangleattributelist, m, n_columns);
+    PROVIDE(o, s->neighbors, out->neighborlist, m, 3);
+    PROVIDE(o, lists_segments(o), out->segmentlist, n_segments, 2);
+    PROVIDE(o, lists_segments(o) && markers, out->segmentmarkerlist, n_segments, 1);
+    PROVIDE(o, s->edges, out->edgelist, out->numberofedges, 2);
+    PROVIDE(o, s->edges && markers, out->edgemarkerlist, out->numberofedges, 1);
+    PROVIDE(o, s->voronoi, v->pointlist, v->numberofpoints, 2);
+    PROVIDE(o, s->voronoi && v->numberofpointattributes > 0, v->pointattributelist, v->numberofpoints,
+            v->numberofpointattributes);
+    PROVIDE(o, s->voronoi, v->edgelist, v->numberofedges, 2);
+    PROVIDE(o, s->voronoi, v->normlist, v->numberofedges, 2);
 }
 
 /* --- items */
@@ -97,26 +75,20 @@ static void provide_voronoi(struct output *o)
 /* A number as the caller counts; -1: none. */
 static int shown(const struct output *o, int64_t index) { return (int)(index < 0 ? index : index + o->grid.base); }
 
-/* One point of the mesh or of the Voronoi diagram into these arrays, of which markers may be NULL. */
-static void fill_point(const struct tri_grid *grid, int64_t i, REAL *points, REAL *attributes, int *markers)
+/* The points of the mesh or of the Voronoi diagram into these arrays, of which markers may be NULL. They may be the
+ * arrays of the input: a point never moves to a higher place, so that none is read after it has been written. */
+static void fill_points(const struct tri_grid *grid, REAL *points, REAL *attributes, int *markers)
 {
-    struct tri_grid_point point;
-    grid->point(grid->user, i, &point);
-    points[2 * i] = (REAL)point.at[0];
-    points[2 * i + 1] = (REAL)point.at[1];
-    for (int32_t k = 0; k < grid->n_attributes; k++)
-        attributes[i * grid->n_attributes + k] = (REAL)grid->attribute(grid->user, i, k);
-    if (markers)
-        markers[i] = point.marker;
-}
-
-/* The arrays of the output may be those of the input. A point never moves to a higher place, so that none is read
- * after it has been written. */
-static void fill_points(struct output *o)
-{
-    int *markers = o->switches->no_markers ? NULL : o->out.pointmarkerlist;
-    for (int64_t i = 0; !o->switches->no_node && i < o->grid.n_points; i++)
-        fill_point(&o->grid, i, o->out.pointlist, o->out.pointattributelist, markers);
+    for (int64_t i = 0; i < grid->n_points; i++) {
+        struct tri_grid_point point;
+        grid->point(grid->user, i, &point);
+        points[2 * i] = (REAL)point.at[0];
+        points[2 * i + 1] = (REAL)point.at[1];
+        for (int32_t k = 0; k < grid->n_attributes; k++)
+            attributes[i * grid->n_attributes + k] = (REAL)grid->attribute(grid->user, i, k);
+        if (markers)
+            markers[i] = point.marker;
+    }
 }
 
 static void fill_triangle(struct output *o, int64_t t)
@@ -146,45 +118,21 @@ static void fill_triangles(struct output *o)
         fill_neighbors(o, t);
 }
 
-static void fill_edge(const struct output *o, const struct tri_grid_edge *edge, int64_t i, int *ends, int *markers)
+/* n edges or segments of a grid into these arrays, of which markers and directions may be NULL. */
+static void fill_edges(const struct output *o, const struct tri_grid *grid, int64_t n,
+                       void (*edge_at)(const void *user, int64_t i, struct tri_grid_edge *edge), int *ends,
+                       int *markers, REAL *directions)
 {
-    for (int k = 0; k < 2; k++)
-        ends[2 * i + k] = shown(o, edge->ends[k]);
-    if (markers)
-        markers[i] = edge->marker;
-}
-
-static void fill_segments(struct output *o)
-{
-    int *markers = o->switches->no_markers ? NULL : o->out.segmentmarkerlist;
-    for (int64_t i = 0; i < o->grid.n_segments; i++) {
-        struct tri_grid_edge segment;
-        o->grid.segment(o->grid.user, i, &segment);
-        fill_edge(o, &segment, i, o->out.segmentlist, markers);
-    }
-}
-
-static void fill_edges(struct output *o)
-{
-    int *markers = o->switches->no_markers ? NULL : o->out.edgemarkerlist;
-    for (int64_t i = 0; i < o->grid.n_edges; i++) {
+    for (int64_t i = 0; i < n; i++) {
         struct tri_grid_edge edge;
-        o->grid.edge(o->grid.user, i, &edge);
-        fill_edge(o, &edge, i, o->out.edgelist, markers);
-    }
-}
-
-static void fill_voronoi(struct output *o)
-{
-    struct triangulateio *v = &o->vorout;
-    for (int64_t i = 0; i < o->voronoi.n_points; i++)
-        fill_point(&o->voronoi, i, v->pointlist, v->pointattributelist, NULL);
-    for (int64_t i = 0; i < o->voronoi.n_edges; i++) {
-        struct tri_grid_edge edge;
-        o->voronoi.edge(o->voronoi.user, i, &edge);
-        fill_edge(o, &edge, i, v->edgelist, NULL);
-        for (int k = 0; k < 2; k++)
-            v->normlist[2 * i + k] = (REAL)edge.direction[k];
+        edge_at(grid->user, i, &edge);
+        for (int k = 0; k < 2; k++) {
+            ends[2 * i + k] = shown(o, edge.ends[k]);
+            if (directions)
+                directions[2 * i + k] = (REAL)edge.direction[k];
+        }
+        if (markers)
+            markers[i] = edge.marker;
     }
 }
 
@@ -210,7 +158,7 @@ static void set_counts(struct output *o)
 static void pass_on_lists(struct output *o, const struct triangulateio *in)
 {
     bool some = o->switches->segments;
-    if (!tri_switches_show_segments(o->switches) || o->switches->no_poly)
+    if (!lists_segments(o))
         return;
     o->out.holelist = some ? in->holelist : NULL;
     o->out.numberofholes = some ? in->numberofholes : 0;
@@ -220,10 +168,7 @@ static void pass_on_lists(struct output *o, const struct triangulateio *in)
 
 static enum tri_status provide_all(struct output *o, struct tri_error *error)
 {
-    provide_points(o);
-    provide_triangles(o);
-    provide_edges(o);
-    provide_voronoi(o);
+    provide_arrays(o);
     for (int i = 0; o->failed && i < o->n_made; i++)
         free(o->made[i]);
     return o->failed ? tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the output") : TRI_OK;
@@ -231,14 +176,20 @@ static enum tri_status provide_all(struct output *o, struct tri_error *error)
 
 static void fill_all(struct output *o)
 {
-    fill_points(o);
+    const bool markers = !o->switches->no_markers;
+    const struct tri_grid *g = &o->grid, *voronoi = &o->voronoi;
+    struct triangulateio *out = &o->out, *v = &o->vorout;
+    if (!o->switches->no_node)
+        fill_points(g, out->pointlist, out->pointattributelist, markers ? out->pointmarkerlist : NULL);
     fill_triangles(o);
-    if (tri_switches_show_segments(o->switches) && !o->switches->no_poly)
-        fill_segments(o);
+    if (lists_segments(o))
+        fill_edges(o, g, g->n_segments, g->segment, out->segmentlist, markers ? out->segmentmarkerlist : NULL, NULL);
     if (o->switches->edges)
-        fill_edges(o);
-    if (o->switches->voronoi)
-        fill_voronoi(o);
+        fill_edges(o, g, g->n_edges, g->edge, out->edgelist, markers ? out->edgemarkerlist : NULL, NULL);
+    if (o->switches->voronoi) {
+        fill_points(voronoi, v->pointlist, v->pointattributelist, NULL);
+        fill_edges(o, voronoi, voronoi->n_edges, voronoi->edge, v->edgelist, NULL, v->normlist);
+    }
 }
 
 enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_input *input,

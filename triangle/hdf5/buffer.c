@@ -160,7 +160,7 @@ static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind,
     for (int32_t i = 0; !status && i < n;) {
         status = is_full(s) ? flush(part, s, error) : TRI_OK;
         const int32_t room = room_of(s), end = room < n - i ? i + room : n;
-        tri_h5_put_of(kind, s->laid->type)(&part->rows, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
+        tri_h5_put(&part->rows, kind, s->laid->type, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
         s->n += end - i;
         s->next += end - i;
         i = end;

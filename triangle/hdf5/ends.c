@@ -119,8 +119,7 @@ static enum tri_status write_numbers(struct ends *e, int64_t first)
     hid_t memory = H5Screate_simple(1, &size, NULL);
     bool done = memory >= 0 && H5Sselect_hyperslab(e->space, H5S_SELECT_SET, &place, NULL, &size, NULL) >= 0 &&
                 H5Dwrite(e->dataset, H5T_STD_I64LE, memory, e->space, H5P_DEFAULT, e->numbers) >= 0;
-    if (memory >= 0)
-        H5Sclose(memory);
+    tri_h5_drop(H5Sclose, memory);
     return done ? TRI_OK : tri_h5_fail(e->file, e->path, e->error);
 }
 
@@ -166,10 +165,8 @@ enum tri_status tri_h5_write_ends(struct tri_h5_file *file, const char *path, in
     status = status ? status : write_all(e);
     if (ready)
         deflateEnd(&e->z);
-    if (e->dataset >= 0)
-        H5Dclose(e->dataset);
-    if (e->space >= 0)
-        H5Sclose(e->space);
+    tri_h5_drop(H5Dclose, e->dataset);
+    tri_h5_drop(H5Sclose, e->space);
     free(e->numbers);
     free(e->stream);
     free(e);

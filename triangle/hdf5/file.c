@@ -187,8 +187,7 @@ hid_t tri_h5_no_times(hid_t kind)
     hid_t creation = H5Pcreate(kind);
     if (creation >= 0 && H5Pset_obj_track_times(creation, false) >= 0)
         return creation;
-    if (creation >= 0)
-        H5Pclose(creation);
+    tri_h5_drop(H5Pclose, creation);
     return -1;
 }
 
@@ -198,10 +197,8 @@ hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t
     hid_t space = H5Screate_simple(rank, size, most), dataset = -1;
     if (space >= 0 && creation >= 0)
         dataset = H5Dcreate2(file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    if (creation >= 0)
-        H5Pclose(creation);
-    if (space >= 0)
-        H5Sclose(space);
+    tri_h5_drop(H5Pclose, creation);
+    tri_h5_drop(H5Sclose, space);
     return dataset;
 }
 
@@ -215,10 +212,8 @@ enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *outpu
     if (access >= 0 && creation >= 0)
         file->id = H5Fcreate(output->path, H5F_ACC_TRUNC, creation, access);
     enum tri_status status = file->id >= 0 ? TRI_OK : tri_h5_fail(file, "the file", error);
-    if (access >= 0)
-        H5Pclose(access);
-    if (creation >= 0)
-        H5Pclose(creation);
+    tri_h5_drop(H5Pclose, access);
+    tri_h5_drop(H5Pclose, creation);
     return status;
 }
 

@@ -37,6 +37,13 @@ struct tri_h5_reason {
 };
 struct tri_h5_reason tri_h5_reason(void);
 
+/* Closes what there is; id < 0: nothing. */
+static inline void tri_h5_drop(herr_t (*close_call)(hid_t), hid_t id)
+{
+    if (id >= 0)
+        close_call(id);
+}
+
 /* Properties of a new file, group or dataset (H5P_.._CREATE) that keeps no times; to be closed. < 0: an error. */
 hid_t tri_h5_no_times(hid_t kind);
 

@@ -40,8 +40,7 @@ static bool has_type(hid_t dataset, unsigned wanted)
     bool found = false;
     for (enum tri_h5_type k = TRI_H5_FLOAT64; type >= 0 && k <= TRI_H5_INT64; k++)
         found = found || ((wanted >> k & 1) && H5Tequal(type, tri_h5_type_id(k)) > 0);
-    if (type >= 0)
-        H5Tclose(type);
+    tri_h5_drop(H5Tclose, type);
     return found;
 }
 
@@ -83,8 +82,7 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hi
     const H5D_layout_t layout = H5Pget_layout(creation);
     hid_t type = H5Dget_type(h5->datasets[k]);
     const double bytes = type >= 0 ? (double)H5Tget_size(type) : 8;
-    if (type >= 0)
-        H5Tclose(type);
+    tri_h5_drop(H5Tclose, type);
     if (layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED)
         return "is kept in a way that is not read: virtual or compact";
     if (H5Pget_external_count(creation) != 0)
@@ -113,8 +111,7 @@ static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct
     const char *wrong = creation < 0            ? "cannot be looked at"
                         : are_too_many(h5, k)   ? "has more rows than a mesh of so many points"
                                                 : wrong_storage(h5, k, creation);
-    if (creation >= 0)
-        H5Pclose(creation);
+    tri_h5_drop(H5Pclose, creation);
     return wrong ? tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s %s", forms[k].name, wrong) : TRI_OK;
 }
 
@@ -151,10 +148,8 @@ static int64_t about(const struct tri_h5 *h5, const char *name)
     if (space < 0 || type < 0 || H5Sget_simple_extent_npoints(space) != 1 || H5Tequal(type, H5T_STD_I64LE) <= 0 ||
         H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
         value = -1;
-    if (space >= 0)
-        H5Sclose(space);
-    if (type >= 0)
-        H5Tclose(type);
+    tri_h5_drop(H5Sclose, space);
+    tri_h5_drop(H5Tclose, type);
     H5Aclose(attribute);
     return value;
 }
@@ -231,10 +226,8 @@ void tri_h5_free(struct tri_h5 *h5)
     H5E_BEGIN_TRY
     {
         for (int k = 0; k < TRI_H5_KINDS; k++)
-            if (h5->datasets[k] >= 0)
-                H5Dclose(h5->datasets[k]);
-        if (h5->file >= 0)
-            H5Fclose(h5->file);
+            tri_h5_drop(H5Dclose, h5->datasets[k]);
+        tri_h5_drop(H5Fclose, h5->file);
     }
     H5E_END_TRY
     free(h5);
@@ -253,10 +246,8 @@ static bool read_rows(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first
     bool done = memory >= 0 && space >= 0 &&
                 H5Sselect_hyperslab(space, H5S_SELECT_SET, place, NULL, size, NULL) >= 0 &&
                 H5Dread(h5->datasets[k], type, memory, space, H5P_DEFAULT, out) >= 0;
-    if (memory >= 0)
-        H5Sclose(memory);
-    if (space >= 0)
-        H5Sclose(space);
+    tri_h5_drop(H5Sclose, memory);
+    tri_h5_drop(H5Sclose, space);
     return done;
 }
 

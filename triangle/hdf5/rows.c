@@ -15,79 +15,60 @@ const struct tri_h5_form tri_h5_forms[TRI_H5_KINDS] = {
     {TRI_H5_SEGMENT_MARKERS, 0, false, TRI_H5_OF_SEGMENTS, NARROW},
 };
 
-static void put_points(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static char *put_number(char *at, enum tri_h5_type type, int64_t number)
 {
-    for (; i < end; i++)
-        at = tri_put_f64(tri_put_f64(at, rows->tile->points[i][0]), rows->tile->points[i][1]);
+    return type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)number) : tri_put_i64(at, number);
 }
 
-static void put_point_markers(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static void put_markers(const int32_t *markers, int32_t i, int32_t end, char *at)
 {
     for (; i < end; i++)
-        at = tri_put_i32(at, rows->tile->point_markers[i]);
+        at = tri_put_i32(at, markers[i]);
 }
 
-static void put_point_attributes(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static void put_reals(const double *reals, int64_t width, int32_t i, int32_t end, char *at)
 {
-    const int64_t width = rows->n_attributes;
     for (int64_t k = i * width; k < end * width; k++)
-        at = tri_put_f64(at, rows->tile->attributes[k]);
+        at = tri_put_f64(at, reals[k]);
 }
 
-static void put_corners(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static void put_corners(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
 {
     for (; i < end; i++)
         for (int k = 0; k < 3; k++)
-            at = tri_put_i32(at, (int32_t)rows->tile->corners[i][k]);
+            at = put_number(at, type, rows->tile->corners[i][k]);
 }
 
-static void put_wide_corners(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static void put_ends(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
 {
     for (; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            at = tri_put_i64(at, rows->tile->corners[i][k]);
+        for (int k = 0; k < 2; k++)
+            at = put_number(at, type, rows->tile->ends[i][k]);
 }
 
-static void put_columns(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+static void put_columns(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
 {
-    for (; i < end; i++)
+    for (; i < end; i++) {
+        const double *columns = rows->columns + (int64_t)rows->tile->regions[i] * rows->n_columns;
         for (int32_t k = 0; k < rows->n_columns; k++)
-            at = tri_put_f64(at, rows->columns[(int64_t)rows->tile->regions[i] * rows->n_columns + k]);
+            at = type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)columns[k]) : tri_put_f64(at, columns[k]);
+    }
 }
 
-static void put_whole_columns(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
+void tri_h5_put(const struct tri_h5_rows *rows, enum tri_h5_kind kind, enum tri_h5_type type, int32_t i, int32_t end,
+                char *at)
 {
-    for (; i < end; i++)
-        for (int32_t k = 0; k < rows->n_columns; k++)
-            at = tri_put_i32(at, (int32_t)rows->columns[(int64_t)rows->tile->regions[i] * rows->n_columns + k]);
-}
-
-static void put_ends(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        at = tri_put_i32(tri_put_i32(at, (int32_t)rows->tile->ends[i][0]), (int32_t)rows->tile->ends[i][1]);
-}
-
-static void put_wide_ends(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        at = tri_put_i64(tri_put_i64(at, rows->tile->ends[i][0]), rows->tile->ends[i][1]);
-}
-
-static void put_segment_markers(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        at = tri_put_i32(at, rows->tile->segment_markers[i]);
-}
-
-tri_h5_put_call *tri_h5_put_of(enum tri_h5_kind kind, enum tri_h5_type type)
-{
-    static tri_h5_put_call *const narrow[TRI_H5_KINDS] = {
-        put_points, put_point_markers, put_point_attributes, put_corners, put_whole_columns, put_ends,
-        put_segment_markers};
-    static tri_h5_put_call *const wide[TRI_H5_KINDS] = {
-        put_points, NULL, put_point_attributes, put_wide_corners, put_columns, put_wide_ends, NULL};
-    return (type == TRI_H5_INT32 ? narrow : wide)[kind];
+    const struct tri_tile *tile = rows->tile;
+    switch (kind) {
+    case TRI_H5_OF_POINTS: put_reals(tile->points[0], 2, i, end, at); break;
+    case TRI_H5_OF_POINT_MARKERS: put_markers(tile->point_markers, i, end, at); break;
+    case TRI_H5_OF_POINT_ATTRIBUTES: put_reals(tile->attributes, rows->n_attributes, i, end, at); break;
+    case TRI_H5_OF_TRIANGLES: put_corners(rows, type, i, end, at); break;
+    case TRI_H5_OF_TRIANGLE_ATTRIBUTES: put_columns(rows, type, i, end, at); break;
+    case TRI_H5_OF_SEGMENTS: put_ends(rows, type, i, end, at); break;
+    case TRI_H5_OF_SEGMENT_MARKERS: put_markers(tile->segment_markers, i, end, at); break;
+    case TRI_H5_KINDS: break;
+    }
 }
 
 void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile)

@@ -35,9 +35,8 @@ struct tri_h5_rows {
 };
 
 /* Puts rows i to end - 1 of the tile's array at `at`. */
-typedef void tri_h5_put_call(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at);
-
-tri_h5_put_call *tri_h5_put_of(enum tri_h5_kind kind, enum tri_h5_type type);
+void tri_h5_put(const struct tri_h5_rows *rows, enum tri_h5_kind kind, enum tri_h5_type type, int32_t i, int32_t end,
+                char *at);
 
 /* Least x, least y, largest x, largest y, of these and of the tile's points. */
 void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile);

@@ -21,13 +21,6 @@ static hid_t checked(struct views *v, hid_t id)
     return id;
 }
 
-/* Closes what there is. */
-static void close_with(herr_t (*close_call)(hid_t), hid_t id)
-{
-    if (id >= 0)
-        close_call(id);
-}
-
 /* --- groups, links, attributes, by paths */
 
 static void add_group(struct views *v, const char *path)
@@ -60,7 +53,7 @@ static hid_t box_in(int rank, const hsize_t size[2], const hsize_t first[2], con
     hid_t space = H5Screate_simple(rank, size, NULL);
     if (space >= 0 && H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, box, NULL) >= 0)
         return space;
-    close_with(H5Sclose, space);
+    tri_h5_drop(H5Sclose, space);
     return -1;
 }
 
@@ -72,8 +65,8 @@ static void add_part(struct views *v, hid_t creation, int rank, const hsize_t si
     hid_t source = checked(v, H5Screate_simple(part->source_rank, part->source_size, NULL));
     if (!v->failed)
         checked(v, H5Pset_virtual(creation, box, ".", part->source, source));
-    close_with(H5Sclose, source);
-    close_with(H5Sclose, box);
+    tri_h5_drop(H5Sclose, source);
+    tri_h5_drop(H5Sclose, box);
 }
 
 /* A dataset that consists of parts of others and, elsewhere, of the fill value. */
@@ -87,7 +80,7 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
         checked(v, H5Pset_fill_value(creation, H5T_NATIVE_INT, &fill));
     for (int i = 0; i < n; i++)
         add_part(v, creation, rank, size, &parts[i]);
-    close_with(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
+    tri_h5_drop(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
 }
 
 /* --- VTK */
@@ -101,7 +94,7 @@ static void add_count(struct views *v, const char *path, int64_t count)
     hid_t dataset = tri_h5_new_dataset(v->file, path, H5T_STD_I64LE, 1, &(hsize_t){1}, NULL, creation);
     if (checked(v, dataset) >= 0)
         checked(v, H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count));
-    close_with(H5Dclose, dataset);
+    tri_h5_drop(H5Dclose, dataset);
 }
 
 static void add_vtk_cells(struct views *v)

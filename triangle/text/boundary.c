@@ -1,8 +1,8 @@
 /* Chains of boundary edges.
  *
- * Edges of one triangle are listed with the triangle on their left, sorted by their first node, and get the markers of
- * the segments they are. They are among the segments, in every mesh: one pass over the triangles tells which sides of
- * segments have one.
+ * Edges of one triangle are listed with the triangle on their left, sorted by their first node, with the markers of the
+ * segments they are; of segments with the same ends the last one counts. They are among the segments, in every mesh:
+ * one pass over the triangles tells which sides of segments have one.
  *
  * At every node as many of them arrive as leave; so a walk along unused edges ends where it began: a loop. Where loops
  * touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker changes. */
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 struct side {
-    int64_t from, to;
+    int64_t from, to, segment;
     int32_t marker;
     bool used;     /* by a triangle, while segments are told from the boundary; then by a loop */
     bool boundary;
@@ -32,13 +32,13 @@ static int compare(const void *left, const void *right)
     const struct side *a = left, *b = right;
     if (a->from != b->from)
         return a->from < b->from ? -1 : 1;
-    return (a->to > b->to) - (a->to < b->to);
+    return a->to != b->to ? (a->to > b->to) - (a->to < b->to) : (a->segment < b->segment) - (a->segment > b->segment);
 }
 
 /* The first side that is not before (from, to). */
 static int64_t find(const struct builder *b, int64_t from, int64_t to)
 {
-    const struct side wanted = {.from = from, .to = to};
+    const struct side wanted = {.from = from, .to = to, .segment = INT64_MAX};
     int64_t low = 0, high = b->n;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
@@ -80,8 +80,10 @@ static void keep_boundary(struct builder *b)
         side->boundary = side->used && !(has_side(b, other, side->to, side->from) && b->sides[other].used);
     }
     for (int64_t i = 0; i < b->n; i++)
-        if (b->sides[i].boundary)
-            b->sides[n++] = (struct side){b->sides[i].from, b->sides[i].to, 0, false, true};
+        if (b->sides[i].boundary) {
+            b->sides[n] = b->sides[i];
+            b->sides[n++].used = false;
+        }
     b->n = n;
 }
 
@@ -96,7 +98,7 @@ static bool list_sides(struct builder *b)
         struct tri_grid_edge segment;
         b->grid->segment(b->grid->user, s, &segment);
         for (int k = 0; k < 2; k++) {
-            b->sides[n++] = (struct side){segment.ends[k], segment.ends[1 - k], 0, false, false};
+            b->sides[n++] = (struct side){segment.ends[k], segment.ends[1 - k], s, segment.marker, false, false};
             on_segment[segment.ends[k]] = 1;
         }
     }
@@ -105,23 +107,6 @@ static bool list_sides(struct builder *b)
     keep_boundary(b);
     free(on_segment);
     return true;
-}
-
-static void mark_side(struct builder *b, int64_t from, int64_t to, int32_t marker)
-{
-    int64_t i = find(b, from, to);
-    if (has_side(b, i, from, to))
-        b->sides[i].marker = marker;
-}
-
-static void mark_sides(struct builder *b)
-{
-    for (int64_t s = 0; s < b->grid->n_segments; s++) {
-        struct tri_grid_edge segment;
-        b->grid->segment(b->grid->user, s, &segment);
-        mark_side(b, segment.ends[0], segment.ends[1], segment.marker);
-        mark_side(b, segment.ends[1], segment.ends[0], segment.marker);
-    }
 }
 
 /* An unused side that leaves the node; -1: none. */
@@ -206,8 +191,6 @@ enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tr
     b.loop = malloc(n * sizeof *b.loop);
     *boundary = (struct tri_boundary){0, malloc(n * sizeof *boundary->pieces), malloc(2 * n * sizeof *boundary->nodes)};
     const bool enough = b.sides && b.loop && boundary->pieces && boundary->nodes && list_sides(&b);
-    if (enough)
-        mark_sides(&b);
     for (int64_t i = 0; enough && i < b.n; i++)
         if (!b.sides[i].used)
             add_loop(&b, walk(&b, i));

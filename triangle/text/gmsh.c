@@ -32,7 +32,7 @@ struct groups {
     int n;                               /* of them that are entities */
     int32_t dimension;
     int32_t physical[TRI_MOST_GROUPS];   /* tags; 0: none */
-    int64_t first[TRI_MOST_GROUPS], end[TRI_MOST_GROUPS]; /* what of them goes into the file, counted as in `place` */
+    int64_t first[TRI_MOST_GROUPS + 1];  /* what of them goes into the file, group by group, counted as in `place` */
     const int64_t *place;                /* in the grouping; NULL: these are the places themselves */
 };
 
@@ -41,16 +41,15 @@ struct gmsh {
     struct tri_output *output;
     const struct tri_executor *executor;
     struct tri_error *error;
-    enum tri_status status;                   /* of what has been put so far */
+    enum tri_status status;        /* of what has been put so far */
     struct groups surfaces, curves;
     double low[2], high[2];
     const struct tri_parts *parts; /* NULL: there are none */
     int part;
-    int64_t n_nodes, n_triangles, n_segments; /* in the file */
-    int64_t n_inner;                          /* nodes that no other part has */
-    int64_t *border;                          /* [n_nodes - n_inner] the others */
-    int64_t first;                            /* of the rows of a block */
-    int32_t k;                                /* column of a data section, or MARKER */
+    int64_t n_nodes;               /* in the file */
+    int64_t n_inner;               /* nodes that no other part has */
+    int64_t *border;               /* [n_nodes - n_inner] the others */
+    int32_t k;                     /* column of a data section, or MARKER */
 };
 
 /* --- what is in the file */
@@ -66,7 +65,8 @@ static int64_t node_at(const struct gmsh *g, int64_t i)
 /* The place of an element in its grouping. */
 static int64_t place_at(const struct groups *groups, int64_t i) { return groups->place ? groups->place[i] : i; }
 
-static int64_t size_of(const struct groups *groups, int k) { return groups->end[k] - groups->first[k]; }
+static int64_t size_of(const struct groups *groups, int k) { return groups->first[k + 1] - groups->first[k]; }
+static int64_t count(const struct groups *groups) { return groups->first[groups->n] - groups->first[0]; }
 
 static int count_blocks(const struct groups *groups)
 {
@@ -89,17 +89,13 @@ static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t
     return at;
 }
 
-/* Places at .. end - 1 of a list of the parts, or, where that is NULL, of all; they ascend, as groups do. Returns how
- * many they are. */
-static int64_t choose(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
+/* Places begin .. end - 1 of a list of the parts, or, where that is NULL, of all; they ascend, as groups do. */
+static void choose(struct groups *groups, const int64_t *place, int64_t begin, int64_t end)
 {
-    const int64_t n = end - at;
     groups->place = place;
-    for (int k = 0; k < groups->n; k++) {
-        groups->first[k] = at;
-        groups->end[k] = at = place_from(place, at, end, groups->all.first[k + 1]);
-    }
-    return n;
+    groups->first[0] = begin;
+    for (int k = 0; k < groups->n; k++)
+        groups->first[k + 1] = place_from(place, groups->first[k], end, groups->all.first[k + 1]);
 }
 
 static bool has_interface(const struct gmsh *g, int64_t i) { return tri_part_has_interface(g->parts, g->part, i); }
@@ -135,10 +131,10 @@ static void put_bytes(struct gmsh *g, const char *bytes, const char *end)
 
 static void put_text(struct gmsh *g, const char *text) { put_bytes(g, text, text + strlen(text)); }
 
-static void put_rows(struct gmsh *g, int64_t n, size_t bytes, char *(*row)(void *, size_t, char *))
+static void put_rows(struct gmsh *g, int64_t first, int64_t n, size_t bytes, tri_row_call *row)
 {
     if (!g->status)
-        g->status = tri_write_table(g->output, (size_t)n, bytes, row, g, g->executor, g->error);
+        g->status = tri_write_table(g->output, first, n, bytes, row, g, g->executor, g->error);
 }
 
 /* --- entities */
@@ -296,17 +292,17 @@ static void write_pieces(struct gmsh *g)
 
 /* --- nodes: all on the first surface, but for interfaces */
 
-static char *tag_row(void *user, size_t i, char *at)
+static char *tag_row(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
-    return tri_put_i64(at, node_at(g, g->first + (int64_t)i) + 1);
+    return tri_put_i64(at, node_at(g, i) + 1);
 }
 
-static char *place_row(void *user, size_t i, char *at)
+static char *place_row(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
     struct tri_grid_point point;
-    g->grid->point(g->grid->user, node_at(g, g->first + (int64_t)i), &point);
+    g->grid->point(g->grid->user, node_at(g, i), &point);
     return tri_put_f64(tri_put_f64(tri_put_f64(at, point.at[0]), point.at[1]), 0);
 }
 
@@ -327,10 +323,9 @@ static void put_block(struct gmsh *g, int32_t dimension, int32_t tag, int32_t ki
 /* Nodes first .. first + n - 1 of the file, without parameters. */
 static void write_node_block(struct gmsh *g, int32_t dimension, int32_t tag, int64_t first, int64_t n)
 {
-    g->first = first;
     put_block(g, dimension, tag, 0, n);
-    put_rows(g, n, 8, tag_row);
-    put_rows(g, n, 24, place_row);
+    put_rows(g, first, n, 8, tag_row);
+    put_rows(g, first, n, 24, place_row);
 }
 
 static void write_node_blocks(struct gmsh *g)
@@ -373,43 +368,40 @@ static int64_t element_tag(const struct gmsh *g, const struct groups *groups, in
     return (groups == &g->curves ? g->grid->n_triangles : 0) + place_at(groups, i) + 1;
 }
 
-/* Item i of a block. */
-static int64_t item_at(const struct gmsh *g, const struct groups *groups, size_t i)
+static int64_t item_at(const struct groups *groups, int64_t i)
 {
-    return tri_grouped(&groups->all, place_at(groups, g->first + (int64_t)i));
+    return tri_grouped(&groups->all, place_at(groups, i));
 }
 
 /* Gmsh has the nodes amid edges in the order of the edges from corner to corner. */
-static char *triangle_row(void *user, size_t i, char *at)
+static char *triangle_row(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 1, 2, 5, 3, 4};
     const struct gmsh *g = user;
     int64_t nodes[6];
-    g->grid->triangle(g->grid->user, item_at(g, &g->surfaces, i), nodes);
-    at = tri_put_i64(at, element_tag(g, &g->surfaces, g->first + (int64_t)i));
+    g->grid->triangle(g->grid->user, item_at(&g->surfaces, i), nodes);
+    at = tri_put_i64(at, element_tag(g, &g->surfaces, i));
     for (int k = 0; k < g->grid->n_nodes; k++)
         at = tri_put_i64(at, nodes[order[k]] + 1);
     return at;
 }
 
-static char *segment_row(void *user, size_t i, char *at)
+static char *segment_row(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
     struct tri_grid_edge segment;
-    g->grid->segment(g->grid->user, item_at(g, &g->curves, i), &segment);
-    at = tri_put_i64(at, element_tag(g, &g->curves, g->first + (int64_t)i));
+    g->grid->segment(g->grid->user, item_at(&g->curves, i), &segment);
+    at = tri_put_i64(at, element_tag(g, &g->curves, i));
     return tri_put_i64(tri_put_i64(at, segment.ends[0] + 1), segment.ends[1] + 1);
 }
 
-static void write_blocks(struct gmsh *g, const struct groups *groups, int32_t kind, size_t row_bytes,
-                         char *(*row)(void *, size_t, char *))
+static void write_blocks(struct gmsh *g, const struct groups *groups, int32_t kind, size_t row_bytes, tri_row_call *row)
 {
     for (int k = 0; k < groups->n; k++) {
         if (size_of(groups, k) == 0)
             continue;
-        g->first = groups->first[k];
         put_block(g, groups->dimension, tag_of(g, groups, k), kind, size_of(groups, k));
-        put_rows(g, size_of(groups, k), row_bytes, row);
+        put_rows(g, groups->first[k], size_of(groups, k), row_bytes, row);
     }
 }
 
@@ -423,10 +415,10 @@ static void put_element_totals(struct gmsh *g)
             if (size_of(both[i], k) == 0)
                 continue;
             least = least > 0 ? least : element_tag(g, both[i], both[i]->first[k]);
-            greatest = element_tag(g, both[i], both[i]->end[k] - 1);
+            greatest = element_tag(g, both[i], both[i]->first[k + 1] - 1);
         }
-    put_totals(g, count_blocks(&g->surfaces) + count_blocks(&g->curves), g->n_triangles + g->n_segments, least,
-               greatest);
+    put_totals(g, count_blocks(&g->surfaces) + count_blocks(&g->curves), count(&g->surfaces) + count(&g->curves),
+               least, greatest);
 }
 
 static void write_elements(struct gmsh *g)
@@ -448,10 +440,10 @@ static char *put_datum(char *at, int64_t tag, double value)
     return tri_put_f64(tri_put_i32(at, (int32_t)tag), value);
 }
 
-static char *node_datum(void *user, size_t i, char *at)
+static char *node_datum(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
-    const int64_t node = node_at(g, (int64_t)i);
+    const int64_t node = node_at(g, i);
     struct tri_grid_point point;
     if (g->k != MARKER)
         return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
@@ -459,19 +451,19 @@ static char *node_datum(void *user, size_t i, char *at)
     return put_datum(at, node + 1, point.marker);
 }
 
-static char *triangle_datum(void *user, size_t i, char *at)
+static char *triangle_datum(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
-    const int64_t tag = element_tag(g, &g->surfaces, g->first + (int64_t)i);
+    const int64_t tag = element_tag(g, &g->surfaces, i);
     const bool none = g->k == MARKER;
-    return put_datum(at, tag, none ? 0 : g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k));
+    return put_datum(at, tag, none ? 0 : g->grid->column(g->grid->user, item_at(&g->surfaces, i), g->k));
 }
 
-static char *segment_datum(void *user, size_t i, char *at)
+static char *segment_datum(const void *user, int64_t i, char *at)
 {
     const struct gmsh *g = user;
-    const int64_t tag = element_tag(g, &g->curves, g->first + (int64_t)i);
-    return put_datum(at, tag, g->k == MARKER ? tri_segment_group(g->grid, item_at(g, &g->curves, i)) : 0);
+    const int64_t tag = element_tag(g, &g->curves, i);
+    return put_datum(at, tag, g->k == MARKER ? tri_segment_group(g->grid, item_at(&g->curves, i)) : 0);
 }
 
 /* Without time: one step, one component. */
@@ -487,23 +479,15 @@ static void begin_data(struct gmsh *g, const char *section, int64_t n)
 static void write_node_data(struct gmsh *g)
 {
     begin_data(g, "NodeData", g->n_nodes);
-    put_rows(g, g->n_nodes, 12, node_datum);
+    put_rows(g, 0, g->n_nodes, 12, node_datum);
     put_text(g, "\n$EndNodeData\n");
-}
-
-static void put_data_blocks(struct gmsh *g, const struct groups *groups, char *(*row)(void *, size_t, char *))
-{
-    for (int k = 0; k < groups->n; k++) {
-        g->first = groups->first[k];
-        put_rows(g, size_of(groups, k), 12, row);
-    }
 }
 
 static void write_element_data(struct gmsh *g)
 {
-    begin_data(g, "ElementData", g->n_triangles + g->n_segments);
-    put_data_blocks(g, &g->surfaces, triangle_datum);
-    put_data_blocks(g, &g->curves, segment_datum);
+    begin_data(g, "ElementData", count(&g->surfaces) + count(&g->curves));
+    put_rows(g, g->surfaces.first[0], count(&g->surfaces), 12, triangle_datum);
+    put_rows(g, g->curves.first[0], count(&g->curves), 12, segment_datum);
     put_text(g, "\n$EndElementData\n");
 }
 
@@ -566,7 +550,7 @@ enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *
                               const struct tri_executor *executor, struct tri_error *error)
 {
     struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
-                     .n_inner = grid->n_points, .n_triangles = grid->n_triangles, .n_segments = grid->n_segments};
+                     .n_inner = grid->n_points};
     enum tri_status status = begin(&g);
     choose(&g.surfaces, NULL, 0, grid->n_triangles);
     choose(&g.curves, NULL, 0, grid->n_segments);
@@ -580,8 +564,8 @@ static enum tri_status write_part(struct gmsh *g, int part, struct tri_output *o
     const struct tri_parts *p = g->parts;
     g->part = part;
     g->output = output;
-    g->n_triangles = choose(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
-    g->n_segments = choose(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
+    choose(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
+    choose(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
     enum tri_status status = choose_nodes(g);
     status = status ? status : write_all(g);
     free(g->border);

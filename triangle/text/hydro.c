@@ -40,21 +40,21 @@ static enum tri_status put_text(const struct hydro *h, const char *text)
     return tri_output_write(h->output, text, strlen(text), h->error);
 }
 
-static enum tri_status put_rows(struct hydro *h, int64_t n, size_t bytes, char *(*row)(void *, size_t, char *))
+static enum tri_status put_rows(struct hydro *h, int64_t n, size_t bytes, tri_row_call *row)
 {
-    return tri_write_table(h->output, (size_t)n, bytes, row, h, h->executor, h->error);
+    return tri_write_table(h->output, 0, n, bytes, row, h, h->executor, h->error);
 }
 
 /* Number, place, and the first attribute. */
-static char *node_row(void *user, size_t i, char *at)
+static char *node_row(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
     const struct tri_grid *grid = h->grid;
     struct tri_grid_point point;
-    grid->point(grid->user, (int64_t)i, &point);
-    at = put_integer(put(at, h->card), (int64_t)i + 1);
+    grid->point(grid->user, i, &point);
+    at = put_integer(put(at, h->card), i + 1);
     at = put_real(put_real(at, point.at[0]), point.at[1]);
-    return put(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, (int64_t)i, 0) : 0), "\n");
+    return put(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, i, 0) : 0), "\n");
 }
 
 static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), const char *card,
@@ -71,25 +71,25 @@ static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), cons
 /* --- .2dm */
 
 /* The nodes of second-order triangles go round, beginning with a corner. */
-static char *element_card(void *user, size_t i, char *at)
+static char *element_card(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 5, 1, 3, 2, 4};
     const struct hydro *h = user;
     int64_t nodes[6];
-    h->grid->triangle(h->grid->user, (int64_t)i, nodes);
-    at = put_integer(put(at, h->grid->n_nodes == 6 ? "E6T" : "E3T"), (int64_t)i + 1);
+    h->grid->triangle(h->grid->user, i, nodes);
+    at = put_integer(put(at, h->grid->n_nodes == 6 ? "E6T" : "E3T"), i + 1);
     for (int k = 0; k < h->grid->n_nodes; k++)
         at = put_integer(at, nodes[h->grid->n_nodes == 6 ? order[k] : k] + 1);
-    int32_t material = tri_group_tag(tri_triangle_group(h->grid, (int64_t)i));
+    int32_t material = tri_group_tag(tri_triangle_group(h->grid, i));
     return put(put_integer(at, material > 0 ? material : 1), "\n");
 }
 
 /* Ten nodes a line; the last is negative. */
-static char *string_card(void *user, size_t i, char *at)
+static char *string_card(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
     const struct tri_boundary_piece *piece = h->piece;
-    const int64_t n = piece->n + piece->closed, begin = (int64_t)i * NODES_A_LINE;
+    const int64_t n = piece->n + piece->closed, begin = i * NODES_A_LINE;
     at = put(at, "NS");
     for (int64_t k = begin; k < n && k < begin + NODES_A_LINE; k++) {
         int64_t node = h->boundary.nodes[piece->first + k % piece->n] + 1;
@@ -120,12 +120,12 @@ enum tri_status tri_write_2dm(struct tri_output *output, const struct tri_grid *
 
 /* --- fort.14 */
 
-static char *element_line(void *user, size_t i, char *at)
+static char *element_line(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
     int64_t nodes[6];
-    h->grid->triangle(h->grid->user, (int64_t)i, nodes);
-    at = put_integer(put_integer(at, (int64_t)i + 1), 3);
+    h->grid->triangle(h->grid->user, i, nodes);
+    at = put_integer(put_integer(at, i + 1), 3);
     for (int k = 0; k < 3; k++)
         at = put_integer(at, nodes[k] + 1);
     return put(at, "\n");
@@ -142,10 +142,10 @@ static int64_t shown_nodes(const struct tri_boundary_piece *piece)
     return piece->n + (piece->closed && piece->outer);
 }
 
-static char *boundary_line(void *user, size_t i, char *at)
+static char *boundary_line(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
-    return put(put_integer(at, h->boundary.nodes[h->piece->first + (int64_t)i % h->piece->n] + 1), "\n");
+    return put(put_integer(at, h->boundary.nodes[h->piece->first + i % h->piece->n] + 1), "\n");
 }
 
 static enum tri_status put_numbers(const struct hydro *h, int64_t a, int64_t b, const char *what)

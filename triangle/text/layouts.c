@@ -41,40 +41,18 @@ static char *put_end(char *at)
 /* -1 means nothing in every base. */
 static int64_t shown(const struct tri_grid *grid, int64_t index) { return index < 0 ? index : index + grid->base; }
 
-static char *put_number(char *at, const struct tri_grid *grid, size_t i)
+static char *put_number(char *at, const struct tri_grid *grid, int64_t i)
 {
-    return tri_print_integer(at, (int64_t)i + grid->base, 4);
+    return tri_print_integer(at, i + grid->base, 4);
 }
-
-typedef char *row_call(void *user, size_t i, char *at);
 
 /* A line of counts, the first of which is that of the rows behind it. */
 static enum tri_status write_table(struct tri_output *output, const struct tri_grid *grid, const int64_t *counts,
-                                   int n_counts, size_t max_row_bytes, row_call *row,
+                                   int n_counts, size_t max_row_bytes, tri_row_call *row,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
     enum tri_status status = tri_write_counts(output, counts, n_counts, error);
-    return status ? status : tri_write_table(output, (size_t)counts[0], max_row_bytes, row, (void *)grid, executor,
-                                             error);
-}
-
-/* Rows that do not begin with the first. */
-struct part {
-    const struct tri_grid *grid;
-    int64_t first;
-    row_call *row;
-};
-
-static char *part_row(void *user, size_t i, char *at)
-{
-    const struct part *part = user;
-    return part->row((void *)part->grid, (size_t)part->first + i, at);
-}
-
-static enum tri_status write_part(struct tri_output *output, struct part part, int64_t n, size_t max_row_bytes,
-                                  const struct tri_executor *executor, struct tri_error *error)
-{
-    return tri_write_table(output, (size_t)n, max_row_bytes, part_row, &part, executor, error);
+    return status ? status : tri_write_table(output, 0, counts[0], max_row_bytes, row, grid, executor, error);
 }
 
 /* --- .node */
@@ -84,23 +62,23 @@ static size_t node_bytes(const struct tri_grid *grid)
     return 2 * INTEGER_BYTES + (2 + (size_t)grid->n_attributes) * REAL_BYTES + 1;
 }
 
-static char *node_row(void *user, size_t i, char *at)
+static char *node_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     struct tri_grid_point point;
-    grid->point(grid->user, (int64_t)i, &point);
+    grid->point(grid->user, i, &point);
     at = put_number(at, grid, i);
     at = put_real(at, 4, point.at[0]);
     at = put_real(at, 2, point.at[1]);
     for (int32_t k = 0; k < grid->n_attributes; k++)
-        at = put_real(at, 2, grid->attribute(grid->user, (int64_t)i, k));
+        at = put_real(at, 2, grid->attribute(grid->user, i, k));
     return put_end(put_marker(at, grid, 4, point.marker, 0));
 }
 
 enum tri_status tri_write_node_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first, int64_t n,
                                     const struct tri_executor *executor, struct tri_error *error)
 {
-    return write_part(output, (struct part){grid, first, node_row}, n, node_bytes(grid), executor, error);
+    return tri_write_table(output, first, n, node_bytes(grid), node_row, grid, executor, error);
 }
 
 enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid *grid,
@@ -112,16 +90,16 @@ enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid 
 
 /* --- .ele */
 
-static char *ele_row(void *user, size_t i, char *at)
+static char *ele_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     int64_t nodes[6];
-    grid->triangle(grid->user, (int64_t)i, nodes);
+    grid->triangle(grid->user, i, nodes);
     at = put_blanks(put_number(at, grid, i), 2);
     for (int k = 0; k < grid->n_nodes; k++)
         at = put_integer(at, 2, nodes[k] + grid->base, 4);
     for (int32_t k = 0; k < grid->n_columns; k++)
-        at = put_real(at, 2, grid->column(grid->user, (int64_t)i, k));
+        at = put_real(at, 2, grid->column(grid->user, i, k));
     return put_end(at);
 }
 
@@ -133,7 +111,7 @@ static size_t ele_bytes(const struct tri_grid *grid)
 enum tri_status tri_write_ele_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first, int64_t n,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
-    return write_part(output, (struct part){grid, first, ele_row}, n, ele_bytes(grid), executor, error);
+    return tri_write_table(output, first, n, ele_bytes(grid), ele_row, grid, executor, error);
 }
 
 enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *grid,
@@ -145,11 +123,11 @@ enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *
 
 /* --- .poly: no vertices; segments, holes, regions */
 
-static char *segment_row(void *user, size_t i, char *at)
+static char *segment_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     struct tri_grid_edge segment;
-    grid->segment(grid->user, (int64_t)i, &segment);
+    grid->segment(grid->user, i, &segment);
     at = put_number(at, grid, i);
     at = put_integer(at, 4, segment.ends[0] + grid->base, 4);
     at = put_integer(at, 2, segment.ends[1] + grid->base, 4);
@@ -161,22 +139,22 @@ enum { SEGMENT_BYTES = 4 * INTEGER_BYTES + 1 };
 enum tri_status tri_write_segment_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first,
                                        int64_t n, const struct tri_executor *executor, struct tri_error *error)
 {
-    return write_part(output, (struct part){grid, first, segment_row}, n, SEGMENT_BYTES, executor, error);
+    return tri_write_table(output, first, n, SEGMENT_BYTES, segment_row, grid, executor, error);
 }
 
 /* Holes or regions: so many reals in each row. */
 struct sites {
     int32_t base;
-    size_t n_reals;
+    int64_t n_reals;
     const double *reals;
 };
 
-static char *site_row(void *user, size_t i, char *at)
+static char *site_row(const void *user, int64_t i, char *at)
 {
     const struct sites *sites = user;
-    at = tri_print_integer(at, (int64_t)i + sites->base, 4);
+    at = tri_print_integer(at, i + sites->base, 4);
     at = put_real(at, 3, sites->reals[i * sites->n_reals]);
-    for (size_t k = 1; k < sites->n_reals; k++)
+    for (int64_t k = 1; k < sites->n_reals; k++)
         at = put_real(at, 2, sites->reals[i * sites->n_reals + k]);
     return put_end(at);
 }
@@ -184,8 +162,8 @@ static char *site_row(void *user, size_t i, char *at)
 static enum tri_status write_sites(struct tri_output *output, struct sites sites, int32_t n, struct tri_error *error)
 {
     enum tri_status status = tri_write_counts(output, (int64_t[]){n}, 1, error);
-    const size_t row_bytes = INTEGER_BYTES + sites.n_reals * REAL_BYTES + 1;
-    return status ? status : tri_write_table(output, (size_t)n, row_bytes, site_row, &sites, NULL, error);
+    const size_t row_bytes = INTEGER_BYTES + (size_t)sites.n_reals * REAL_BYTES + 1;
+    return status ? status : tri_write_table(output, 0, n, row_bytes, site_row, &sites, NULL, error);
 }
 
 enum tri_status tri_write_sites(struct tri_output *output, const struct tri_grid *grid,
@@ -212,17 +190,17 @@ enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid 
 
 /* --- .edge, .v.edge, .neigh */
 
-static char *put_ends(char *at, const struct tri_grid *grid, size_t i, const int64_t ends[2])
+static char *put_ends(char *at, const struct tri_grid *grid, int64_t i, const int64_t ends[2])
 {
     at = put_integer(put_number(at, grid, i), 3, ends[0] + grid->base, 0);
     return put_integer(at, 2, shown(grid, ends[1]), 0);
 }
 
-static char *edge_row(void *user, size_t i, char *at)
+static char *edge_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     struct tri_grid_edge edge;
-    grid->edge(grid->user, (int64_t)i, &edge);
+    grid->edge(grid->user, i, &edge);
     return put_end(put_marker(put_ends(at, grid, i, edge.ends), grid, 2, edge.marker, 0));
 }
 
@@ -233,11 +211,11 @@ enum tri_status tri_write_edge(struct tri_output *output, const struct tri_grid 
     return write_table(output, grid, counts, 2, 4 * INTEGER_BYTES + 1, edge_row, executor, error);
 }
 
-static char *v_edge_row(void *user, size_t i, char *at)
+static char *v_edge_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     struct tri_grid_edge edge;
-    grid->edge(grid->user, (int64_t)i, &edge);
+    grid->edge(grid->user, i, &edge);
     at = put_ends(at, grid, i, edge.ends);
     if (edge.ends[1] < 0) {
         at = put_real(at, 3, edge.direction[0]);
@@ -253,11 +231,11 @@ enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_gri
     return write_table(output, grid, (int64_t[]){grid->n_edges, 0}, 2, row_bytes, v_edge_row, executor, error);
 }
 
-static char *neigh_row(void *user, size_t i, char *at)
+static char *neigh_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     int64_t neighbors[3];
-    grid->neighbors(grid->user, (int64_t)i, neighbors);
+    grid->neighbors(grid->user, i, neighbors);
     at = put_integer(put_number(at, grid, i), 4, shown(grid, neighbors[0]), 0);
     at = put_integer(at, 2, shown(grid, neighbors[1]), 0);
     return put_end(put_integer(at, 2, shown(grid, neighbors[2]), 0));
@@ -272,22 +250,22 @@ enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_grid
 
 /* --- .off: always counts from 0, has corners alone, and z, which is 0 */
 
-static char *off_vertex_row(void *user, size_t i, char *at)
+static char *off_vertex_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     struct tri_grid_point point;
-    grid->point(grid->user, (int64_t)i, &point);
+    grid->point(grid->user, i, &point);
     at = put_real(at, 1, point.at[0]);
     at = put_real(at, 2, point.at[1]);
     memcpy(at, "  0\n", 4);
     return at + 4;
 }
 
-static char *off_face_row(void *user, size_t i, char *at)
+static char *off_face_row(const void *user, int64_t i, char *at)
 {
     const struct tri_grid *grid = user;
     int64_t nodes[6];
-    grid->triangle(grid->user, (int64_t)i, nodes);
+    grid->triangle(grid->user, i, nodes);
     memcpy(at, " 3   ", 5);
     at = tri_print_integer(at + 5, nodes[0], 4);
     at = put_integer(at, 2, nodes[1], 4);
@@ -307,7 +285,9 @@ enum tri_status tri_write_off(struct tri_output *output, const struct tri_grid *
                               const struct tri_executor *executor, struct tri_error *error)
 {
     enum tri_status status = write_off_header(output, grid, error);
-    const struct part points = {grid, 0, off_vertex_row}, faces = {grid, 0, off_face_row};
-    status = status ? status : write_part(output, points, grid->n_points, 2 * REAL_BYTES + 8, executor, error);
-    return status ? status : write_part(output, faces, grid->n_triangles, 4 * INTEGER_BYTES, executor, error);
+    const size_t vertex_bytes = 2 * REAL_BYTES + 8, face_bytes = 4 * INTEGER_BYTES;
+    if (!status)
+        status = tri_write_table(output, 0, grid->n_points, vertex_bytes, off_vertex_row, grid, executor, error);
+    return status ? status
+                  : tri_write_table(output, 0, grid->n_triangles, face_bytes, off_face_row, grid, executor, error);
 }

@@ -498,14 +498,6 @@ static enum tri_status close_output(struct tri_output *output, struct tri_error 
     return TRI_OK;
 }
 
-enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    for (int i = 0; status == TRI_OK && i < set->n; i++)
-        status = close_output(&set->outputs[i], error);
-    return status;
-}
-
 /* --- final names */
 
 /* A second name for the file that is going to be replaced, if there is one. */
@@ -549,7 +541,9 @@ static void put_back(struct tri_output *output)
 
 enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error)
 {
-    enum tri_status status = tri_outputs_close(set, error);
+    enum tri_status status = TRI_OK;
+    for (int i = 0; status == TRI_OK && i < set->n; i++)
+        status = close_output(&set->outputs[i], error);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
         keep_old(set, &set->outputs[i]);
     for (int i = 0; status == TRI_OK && i < set->n; i++)

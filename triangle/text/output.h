@@ -94,9 +94,6 @@ enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *err
  * have places. The bytes between are then to be written. */
 enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error);
 
-/* Closes all files, so that nothing is left to do but to give them their names. */
-enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error);
-
 /* Closes all files, then renames all. If a file could not be written, closed or renamed, every name is as it was before
  * (where the file system knows second names of a file; else files renamed before the failure stay). What is to be on
  * the disk, too, has been synced before. */

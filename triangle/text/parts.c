@@ -111,13 +111,13 @@ static void bisect(struct work *w, struct site *site, int64_t n, int first, int 
     bisect(w, site + n_lower, n - n_lower, first + lower, n_parts - lower);
 }
 
-static enum tri_status cut_plane(struct work *w, struct tri_error *error)
+static bool cut_plane(struct work *w)
 {
     const int64_t m = w->grid->n_triangles, step = (m - 1) / MOST_SAMPLES + 1;
     int64_t n = 0;
     w->sample = malloc((size_t)(m / step + 1) * sizeof *w->sample);
     if (!w->sample)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+        return false;
     for (int64_t t = 0; t < m; t += step) {
         if (t % TRI_GRID_ROUNDS < step)
             tri_grid_let_go(w->grid);
@@ -125,7 +125,7 @@ static enum tri_status cut_plane(struct work *w, struct tri_error *error)
     }
     bisect(w, w->sample, n, 0, w->parts->n);
     free(w->sample);
-    return TRI_OK;
+    return true;
 }
 
 static int part_at(const struct work *w, const struct site *site)
@@ -166,7 +166,7 @@ static void use_point(struct work *w, int64_t point, int32_t part)
     w->user[point] = before == 0 ? part : -part;
 }
 
-static void use_corners(struct work *w)
+static bool use_corners(struct work *w)
 {
     int64_t nodes[6];
     for (int64_t t = 0; t < w->grid->n_triangles; t++) {
@@ -176,6 +176,7 @@ static void use_corners(struct work *w)
         for (int k = 0; k < w->grid->n_nodes; k++)
             use_point(w, nodes[k], w->part[t]);
     }
+    return !w->no_memory;
 }
 
 /* --- whose are segments */
@@ -269,14 +270,14 @@ static void assign_loose(struct work *w)
     }
 }
 
-static enum tri_status assign_segments(struct work *w, struct tri_error *error)
+static bool assign_segments(struct work *w)
 {
     assign_plain(w);
     if (!list_edges(w))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+        return false;
     assign_by_triangles(w);
     assign_loose(w);
-    return TRI_OK;
+    return true;
 }
 
 /* --- lists */
@@ -365,8 +366,7 @@ static void sort_uses(struct work *w)
     w->n_uses = n;
 }
 
-static enum tri_status make_lists(struct work *w, const struct tri_grouping *surfaces,
-                                  const struct tri_grouping *curves, struct tri_error *error)
+static bool make_lists(struct work *w, const struct tri_grouping *surfaces, const struct tri_grouping *curves)
 {
     struct tri_parts *p = w->parts;
     sort_uses(w);
@@ -374,12 +374,12 @@ static enum tri_status make_lists(struct work *w, const struct tri_grouping *sur
     p->shared = malloc((size_t)w->n_uses * sizeof *p->shared + 1);
     p->first_shared = malloc((size_t)(w->n_uses + 1) * sizeof *p->first_shared);
     if (w->no_memory || !p->part_list || !p->shared || !p->first_shared)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+        return false;
     list_by_part(w, w->grid->n_points, part_of_point, &(struct tri_grouping){0}, p->inner, p->first_inner);
     list_by_part(w, w->grid->n_triangles, part_of_triangle, surfaces, p->triangle, p->first_triangle);
     list_by_part(w, w->grid->n_segments, part_of_segment, curves, p->segment, p->first_segment);
     list_shared(w);
-    return TRI_OK;
+    return true;
 }
 
 /* --- all together */
@@ -411,12 +411,8 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
     *parts = (struct tri_parts){.n = n, .storage = grid->storage};
     struct work w = {.parts = parts, .grid = grid};
     enum tri_status status = get_room(&w, error);
-    status = status ? status : cut_plane(&w, error);
-    if (!status) {
-        use_corners(&w);
-        status = assign_segments(&w, error);
-    }
-    status = status ? status : make_lists(&w, surfaces, curves, error);
+    if (!status && !(cut_plane(&w) && use_corners(&w) && assign_segments(&w) && make_lists(&w, surfaces, curves)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
     tri_room_free(parts->storage, w.part);
     tri_room_free(parts->storage, w.user);
     tri_room_free(parts->storage, w.segment_part);

@@ -31,11 +31,11 @@ struct data {
     const char *at; /* [n] of DATUM_BYTES */
 };
 
-static enum tri_status fail(const struct reading *r, const char *text) { return tri_reading_fail(&r->to, 0, text); }
+#define FAIL(r, ...) tri_reading_fail(&(r)->to, TRI_BAD_INPUT, 0, __VA_ARGS__)
 
-static enum tri_status ends_early(const struct reading *r, const char *section)
+static bool ends_early(struct reading *r, const char *section)
 {
-    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the section $%s is not complete", section);
+    return FAIL(r, "the section $%s is not complete", section);
 }
 
 static bool is_line(const char *line, size_t length, const char *text)
@@ -45,16 +45,16 @@ static bool is_line(const char *line, size_t length, const char *text)
 
 /* --- heads */
 
-static enum tri_status read_format(struct reading *r)
+static bool read_format(struct reading *r)
 {
     const char *line;
     size_t n;
     if (!tri_bytes_line(&r->file, &line, &n) || !is_line(line, n, "4.1 1 8"))
-        return fail(r, "not of version 4.1, binary: Gmsh writes that with -format msh41 -bin");
+        return FAIL(r, "not of version 4.1, binary: Gmsh writes that with -format msh41 -bin");
     if (!tri_bytes_has(&r->file, 1, 4) || tri_take_i32(&r->file) != 1)
-        return fail(r, "big-endian: only little-endian files are read");
+        return FAIL(r, "big-endian: only little-endian files are read");
     r->has_format = true;
-    return TRI_OK;
+    return true;
 }
 
 /* Blocks and items of a section; false: not there, or more than the file could hold of such a size. */
@@ -85,43 +85,37 @@ static bool take_block(struct reading *r, struct block *block)
 
 /* --- nodes */
 
-static enum tri_status take_node(struct reading *r, int64_t i, const char *tag, const char *place)
+static bool take_node(struct reading *r, int64_t i, const char *tag, const char *place)
 {
     const double x = tri_get_f64(place), y = tri_get_f64(place + 8), z = tri_get_f64(place + 16);
     r->nodes.tag[i] = tri_get_i64(tag);
     r->to.mesh->points[2 * i] = x;
     r->to.mesh->points[2 * i + 1] = y;
-    if (isfinite(x) && isfinite(y) && z == 0)
-        return TRI_OK;
-    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "node %" PRId64 " is not finite, or not at z = 0",
-                    r->nodes.tag[i]);
+    return (isfinite(x) && isfinite(y) && z == 0) ||
+           FAIL(r, "node %" PRId64 " is not finite, or not at z = 0", r->nodes.tag[i]);
 }
 
-static enum tri_status read_nodes(struct reading *r)
+static bool read_nodes(struct reading *r)
 {
     uint64_t blocks, n, done = 0;
-    enum tri_status status = TRI_OK;
     if (r->has_nodes || !take_totals(r, &blocks, &n, 32))
         return ends_early(r, "Nodes");
     r->has_nodes = true;
-    r->to.mesh->points = malloc((n + 1) * 2 * sizeof *r->to.mesh->points);
-    if (!tri_tags_begin(&r->nodes, (int64_t)n) || !r->to.mesh->points)
-        return tri_reading_no_memory(&r->to);
-    for (uint64_t b = 0; b < blocks && !status; b++) {
+    if (!tri_tags_begin_nodes(&r->nodes, (int64_t)n, &r->to))
+        return false;
+    for (uint64_t b = 0; b < blocks; b++) {
         struct block block;
         if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
             return ends_early(r, "Nodes");
         if (block.kind != 0)
-            return fail(r, "nodes with parameters are not read");
+            return FAIL(r, "nodes with parameters are not read");
         const char *tags = r->file.at, *places = tags + 8 * block.n;
-        for (uint64_t i = 0; i < block.n && !status; i++)
-            status = take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i);
+        for (uint64_t i = 0; i < block.n; i++)
+            if (!take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i))
+                return false;
         r->file.at += 32 * block.n;
     }
-    r->to.mesh->n_points = (int32_t)n;
-    if (!status && done < n)
-        return ends_early(r, "Nodes");
-    return status ? status : tri_tags_order(&r->nodes, "node", &r->to);
+    return done < n ? ends_early(r, "Nodes") : tri_tags_order(&r->nodes, "node", &r->to);
 }
 
 /* --- elements */
@@ -137,14 +131,11 @@ static int nodes_of(int32_t kind)
     }
 }
 
-/* The place of the node that is named there; -1, and an error: there is none. */
-static int32_t place_of(const struct reading *r, const char *at)
+/* The place of the node that is named there. */
+static bool take_place(struct reading *r, const char *at, int32_t *place)
 {
-    const int64_t place = tri_tags_place(&r->nodes, tri_get_i64(at));
-    if (place < 0)
-        (void)tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "an element names node %" PRId64
-                       ", which is not there", tri_get_i64(at));
-    return (int32_t)place;
+    *place = (int32_t)tri_tags_place(&r->nodes, tri_get_i64(at));
+    return *place >= 0 || FAIL(r, "an element names node %" PRId64 ", which is not there", tri_get_i64(at));
 }
 
 /* Gmsh has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
@@ -155,7 +146,7 @@ static bool take_triangle(struct reading *r, const char *at, int n_nodes)
     r->triangles.tag[i] = tri_get_i64(at);
     for (int k = 0; k < n_nodes; k++) {
         int32_t *to = k < 3 ? &r->to.elements->corners[3 * i + k] : &r->to.elements->extra[3 * i + opposite[k - 3]];
-        if ((*to = place_of(r, at + 8 * (k + 1))) < 0)
+        if (!take_place(r, at + 8 * (k + 1), to))
             return false;
     }
     return true;
@@ -165,35 +156,34 @@ static bool take_segment(struct reading *r, const char *at)
 {
     const int64_t i = r->n_segments++;
     r->segments.tag[i] = tri_get_i64(at);
-    for (int k = 0; k < 2; k++)
-        if ((r->to.mesh->segments[2 * i + k] = place_of(r, at + 8 * (k + 1))) < 0)
-            return false;
-    return true;
+    int32_t *to = &r->to.mesh->segments[2 * i];
+    return take_place(r, at + 8, &to[0]) && take_place(r, at + 16, &to[1]);
 }
 
-static enum tri_status take_elements(struct reading *r, const struct block *block)
+static bool take_elements(struct reading *r, const struct block *block)
 {
     const int n = nodes_of(block->kind);
     const size_t bytes = 8 * (size_t)(n + 1);
     if (n >= 3 && r->n_triangles > 0 && r->to.elements->n_nodes != n)
-        return fail(r, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, "triangles of three nodes and of six in one mesh");
     if (n >= 3)
         r->to.elements->n_nodes = n;
     for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
         if ((n >= 3 && !take_triangle(r, r->file.at, n)) || (n == 2 && !take_segment(r, r->file.at)))
-            return TRI_BAD_INPUT;
-    return TRI_OK;
+            return false;
+    return true;
 }
 
 /* Which are of what kind shows later. */
 static bool begin_elements(struct reading *r, int64_t n)
 {
-    const bool room = tri_reading_triangles(&r->to, n, 6) && tri_reading_segments(&r->to, n);
+    const bool room = tri_reading_triangles(&r->to, n, 6) && tri_reading_segments(&r->to, n) &&
+                      tri_tags_begin(&r->triangles, n, &r->to) && tri_tags_begin(&r->segments, n, &r->to);
     r->to.elements->n_nodes = 3;
-    return room && tri_tags_begin(&r->triangles, n) && tri_tags_begin(&r->segments, n);
+    return room;
 }
 
-static enum tri_status end_elements(struct reading *r)
+static bool end_elements(struct reading *r)
 {
     r->to.elements->n = (int32_t)r->n_triangles;
     r->to.mesh->n_segments = (int32_t)r->n_segments;
@@ -203,35 +193,31 @@ static enum tri_status end_elements(struct reading *r)
         free(r->to.elements->extra);
         r->to.elements->extra = NULL;
     }
-    enum tri_status status = tri_tags_order(&r->triangles, "element", &r->to);
-    return status ? status : tri_tags_order(&r->segments, "element", &r->to);
+    return tri_tags_order(&r->triangles, "element", &r->to) && tri_tags_order(&r->segments, "element", &r->to);
 }
 
-static enum tri_status read_elements(struct reading *r)
+static bool read_elements(struct reading *r)
 {
     uint64_t blocks, n, done = 0;
-    enum tri_status status = TRI_OK;
     if (!r->has_nodes || r->has_elements || !take_totals(r, &blocks, &n, 16))
         return ends_early(r, r->has_nodes ? "Elements" : "Nodes");
     r->has_elements = true;
     if (!begin_elements(r, (int64_t)n))
-        return tri_reading_no_memory(&r->to);
-    for (uint64_t b = 0; b < blocks && !status; b++) {
+        return false;
+    for (uint64_t b = 0; b < blocks; b++) {
         struct block block;
         if (!take_block(r, &block) || block.n > n - done)
             return ends_early(r, "Elements");
         if (nodes_of(block.kind) == 0)
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "an element of type %" PRId32
-                            ": triangles and lines are read", block.kind);
+            return FAIL(r, "an element of type %" PRId32 ": triangles and lines are read", block.kind);
         if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
             return ends_early(r, "Elements");
-        status = take_elements(r, &block);
+        if (!take_elements(r, &block))
+            return false;
         done += block.n;
     }
     r->n_elements = (int64_t)n;
-    if (!status && done < n)
-        return ends_early(r, "Elements");
-    return status ? status : end_elements(r);
+    return done < n ? ends_early(r, "Elements") : end_elements(r);
 }
 
 /* --- data */
@@ -268,7 +254,7 @@ static bool take_data_head(struct reading *r, struct data *data)
 }
 
 /* A column of reals among `width` more, which are 0 so far. The places of tags: of nodes, or of triangles. */
-static enum tri_status add_column(const struct reading *r, const struct data *data, const struct tri_tags *tags,
+static bool add_column(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                   double **columns, int32_t *width)
 {
     const size_t n = (size_t)tags->n, old = (size_t)*width, new = old + 1;
@@ -285,15 +271,15 @@ static enum tri_status add_column(const struct reading *r, const struct data *da
         const int64_t place = tri_tags_place(tags, tri_get_i32(data->at + DATUM_BYTES * i));
         const double value = tri_get_f64(data->at + DATUM_BYTES * i + 4);
         if (!isfinite(value))
-            return fail(r, "an attribute is not finite");
+            return FAIL(r, "an attribute is not finite");
         if (place >= 0)
             all[new * (size_t)place + old] = value;
     }
-    return TRI_OK;
+    return true;
 }
 
 /* Markers of nodes, or of segments. */
-static enum tri_status take_markers(const struct reading *r, const struct data *data, const struct tri_tags *tags,
+static bool take_markers(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                     int32_t **markers)
 {
     free(*markers);
@@ -304,14 +290,14 @@ static enum tri_status take_markers(const struct reading *r, const struct data *
         const int64_t place = tri_tags_place(tags, tri_get_i32(data->at + DATUM_BYTES * i));
         const double value = tri_get_f64(data->at + DATUM_BYTES * i + 4);
         if (!(value >= INT32_MIN && value <= INT32_MAX))
-            return fail(r, "a marker does not fit into 32 bits");
+            return FAIL(r, "a marker does not fit into 32 bits");
         if (place >= 0)
             (*markers)[place] = (int32_t)value;
     }
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status take_data(struct reading *r, const struct data *data)
+static bool take_data(struct reading *r, const struct data *data)
 {
     char next[MOST_NAME];
     int32_t *width = data->of_nodes ? &r->to.mesh->n_attributes : &r->to.elements->n_attributes;
@@ -322,20 +308,20 @@ static enum tri_status take_data(struct reading *r, const struct data *data)
     if (strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES)
         return add_column(r, data, data->of_nodes ? &r->nodes : &r->triangles,
                           data->of_nodes ? &r->to.mesh->attributes : &r->to.elements->attributes, width);
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status read_data(struct reading *r, bool of_nodes)
+static bool read_data(struct reading *r, bool of_nodes)
 {
     struct data data = {.of_nodes = of_nodes};
     if (!r->has_elements)
-        return fail(r, "data before the elements are not read");
+        return FAIL(r, "data before the elements are not read");
     if (!take_data_head(r, &data))
-        return TRI_OK; /* of another kind */
+        return true; /* of another kind */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
-        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "%.*s: not one number for each of the %" PRId64
-                        " %s", MOST_NAME, data.name, items, of_nodes ? "nodes" : "elements");
+        return FAIL(r, "%.*s: not one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
+                    of_nodes ? "nodes" : "elements");
     data.at = r->file.at;
     r->file.at += (uint64_t)data.n * DATUM_BYTES;
     return take_data(r, &data);
@@ -343,22 +329,22 @@ static enum tri_status read_data(struct reading *r, bool of_nodes)
 
 /* --- the file */
 
-static enum tri_status read_section(struct reading *r, const char *name, size_t n)
+static bool read_section(struct reading *r, const char *name, size_t n)
 {
     if (is_line(name, n, "MeshFormat"))
         return read_format(r);
     if (!r->has_format)
-        return fail(r, "not a .msh file");
+        return FAIL(r, "not a .msh file");
     if (is_line(name, n, "Nodes"))
         return read_nodes(r);
     if (is_line(name, n, "Elements"))
         return read_elements(r);
     if (is_line(name, n, "NodeData") || is_line(name, n, "ElementData"))
         return read_data(r, *name == 'N');
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status read_sections(struct reading *r)
+static bool read_sections(struct reading *r)
 {
     const char *line;
     size_t n;
@@ -367,28 +353,27 @@ static enum tri_status read_sections(struct reading *r)
         if (n == 0)
             continue;
         if (*line != '$' || n > 40)
-            return fail(r, r->has_format ? "what stands between two sections is none" : "not a .msh file");
-        enum tri_status status = read_section(r, line + 1, n - 1);
-        if (status)
-            return status;
+            return FAIL(r, r->has_format ? "what stands between two sections is none" : "not a .msh file");
+        if (!read_section(r, line + 1, n - 1))
+            return false;
         snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);
         r->file.at--; /* of what has no content the end of the line stands before it */
         if (!tri_bytes_pass(&r->file, end))
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the section %.*s has no end", (int)n, line);
+            return FAIL(r, "the section %.*s has no end", (int)n, line);
         (void)tri_bytes_line(&r->file, &line, &n);
     }
-    return r->has_elements ? TRI_OK : fail(r, "not a .msh file, or one without elements");
+    return r->has_elements || FAIL(r, "not a .msh file, or one without elements");
 }
 
 enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
                              const struct tri_executor *executor, struct tri_error *error)
 {
-    struct reading r = {.to = {path, executor, mesh, elements, error}};
-    enum tri_status status = tri_bytes_load(&r.file, path, error);
-    status = status ? status : read_sections(&r);
+    struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
+    r.to.status = tri_bytes_load(&r.file, path, error);
+    (void)(!r.to.status && read_sections(&r));
     tri_bytes_free(&r.file);
     tri_tags_free(&r.nodes);
     tri_tags_free(&r.triangles);
     tri_tags_free(&r.segments);
-    return status;
+    return r.to.status;
 }

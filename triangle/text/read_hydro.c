@@ -19,19 +19,14 @@ struct reading {
     int64_t most_ends, most_markers; /* room in the arrays of segments */
 };
 
-static enum tri_status fail(const struct reading *r, size_t line, const char *text)
-{
-    return tri_reading_fail(&r->to, line, text);
-}
+#define FAIL(r, line, ...) tri_reading_fail(&(r)->to, TRI_BAD_INPUT, line, __VA_ARGS__)
 
 /* --- what both have */
 
 static bool begin_nodes(struct reading *r, int64_t n)
 {
-    r->to.mesh->n_points = (int32_t)n;
-    r->to.mesh->points = malloc(((size_t)n + 1) * 2 * sizeof *r->to.mesh->points);
     r->z = malloc(((size_t)n + 1) * sizeof *r->z);
-    return tri_tags_begin(&r->nodes, n) && r->to.mesh->points && r->z;
+    return tri_tags_begin_nodes(&r->nodes, n, &r->to) && (r->z || tri_reading_no_memory(&r->to));
 }
 
 /* Number, place and elevation. */
@@ -59,7 +54,7 @@ static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t mar
     const int64_t n = m->n_segments;
     if (n == INT32_MAX || !tri_grow_far(&m->segments, &r->most_ends, 2 * (n + 1), sizeof *m->segments) ||
         !tri_grow_far(&m->segment_markers, &r->most_markers, n + 1, sizeof *m->segment_markers))
-        return false;
+        return tri_reading_no_memory(&r->to);
     m->segments[2 * n] = from;
     m->segments[2 * n + 1] = to;
     m->segment_markers[n] = marker;
@@ -79,19 +74,18 @@ static void hand_over(struct reading *r)
         r->z = NULL;
 }
 
-static enum tri_status read_with(enum tri_status (*read)(struct reading *r), const char *path, struct tri_pslg *mesh,
+static enum tri_status read_with(bool (*read)(struct reading *r), const char *path, struct tri_pslg *mesh,
                                  struct tri_elements *elements, const struct tri_executor *executor,
                                  struct tri_error *error)
 {
-    struct reading r = {.to = {path, executor, mesh, elements, error}};
-    enum tri_status status = tri_text_load(&r.text, path, 0, executor, NULL, error);
-    status = status ? status : read(&r);
-    if (!status)
+    struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
+    r.to.status = tri_text_load(&r.text, path, 0, executor, NULL, error);
+    if (!r.to.status && read(&r))
         hand_over(&r);
     tri_text_free(&r.text);
     tri_tags_free(&r.nodes);
     free(r.z);
-    return status;
+    return r.to.status;
 }
 
 /* --- fort.14: a title, numbers of elements and nodes, nodes, elements, open boundaries, land */
@@ -120,41 +114,45 @@ static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 static bool goes_round(int64_t type) { return type == 1 || type == 11 || type == 21; }
 
 /* n nodes, a line each. */
-static enum tri_status read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
+static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
 {
     int32_t first = -1, last = -1;
     for (int64_t i = 0; i < n; i++) {
         struct tri_fields fields;
         const int32_t node = tri_cursor_next(cursor, &fields) ? take_place(r, &fields) : -1;
         if (node < 0)
-            return fail(r, cursor->line, "a node of a boundary is missing, or no node");
+            return FAIL(r, cursor->line, "a node of a boundary is missing, or no node");
         if (i > 0 && !add_segment(r, last, node, marker))
-            return tri_reading_no_memory(&r->to);
+            return false;
         first = i == 0 ? node : first;
         last = node;
     }
-    if (closed && first != last && !add_segment(r, last, first, marker))
-        return tri_reading_no_memory(&r->to);
-    return TRI_OK;
+    return !closed || first == last || add_segment(r, last, first, marker);
 }
 
 /* How many boundaries there are, how many nodes, and each. */
-static enum tri_status read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
+static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
 {
     int64_t n, n_nodes;
-    enum tri_status status = TRI_OK;
     if (!take_numbers(cursor, &n, NULL) || !take_numbers(cursor, &n_nodes, NULL))
-        return fail(r, cursor->line, "the numbers of boundaries and of their nodes are missing");
-    for (int64_t i = 0; i < n && !status; i++) {
+        return FAIL(r, cursor->line, "the numbers of boundaries and of their nodes are missing");
+    for (int64_t i = 0; i < n; i++) {
         int64_t type = 0;
         if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
-            return fail(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
-        status = read_string(r, cursor, n_nodes, !open && goes_round(type), open ? TRI_OPEN_BOUNDARY : 1);
+            return FAIL(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
+        if (!read_string(r, cursor, n_nodes, !open && goes_round(type), open ? TRI_OPEN_BOUNDARY : 1))
+            return false;
     }
-    return status;
+    return true;
 }
 
-static enum tri_status read_14(struct reading *r)
+static bool read_table(struct reading *r, struct tri_cursor *cursor, struct tri_table table)
+{
+    r->to.status = tri_cursor_table(cursor, &table, r->to.executor, r->to.error);
+    return !r->to.status;
+}
+
+static bool read_14(struct reading *r)
 {
     struct tri_cursor cursor = tri_cursor_begin(&r->text);
     struct tri_fields fields;
@@ -162,21 +160,17 @@ static enum tri_status read_14(struct reading *r)
     if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* the title has a number in it */
         (void)tri_cursor_next(&cursor, &fields);
     if (!take_numbers(&cursor, &n_elements, &n_nodes))
-        return fail(r, cursor.line, "the numbers of elements and nodes are missing");
+        return FAIL(r, cursor.line, "the numbers of elements and nodes are missing");
     const size_t left = tri_cursor_remaining(&cursor);
     if ((uint64_t)n_nodes > left || (uint64_t)n_elements > left - (size_t)n_nodes || n_nodes > INT32_MAX ||
         n_elements > INT32_MAX)
-        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, (long)cursor.line, "%lld nodes and %lld elements are "
-                        "announced, but only %zu records follow", (long long)n_nodes, (long long)n_elements, left);
-    if (!begin_nodes(r, n_nodes) || !tri_reading_triangles(&r->to, n_elements, 3))
-        return tri_reading_no_memory(&r->to);
-    const struct tri_table nodes = {"node", (size_t)n_nodes, 1, take_node, r};
-    const struct tri_table elements = {"element", (size_t)n_elements, 1, take_element, r};
-    enum tri_status status = tri_cursor_table(&cursor, &nodes, r->to.executor, r->to.error);
-    status = status ? status : tri_tags_order(&r->nodes, "node", &r->to);
-    status = status ? status : tri_cursor_table(&cursor, &elements, r->to.executor, r->to.error);
-    status = status ? status : read_boundaries(r, &cursor, true);
-    return status ? status : read_boundaries(r, &cursor, false);
+        return FAIL(r, cursor.line, "%lld nodes and %lld elements are announced, but only %zu records follow",
+                    (long long)n_nodes, (long long)n_elements, left);
+    return begin_nodes(r, n_nodes) && tri_reading_triangles(&r->to, n_elements, 3) &&
+           read_table(r, &cursor, (struct tri_table){"node", (size_t)n_nodes, 1, take_node, r}) &&
+           tri_tags_order(&r->nodes, "node", &r->to) &&
+           read_table(r, &cursor, (struct tri_table){"element", (size_t)n_elements, 1, take_element, r}) &&
+           read_boundaries(r, &cursor, true) && read_boundaries(r, &cursor, false);
 }
 
 enum tri_status tri_read_14(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
@@ -238,28 +232,28 @@ static struct cards all_cards(const struct reading *r)
     return (struct cards){.at = r->text.data, .end = r->text.data + r->text.size};
 }
 
-static enum tri_status count_cards(const struct reading *r, int64_t count[CARDS])
+static bool count_cards(struct reading *r, int64_t count[CARDS])
 {
     for (struct cards c = all_cards(r); next_card(&c);) {
         if (c.card == CARD_UNKNOWN)
-            return fail(r, c.line, "an element that is no triangle");
+            return FAIL(r, c.line, "an element that is no triangle");
         if (c.card != CARD_NONE)
             count[c.card]++;
     }
     if (count[CARD_TRIANGLE] > 0 && count[CARD_SIX_NODES] > 0)
-        return fail(r, 0, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, 0, "triangles of three nodes and of six in one mesh");
     if (count[CARD_NODE] > INT32_MAX || count[CARD_TRIANGLE] + count[CARD_SIX_NODES] > INT32_MAX)
-        return tri_fail(r->to.error, TRI_TOO_LARGE, r->to.path, 0, "more nodes or triangles than are read");
-    return TRI_OK;
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more nodes or triangles than are read");
+    return true;
 }
 
-static enum tri_status read_nodes(struct reading *r)
+static bool read_nodes(struct reading *r)
 {
     size_t i = 0;
     for (struct cards c = all_cards(r); next_card(&c);) {
         const char *wrong = c.card == CARD_NODE ? take_node(r, i++, &c.fields) : NULL;
         if (wrong)
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, (long)c.line, "node %zu %s", i, wrong);
+            return FAIL(r, c.line, "node %zu %s", i, wrong);
     }
     return tri_tags_order(&r->nodes, "node", &r->to);
 }
@@ -283,7 +277,7 @@ static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields
     return true;
 }
 
-static enum tri_status read_triangles(struct reading *r)
+static bool read_triangles(struct reading *r)
 {
     struct tri_elements *e = r->to.elements;
     double *material = malloc(((size_t)e->n + 1) * sizeof *material);
@@ -296,7 +290,7 @@ static enum tri_status read_triangles(struct reading *r)
         if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
             continue;
         if (!take_corners(r, i, &c.fields))
-            return fail(r, c.line, "a triangle has a node that is missing, or no node");
+            return FAIL(r, c.line, "a triangle has a node that is missing, or no node");
         if (tri_fields_real(&c.fields, &material[i]) != TRI_FIELD_GOOD)
             material[i] = 1;
         any = any || material[i] != 1;
@@ -307,11 +301,11 @@ static enum tri_status read_triangles(struct reading *r)
         free(material);
         e->attributes = NULL;
     }
-    return TRI_OK;
+    return true;
 }
 
 /* A string ends with a negative number; behind it stands its marker. Lines of ten nodes may go before. */
-static enum tri_status read_strings(struct reading *r)
+static bool read_strings(struct reading *r)
 {
     int32_t last = -1;
     int64_t first = 0; /* segment of the string */
@@ -322,9 +316,9 @@ static enum tri_status read_strings(struct reading *r)
             ends = tag < 0 && tag > INT64_MIN;
             const int32_t node = (int32_t)tri_tags_place(&r->nodes, ends ? -tag : tag);
             if (node < 0)
-                return fail(r, c.line, "a node string has a node that is not there");
+                return FAIL(r, c.line, "a node string has a node that is not there");
             if (last >= 0 && !add_segment(r, last, node, 0))
-                return tri_reading_no_memory(&r->to);
+                return false;
             last = node;
         }
         if (!ends)
@@ -335,23 +329,20 @@ static enum tri_status read_strings(struct reading *r)
             r->to.mesh->segment_markers[first] = (int32_t)marker;
         last = -1;
     }
-    return last < 0 ? TRI_OK : fail(r, 0, "a node string has no end");
+    return last < 0 || FAIL(r, 0, "a node string has no end");
 }
 
-static enum tri_status read_2dm(struct reading *r)
+static bool read_2dm(struct reading *r)
 {
     int64_t count[CARDS] = {0};
-    enum tri_status status = count_cards(r, count);
-    if (status)
-        return status;
-    if (!begin_nodes(r, count[CARD_NODE]) ||
-        !tri_reading_triangles(&r->to, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], count[CARD_SIX_NODES] > 0 ? 6 : 3))
-        return tri_reading_no_memory(&r->to);
+    if (!count_cards(r, count))
+        return false;
     if (count[CARD_NODE] == 0)
-        return fail(r, 0, "no mesh: there are no nodes (ND)");
-    status = read_nodes(r);
-    status = status ? status : read_triangles(r);
-    return status ? status : read_strings(r);
+        return FAIL(r, 0, "no mesh: there are no nodes (ND)");
+    const int n_nodes = count[CARD_SIX_NODES] > 0 ? 6 : 3;
+    return begin_nodes(r, count[CARD_NODE]) &&
+           tri_reading_triangles(&r->to, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], n_nodes) && read_nodes(r) &&
+           read_triangles(r) && read_strings(r);
 }
 
 enum tri_status tri_read_2dm(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,

@@ -56,6 +56,7 @@ struct array {
 struct reading {
     struct tri_reading to;
     struct tri_bytes file;
+    bool is_vtk;
     bool wide_sizes; /* of appended data: 8 bytes */
     const char *data; /* where these begin; NULL: there are none */
     char section[16];
@@ -64,7 +65,7 @@ struct reading {
     struct array array[ARRAYS];
 };
 
-static enum tri_status fail(const struct reading *r, const char *text) { return tri_reading_fail(&r->to, 0, text); }
+#define FAIL(r, ...) tri_reading_fail(&(r)->to, TRI_BAD_INPUT, 0, __VA_ARGS__)
 
 /* --- tags */
 
@@ -123,29 +124,30 @@ static int64_t count_of(struct span tag, const char *name, int64_t missing)
 
 /* --- the head */
 
-static enum tri_status take_file_tag(struct reading *r, struct span tag)
+static bool take_file_tag(struct reading *r, struct span tag)
 {
+    r->is_vtk = true;
     if (!is_value(value_of(tag, "type"), "UnstructuredGrid"))
-        return fail(r, "not an unstructured grid");
+        return FAIL(r, "not an unstructured grid");
     if (is_value(value_of(tag, "byte_order"), "BigEndian"))
-        return fail(r, "big-endian: only little-endian data are read");
+        return FAIL(r, "big-endian: only little-endian data are read");
     if (value_of(tag, "compressor").at)
-        return fail(r, "its data are compressed: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are compressed: only raw appended data and text are read (meshio: binary=False)");
     r->wide_sizes = is_value(value_of(tag, "header_type"), "UInt64");
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status take_piece_tag(struct reading *r, struct span tag)
+static bool take_piece_tag(struct reading *r, struct span tag)
 {
     r->n_points = count_of(tag, "NumberOfPoints", -1);
     r->n_cells = count_of(tag, "NumberOfCells", -1);
     if (r->n_pieces++ > 0)
-        return fail(r, "more than one piece: files of one are read");
+        return FAIL(r, "more than one piece: files of one are read");
     if (r->n_points < 0 || r->n_cells < 0)
-        return fail(r, "the numbers of points and cells are missing");
+        return FAIL(r, "the numbers of points and cells are missing");
     if (r->n_points > INT32_MAX || r->n_cells > INT32_MAX)
-        return tri_fail(r->to.error, TRI_TOO_LARGE, r->to.path, 0, "more points or cells than are read");
-    return TRI_OK;
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more points or cells than are read");
+    return true;
 }
 
 static const struct type *type_of(struct span tag)
@@ -167,7 +169,7 @@ static int which_array(const struct reading *r, struct span tag)
     return k;
 }
 
-static enum tri_status take_array_tag(struct reading *r, struct span tag)
+static bool take_array_tag(struct reading *r, struct span tag)
 {
     const int k = which_array(r, tag);
     struct array array = {.there = true, .type = type_of(tag), .components = count_of(tag, "NumberOfComponents", 1)};
@@ -176,30 +178,30 @@ static enum tri_status take_array_tag(struct reading *r, struct span tag)
     if (tag.end[-1] != '/') { /* its text follows */
         array.text.at = r->file.at;
         if (!tri_bytes_pass(&r->file, "<"))
-            return fail(r, "the file ends in an array");
+            return FAIL(r, "the file ends in an array");
         array.text.end = --r->file.at;
     }
     if (k == ARRAYS)
-        return TRI_OK;
+        return true;
     if (!array.appended && !is_value(format, "ascii"))
-        return fail(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
     const int64_t offset = count_of(tag, "offset", 0);
     if (!array.type || offset < 0 || array.components < 1 || array.components > MOST_COMPONENTS ||
         (kinds[k].components > 0 && array.components != kinds[k].components) || (!array.appended && !array.text.at))
-        return fail(r, "an array has not the type and size that it should");
+        return FAIL(r, "an array has not the type and size that it should");
     array.offset = (uint64_t)offset;
     r->array[k] = array;
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status take_data_tag(struct reading *r, struct span tag)
+static bool take_data_tag(struct reading *r, struct span tag)
 {
     if (!is_value(value_of(tag, "encoding"), "raw"))
-        return fail(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
     if (!tri_bytes_pass(&r->file, "_"))
-        return fail(r, "there are no data");
+        return FAIL(r, "there are no data");
     r->data = r->file.at;
-    return TRI_OK;
+    return true;
 }
 
 /* Sections are few, and their names short. */
@@ -213,30 +215,30 @@ static void note_section(struct reading *r, struct span tag)
             snprintf(r->section, sizeof r->section, "%s", closing ? "" : sections[i]);
 }
 
-static enum tri_status read_head(struct reading *r)
+static bool take_tag(struct reading *r, struct span tag)
+{
+    note_section(r, tag);
+    if (is_tag(tag, "VTKFile"))
+        return take_file_tag(r, tag);
+    if (is_tag(tag, "Piece"))
+        return take_piece_tag(r, tag);
+    if (is_tag(tag, "DataArray"))
+        return take_array_tag(r, tag);
+    return !is_tag(tag, "AppendedData") || take_data_tag(r, tag);
+}
+
+static bool read_head(struct reading *r)
 {
     struct span tag;
-    bool is_vtk = false;
-    enum tri_status status = TRI_OK;
-    while (!status && !r->data && next_tag(&r->file, &tag)) {
-        note_section(r, tag);
-        if (is_tag(tag, "VTKFile")) {
-            status = take_file_tag(r, tag);
-            is_vtk = true;
-        } else if (is_tag(tag, "Piece")) {
-            status = take_piece_tag(r, tag);
-        } else if (is_tag(tag, "DataArray")) {
-            status = take_array_tag(r, tag);
-        } else if (is_tag(tag, "AppendedData")) {
-            status = take_data_tag(r, tag);
-        }
-    }
-    if (!status && (!is_vtk || r->n_pieces == 0))
-        return fail(r, "not a VTK file of an unstructured grid (.vtu)");
-    for (int k = PLACES; k < ARRAYS && !status; k++)
+    while (!r->data && next_tag(&r->file, &tag))
+        if (!take_tag(r, tag))
+            return false;
+    if (!r->is_vtk || r->n_pieces == 0)
+        return FAIL(r, "not a VTK file of an unstructured grid (.vtu)");
+    for (int k = PLACES; k < ARRAYS; k++)
         if (!r->array[k].there)
-            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s is missing", name_of(k));
-    return status;
+            return FAIL(r, "the array %s is missing", name_of(k));
+    return true;
 }
 
 /* --- arrays */
@@ -302,70 +304,63 @@ static bool are_finite(const double *at, uint64_t n)
     return i == n;
 }
 
-/* The numbers of n rows, malloc'ed. A file of so many bytes cannot hold more numbers than these. */
-static enum tri_status take_array(const struct reading *r, enum which k, int64_t rows, double **out)
+/* The numbers of n rows, malloc'ed and the caller's even if they are not good. A file of so many bytes cannot hold more
+ * numbers than these. */
+static bool take_array(struct reading *r, enum which k, int64_t rows, double **out)
 {
     const struct array *a = &r->array[k];
     const uint64_t n = (uint64_t)rows * (uint64_t)a->components;
-    *out = NULL;
     if (n > (uint64_t)(r->file.end - r->file.data))
-        return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the file is too small for its array %s",
-                        name_of(k));
+        return FAIL(r, "the file is too small for its array %s", name_of(k));
     *out = malloc((n + 1) * sizeof **out);
     if (!*out)
         return tri_reading_no_memory(&r->to);
     if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
-        return TRI_OK;
-    free(*out);
-    *out = NULL;
-    return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "the array %s has not %" PRIu64 " finite numbers",
-                    name_of(k), n);
+        return true;
+    return FAIL(r, "the array %s has not %" PRIu64 " finite numbers", name_of(k), n);
 }
 
 /* --- points */
 
-static enum tri_status take_points(struct reading *r)
+static bool take_points(struct reading *r)
 {
-    double *places;
-    enum tri_status status = take_array(r, PLACES, r->n_points, &places);
-    if (status)
-        return status;
-    for (int64_t i = 0; i < r->n_points && !status; i++) {
+    if (!take_array(r, PLACES, r->n_points, &r->to.mesh->points))
+        return false;
+    double *places = r->to.mesh->points;
+    for (int64_t i = 0; i < r->n_points; i++) {
         if (places[3 * i + 2] != 0)
-            status = tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "point %" PRId64 " is not at z = 0", i);
+            return FAIL(r, "point %" PRId64 " is not at z = 0", i);
         places[2 * i] = places[3 * i];
         places[2 * i + 1] = places[3 * i + 1];
     }
-    r->to.mesh->points = places;
     r->to.mesh->n_points = (int32_t)r->n_points;
-    return status;
+    return true;
 }
 
 /* Whole numbers of 32 bits. */
-static enum tri_status take_markers(const struct reading *r, enum which k, int64_t rows, int32_t **out)
+static bool take_markers(struct reading *r, enum which k, int64_t rows, int32_t **out)
 {
-    double *values;
-    enum tri_status status = take_array(r, k, rows, &values);
-    *out = status ? NULL : malloc(((size_t)rows + 1) * sizeof **out);
-    if (!status && !*out)
-        status = tri_reading_no_memory(&r->to);
-    for (int64_t i = 0; i < rows && !status; i++) {
-        if (!(values[i] >= INT32_MIN && values[i] <= INT32_MAX))
-            status = fail(r, "a marker does not fit into 32 bits");
-        else
+    double *values = NULL;
+    bool good = take_array(r, k, rows, &values);
+    *out = malloc(((size_t)rows + 1) * sizeof **out);
+    good = good && (*out || tri_reading_no_memory(&r->to));
+    for (int64_t i = 0; i < rows && good; i++) {
+        good = values[i] >= INT32_MIN && values[i] <= INT32_MAX;
+        if (good)
             (*out)[i] = (int32_t)values[i];
+        else
+            (void)FAIL(r, "a marker does not fit into 32 bits");
     }
     free(values);
-    return status;
+    return good;
 }
 
-static enum tri_status take_point_data(struct reading *r)
+static bool take_point_data(struct reading *r)
 {
-    enum tri_status status = TRI_OK;
-    if (r->array[POINT_MARKER].there)
-        status = take_markers(r, POINT_MARKER, r->n_points, &r->to.mesh->markers);
-    if (status || !r->array[POINT_ATTRIBUTES].there)
-        return status;
+    if (r->array[POINT_MARKER].there && !take_markers(r, POINT_MARKER, r->n_points, &r->to.mesh->markers))
+        return false;
+    if (!r->array[POINT_ATTRIBUTES].there)
+        return true;
     r->to.mesh->n_attributes = (int32_t)r->array[POINT_ATTRIBUTES].components;
     return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
 }
@@ -383,33 +378,31 @@ static int nodes_of(double type)
     return type == VTK_LINE ? 2 : type == VTK_TRIANGLE ? 3 : type == VTK_QUADRATIC_TRIANGLE ? 6 : 0;
 }
 
-static enum tri_status check_cells(const struct reading *r, struct cells *c, int64_t *triangles)
+static bool check_cells(struct reading *r, struct cells *c, int64_t *triangles)
 {
     double end = 0;
     for (int64_t i = 0; i < r->n_cells; i++) {
         const int n = nodes_of(c->type[i]);
         end += n;
         if (n == 0)
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "cell %" PRId64 " is of type %g: neither "
-                            "triangle nor line", i, c->type[i]);
+            return FAIL(r, "cell %" PRId64 " is of type %g: neither triangle nor line", i, c->type[i]);
         if (c->end[i] != end)
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "cell %" PRId64 " has not %d points", i, n);
+            return FAIL(r, "cell %" PRId64 " has not %d points", i, n);
         if (n > 2 && c->n_of_a_triangle != n && *triangles > 0)
-            return fail(r, "triangles of three nodes and of six in one mesh");
+            return FAIL(r, "triangles of three nodes and of six in one mesh");
         c->n_of_a_triangle = n > 2 ? n : c->n_of_a_triangle;
         *triangles += n > 2;
     }
     c->n_nodes = (int64_t)end;
-    return TRI_OK;
+    return true;
 }
 
-static enum tri_status check_nodes(const struct reading *r, const struct cells *c)
+static bool check_nodes(struct reading *r, const struct cells *c)
 {
     for (int64_t i = 0; i < c->n_nodes; i++)
         if (!(c->node[i] >= 0 && c->node[i] < (double)r->n_points))
-            return tri_fail(r->to.error, TRI_BAD_INPUT, r->to.path, 0, "a cell names point %g of %" PRId64, c->node[i],
-                            r->n_points);
-    return TRI_OK;
+            return FAIL(r, "a cell names point %g of %" PRId64, c->node[i], r->n_points);
+    return true;
 }
 
 /* VTK has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
@@ -435,67 +428,55 @@ static void put_cells(struct reading *r, const struct cells *c)
 }
 
 /* Of the rows of all cells those of triangles come first, in place. */
-static enum tri_status take_cell_attributes(struct reading *r, const struct cells *c)
+static bool take_cell_attributes(struct reading *r, const struct cells *c)
 {
     const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;
-    enum tri_status status = take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->to.elements->attributes);
     size_t t = 0;
-    for (int64_t i = 0; i < r->n_cells && !status; i++)
+    if (!take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->to.elements->attributes))
+        return false;
+    for (int64_t i = 0; i < r->n_cells; i++)
         if (nodes_of(c->type[i]) > 2)
             memmove(r->to.elements->attributes + width * t++, r->to.elements->attributes + width * (size_t)i,
                     width * sizeof(double));
     r->to.elements->n_attributes = (int32_t)width;
-    return status;
+    return true;
 }
 
-static enum tri_status take_segment_markers(struct reading *r, const struct cells *c)
+static bool take_segment_markers(struct reading *r, const struct cells *c)
 {
-    enum tri_status status = take_markers(r, CELL_MARKER, r->n_cells, &r->to.mesh->segment_markers);
     size_t s = 0;
-    for (int64_t i = 0; i < r->n_cells && !status; i++)
+    if (!take_markers(r, CELL_MARKER, r->n_cells, &r->to.mesh->segment_markers))
+        return false;
+    for (int64_t i = 0; i < r->n_cells; i++)
         if (nodes_of(c->type[i]) == 2)
             r->to.mesh->segment_markers[s++] = r->to.mesh->segment_markers[i];
-    return status;
+    return true;
 }
 
-static enum tri_status take_cell_data(struct reading *r, const struct cells *c)
-{
-    enum tri_status status = r->array[CELL_ATTRIBUTES].there ? take_cell_attributes(r, c) : TRI_OK;
-    if (!status && r->array[CELL_MARKER].there)
-        status = take_segment_markers(r, c);
-    return status;
-}
-
-static enum tri_status take_cells(struct reading *r)
+static bool take_cells(struct reading *r)
 {
     struct cells c = {.n_of_a_triangle = 3};
     int64_t triangles = 0;
-    enum tri_status status = take_array(r, TYPES, r->n_cells, &c.type);
-    status = status ? status : take_array(r, OFFSETS, r->n_cells, &c.end);
-    status = status ? status : check_cells(r, &c, &triangles);
-    status = status ? status : take_array(r, CONNECTIVITY, c.n_nodes, &c.node);
-    status = status ? status : check_nodes(r, &c);
-    if (!status && !(tri_reading_triangles(&r->to, triangles, c.n_of_a_triangle) &&
-                     tri_reading_segments(&r->to, r->n_cells - triangles)))
-        status = tri_reading_no_memory(&r->to);
-    if (!status)
+    bool good = take_array(r, TYPES, r->n_cells, &c.type) && take_array(r, OFFSETS, r->n_cells, &c.end) &&
+                check_cells(r, &c, &triangles) && take_array(r, CONNECTIVITY, c.n_nodes, &c.node) &&
+                check_nodes(r, &c) && tri_reading_triangles(&r->to, triangles, c.n_of_a_triangle) &&
+                tri_reading_segments(&r->to, r->n_cells - triangles);
+    if (good)
         put_cells(r, &c);
-    status = status ? status : take_cell_data(r, &c);
+    good = good && (!r->array[CELL_ATTRIBUTES].there || take_cell_attributes(r, &c)) &&
+           (!r->array[CELL_MARKER].there || take_segment_markers(r, &c));
     free(c.type);
     free(c.end);
     free(c.node);
-    return status;
+    return good;
 }
 
 enum tri_status tri_read_vtu(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
                              const struct tri_executor *executor, struct tri_error *error)
 {
-    struct reading r = {.to = {path, executor, mesh, elements, error}};
-    enum tri_status status = tri_bytes_load(&r.file, path, error);
-    status = status ? status : read_head(&r);
-    status = status ? status : take_points(&r);
-    status = status ? status : take_point_data(&r);
-    status = status ? status : take_cells(&r);
+    struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
+    r.to.status = tri_bytes_load(&r.file, path, error);
+    (void)(!r.to.status && read_head(&r) && take_points(&r) && take_point_data(&r) && take_cells(&r));
     tri_bytes_free(&r.file);
-    return status;
+    return r.to.status;
 }

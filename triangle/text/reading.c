@@ -1,18 +1,26 @@
 #include "triangle/text/reading.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-enum tri_status tri_reading_fail(const struct tri_reading *reading, size_t line, const char *text)
+bool tri_reading_fail(struct tri_reading *reading, enum tri_status status, size_t line, const char *format, ...)
 {
-    return tri_fail(reading->error, TRI_BAD_INPUT, reading->path, (long)line, "%s", text);
+    char text[sizeof reading->error->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    reading->status = tri_fail(reading->error, status, reading->path, (long)line, "%s", text);
+    return false;
 }
 
-enum tri_status tri_reading_no_memory(const struct tri_reading *reading)
+bool tri_reading_no_memory(struct tri_reading *reading)
 {
-    return tri_fail(reading->error, TRI_NO_MEMORY, reading->path, 0, "out of memory");
+    return tri_reading_fail(reading, TRI_NO_MEMORY, 0, "out of memory");
 }
 
-bool tri_reading_triangles(const struct tri_reading *reading, int64_t n, int n_nodes)
+bool tri_reading_triangles(struct tri_reading *reading, int64_t n, int n_nodes)
 {
     struct tri_elements *e = reading->elements;
     const size_t three = ((size_t)n + 1) * 3;
@@ -20,22 +28,29 @@ bool tri_reading_triangles(const struct tri_reading *reading, int64_t n, int n_n
     e->n_nodes = n_nodes;
     e->corners = malloc(three * sizeof *e->corners);
     e->extra = n_nodes > 3 ? malloc(three * sizeof *e->extra) : NULL;
-    return e->corners && (n_nodes == 3 || e->extra);
+    return (e->corners && (n_nodes == 3 || e->extra)) || tri_reading_no_memory(reading);
 }
 
-bool tri_reading_segments(const struct tri_reading *reading, int64_t n)
+bool tri_reading_segments(struct tri_reading *reading, int64_t n)
 {
     reading->mesh->n_segments = (int32_t)n;
     reading->mesh->segments = malloc(((size_t)n + 1) * 2 * sizeof *reading->mesh->segments);
-    return reading->mesh->segments;
+    return reading->mesh->segments || tri_reading_no_memory(reading);
 }
 
 /* --- tags */
 
-bool tri_tags_begin(struct tri_tags *tags, int64_t n)
+bool tri_tags_begin(struct tri_tags *tags, int64_t n, struct tri_reading *reading)
 {
     *tags = (struct tri_tags){.n = n, .tag = malloc(((size_t)n + 1) * sizeof *tags->tag)};
-    return tags->tag;
+    return tags->tag || tri_reading_no_memory(reading);
+}
+
+bool tri_tags_begin_nodes(struct tri_tags *tags, int64_t n, struct tri_reading *reading)
+{
+    reading->mesh->n_points = (int32_t)n;
+    reading->mesh->points = malloc(((size_t)n + 1) * 2 * sizeof *reading->mesh->points);
+    return tri_tags_begin(tags, n, reading) && (reading->mesh->points || tri_reading_no_memory(reading));
 }
 
 static int compare(const void *left, const void *right)
@@ -52,11 +67,11 @@ static bool are_in_a_row(const struct tri_tags *tags)
     return true;
 }
 
-enum tri_status tri_tags_order(struct tri_tags *tags, const char *what, const struct tri_reading *reading)
+bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading *reading)
 {
     tags->in_a_row = are_in_a_row(tags);
     if (tags->in_a_row)
-        return TRI_OK;
+        return true;
     tags->sorted = malloc((size_t)tags->n * 2 * sizeof *tags->sorted);
     if (!tags->sorted)
         return tri_reading_no_memory(reading);
@@ -67,9 +82,9 @@ enum tri_status tri_tags_order(struct tri_tags *tags, const char *what, const st
     qsort(tags->sorted, (size_t)tags->n, 2 * sizeof *tags->sorted, compare);
     for (int64_t i = 1; i < tags->n; i++)
         if (tags->sorted[2 * i] == tags->sorted[2 * i - 2])
-            return tri_fail(reading->error, TRI_BAD_INPUT, reading->path, 0, "%s %lld is there twice", what,
-                            (long long)tags->sorted[2 * i]);
-    return TRI_OK;
+            return tri_reading_fail(reading, TRI_BAD_INPUT, 0, "%s %lld is there twice", what,
+                                    (long long)tags->sorted[2 * i]);
+    return true;
 }
 
 int64_t tri_tags_place(const struct tri_tags *tags, int64_t tag)

@@ -12,6 +12,20 @@
 #include "ptriangle/tiles.h"
 #include "triangle/text/write.h"
 
+/* A tile as a grid, of which layouts write the rows that it has. */
+struct tri_tile_grid {
+    struct tri_grid grid;  /* its user is this struct, which must not move; counts, base and storage are the caller's */
+    struct tri_tile tile;  /* whose rows can be asked for, by the numbers that they have in the mesh */
+    double *columns;       /* [regions][grid.n_columns] malloc'ed, to be freed; NULL: it has not begun */
+};
+
+/* With what holds for all tiles; begins anew if it has begun. TRI_NO_MEMORY. */
+enum tri_status tri_tile_grid_begin(struct tri_tile_grid *tile_grid, const struct tri_stream *stream, bool markers,
+                                    struct tri_error *error);
+
+/* A copy of the attributes of triangles in each region, malloc'ed; NULL: no memory. */
+double *tri_copy_columns(const struct tri_stream *stream);
+
 struct tri_text_options {
     struct tri_output *node, *ele, *poly; /* opened, the caller's, with places; NULL: not wanted */
     int32_t base;                         /* 0 or 1: what files count from */
@@ -20,9 +34,6 @@ struct tri_text_options {
     int argc;                             /* the command line, for the comment at the end; 0: no comment */
     char *const *argv;
 };
-
-/* A copy of the attributes of triangles in each region, malloc'ed; NULL: no memory. */
-double *tri_copy_columns(const struct tri_stream *stream);
 
 struct tri_text_stream;
 

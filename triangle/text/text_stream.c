@@ -1,4 +1,3 @@
-/* A tile is shown to the layouts as a grid, of which they write the rows that the tile has. */
 #include "triangle/text/stream.h"
 
 #include <math.h>
@@ -21,45 +20,73 @@ enum { POINTS, TRIANGLES, SEGMENTS, TABLES };
 
 struct tri_text_stream {
     struct tri_text_options options;
-    struct tri_grid grid;
-    const struct tri_tile *tile;
+    struct tri_tile_grid rows; /* of the tile that is written */
     bool known;                /* the counts are, from the beginning */
-    double *columns;           /* [n_regions][n_columns] */
     struct table table[TABLES];
 };
 
 /* --- the tile as a grid */
 
+/* Item i is asked for. */
+static const struct tri_tile_grid *at_item(const void *user, int64_t i)
+{
+    const struct tri_tile_grid *g = user;
+    tri_grid_pass(&g->grid, i);
+    return g;
+}
+
 static void point(const void *user, int64_t i, struct tri_grid_point *point)
 {
-    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    const struct tri_tile *tile = &at_item(user, i)->tile;
     const int64_t k = i - tile->first_vertex;
     *point = (struct tri_grid_point){{tile->points[k][0], tile->points[k][1]}, tile->point_markers[k]};
 }
 
 static double attribute(const void *user, int64_t i, int32_t k)
 {
-    const struct tri_text_stream *s = user;
-    return s->tile->attributes[(i - s->tile->first_vertex) * s->grid.n_attributes + k];
+    const struct tri_tile_grid *g = at_item(user, i);
+    return g->tile.attributes[(i - g->tile.first_vertex) * g->grid.n_attributes + k];
 }
 
 static void triangle(const void *user, int64_t i, int64_t nodes[6])
 {
-    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    const struct tri_tile *tile = &at_item(user, i)->tile;
     memcpy(nodes, tile->corners[i - tile->first_triangle], sizeof *tile->corners);
 }
 
 static double column(const void *user, int64_t i, int32_t k)
 {
-    const struct tri_text_stream *s = user;
-    return s->columns[(int64_t)s->tile->regions[i - s->tile->first_triangle] * s->grid.n_columns + k];
+    const struct tri_tile_grid *g = at_item(user, i);
+    return g->columns[(int64_t)g->tile.regions[i - g->tile.first_triangle] * g->grid.n_columns + k];
 }
 
 static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
 {
-    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    const struct tri_tile *tile = &at_item(user, i)->tile;
     const int64_t k = i - tile->first_segment;
     *segment = (struct tri_grid_edge){{tile->ends[k][0], tile->ends[k][1]}, tile->segment_markers[k], {0}};
+}
+
+double *tri_copy_columns(const struct tri_stream *stream)
+{
+    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
+    double *columns = malloc((n + 1) * sizeof *columns);
+    if (columns && n > 0)
+        memcpy(columns, stream->regions, n * sizeof *columns);
+    return columns;
+}
+
+enum tri_status tri_tile_grid_begin(struct tri_tile_grid *g, const struct tri_stream *stream, bool markers,
+                                    struct tri_error *error)
+{
+    free(g->columns);
+    *g = (struct tri_tile_grid){.columns = tri_copy_columns(stream)};
+    g->grid = (struct tri_grid){.user = g, .has_markers = markers, .n_attributes = stream->n_attributes,
+                                .n_columns = stream->n_columns, .n_nodes = 3, .point = point, .attribute = attribute,
+                                .triangle = triangle, .column = column, .segment = segment};
+    if (g->columns)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
 }
 
 /* --- tables */
@@ -80,7 +107,7 @@ static enum tri_status add_rows(const struct tri_text_stream *s, struct table *t
                                 struct tri_error *error)
 {
     table->counts[0] += s->known ? 0 : n;
-    return table->output ? table->write(table->output, &s->grid, first, n, NULL, error) : TRI_OK;
+    return table->output ? table->write(table->output, &s->rows.grid, first, n, NULL, error) : TRI_OK;
 }
 
 /* Puts the first line where it belongs. */
@@ -116,17 +143,7 @@ static enum tri_status begin_again(struct tri_text_stream *s, struct tri_error *
     enum tri_status status = TRI_OK;
     for (int i = 0; i < TABLES && !status; i++)
         status = s->table[i].output ? tri_output_restart(s->table[i].output, error) : TRI_OK;
-    free(s->columns);
     return status;
-}
-
-double *tri_copy_columns(const struct tri_stream *stream)
-{
-    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
-    double *columns = malloc((n + 1) * sizeof *columns);
-    if (columns && n > 0)
-        memcpy(columns, stream->regions, n * sizeof *columns);
-    return columns;
 }
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -134,18 +151,14 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     struct tri_text_stream *s = user;
     const struct tri_text_options *o = &s->options;
     const int64_t markers = o->markers, attributes = stream->n_attributes;
-    s->grid = (struct tri_grid){.user = s, .base = o->base, .has_markers = o->markers,
-                                .n_attributes = stream->n_attributes, .n_columns = stream->n_columns, .n_nodes = 3,
-                                .figure = o->figure, .point = point, .attribute = attribute, .triangle = triangle,
-                                .column = column, .segment = segment};
-    enum tri_status status = s->columns ? begin_again(s, error) : TRI_OK;
+    enum tri_status status = s->rows.columns ? begin_again(s, error) : TRI_OK;
+    status = status ? status : tri_tile_grid_begin(&s->rows, stream, o->markers, error);
+    s->rows.grid.base = o->base;
+    s->rows.grid.figure = o->figure;
     s->table[POINTS] = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
     s->table[TRIANGLES] = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
     s->table[SEGMENTS] = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
     s->known = stream->n_ranks > 1;
-    s->columns = tri_copy_columns(stream);
-    if (!s->columns)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
     if (status || stream->rank > 0)
         return status;
     if (o->poly)
@@ -160,7 +173,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     const int64_t first[TABLES] = {tile->first_vertex, tile->first_triangle, tile->first_segment};
     const int32_t n[TABLES] = {tile->n_vertices, tile->n_triangles, tile->n_segments};
     enum tri_status status = TRI_OK;
-    s->tile = tile;
+    s->rows.tile = *tile;
     for (int i = 0; i < TABLES && !status; i++)
         status = add_rows(s, &s->table[i], first[i], n[i], error);
     return status;
@@ -174,7 +187,7 @@ static enum tri_status end(void *user, struct tri_error *error)
     for (int i = 0; i < TABLES && !status; i++)
         status = conclude_table(&s->table[i], error);
     if (!status && o->poly)
-        status = tri_write_sites(o->poly, &s->grid, NULL, error);
+        status = tri_write_sites(o->poly, &s->rows.grid, NULL, error);
     for (int i = 0; i < TABLES && o->argc > 0 && !status; i++)
         status = s->table[i].output ? tri_write_comment(s->table[i].output, o->argc, o->argv, error) : TRI_OK;
     return status;
@@ -201,8 +214,7 @@ enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struc
 
 void tri_text_stream_free(struct tri_text_stream *stream)
 {
-    if (!stream)
-        return;
-    free(stream->columns);
+    if (stream)
+        free(stream->rows.columns);
     free(stream);
 }

@@ -1,8 +1,8 @@
 /* One file for each kind of array, to which tiles are appended, and which is mapped at the end.
  *
  * INVARIANT: no more is in memory of the files than the rows that have been asked for since pages were let go, which
- * happens whenever somebody asks for a row whose number is a multiple of CHUNK: for writers go through all rows of a
- * kind, once and about in their order. Where they do not, or go through extras alone, they say when. */
+ * happens whenever somebody asks for a row whose number is a multiple of TRI_GRID_ROUNDS: for writers go through all
+ * rows of a kind, once and about in their order. Where they do not, or go through extras alone, they say when. */
 #define _DEFAULT_SOURCE /* madvise */
 
 #include "triangle/text/tile_store.h"
@@ -19,7 +19,7 @@
 #include "triangle/text/stream.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
-enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
+enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS };
 
 struct sheet {
     int file;       /* -1: none */
@@ -31,9 +31,7 @@ struct tri_tile_store {
     const char *folder;
     struct sheet sheet[SHEETS]; /* kinds, then extras */
     struct tri_storage storage; /* gives the extras */
-    double *columns;            /* [n_regions][n_columns] */
-    int32_t n_attributes, n_columns;
-    int64_t n_points, n_triangles, n_segments;
+    struct tri_tile_grid all;   /* what has been taken, as one tile */
 };
 
 /* --- files */
@@ -122,90 +120,41 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     struct tri_tile_store *s = user;
     for (int k = 0; k < SHEETS; k++)
         empty(&s->sheet[k]);
-    free(s->columns);
-    s->columns = tri_copy_columns(stream);
-    if (!s->columns)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
-    s->n_attributes = stream->n_attributes;
-    s->n_columns = stream->n_columns;
-    s->n_points = s->n_triangles = s->n_segments = 0;
-    return TRI_OK;
+    return tri_tile_grid_begin(&s->all, stream, false, error);
 }
 
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_tile_store *s = user;
-    const size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, g = (size_t)tile->n_segments;
+    struct tri_grid *all = &s->all.grid;
+    const size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, g = (size_t)tile->n_segments,
+                 attributes = (size_t)all->n_attributes;
     bool done = append(s, POINTS, tile->points, v * sizeof *tile->points);
     done = done && append(s, POINT_MARKERS, tile->point_markers, v * sizeof *tile->point_markers);
-    done = done && append(s, ATTRIBUTES, tile->attributes, v * (size_t)s->n_attributes * sizeof *tile->attributes);
+    done = done && append(s, ATTRIBUTES, tile->attributes, v * attributes * sizeof *tile->attributes);
     done = done && append(s, CORNERS, tile->corners, t * sizeof *tile->corners);
     done = done && append(s, REGIONS, tile->regions, t * sizeof *tile->regions);
     done = done && append(s, ENDS, tile->ends, g * sizeof *tile->ends);
     done = done && append(s, SEGMENT_MARKERS, tile->segment_markers, g * sizeof *tile->segment_markers);
-    s->n_points += tile->n_vertices;
-    s->n_triangles += tile->n_triangles;
-    s->n_segments += tile->n_segments;
+    all->n_points += tile->n_vertices;
+    all->n_triangles += tile->n_triangles;
+    all->n_segments += tile->n_segments;
     return done ? TRI_OK : cannot_write(s, error);
-}
-
-/* --- the grid */
-
-static const struct tri_tile_store *look_at(const void *user, int64_t i)
-{
-    if (i % CHUNK == 0)
-        let_go(user);
-    return user;
-}
-
-static void point(const void *user, int64_t i, struct tri_grid_point *point)
-{
-    const struct tri_tile_store *s = look_at(user, i);
-    const double(*points)[2] = s->sheet[POINTS].at;
-    const int32_t *markers = s->sheet[POINT_MARKERS].at;
-    *point = (struct tri_grid_point){{points[i][0], points[i][1]}, markers[i]};
-}
-
-static double attribute(const void *user, int64_t i, int32_t k)
-{
-    const struct tri_tile_store *s = look_at(user, i);
-    const double *attributes = s->sheet[ATTRIBUTES].at;
-    return attributes[i * s->n_attributes + k];
-}
-
-static void triangle(const void *user, int64_t i, int64_t nodes[6])
-{
-    const struct tri_tile_store *s = look_at(user, i);
-    const int64_t(*corners)[3] = s->sheet[CORNERS].at;
-    memcpy(nodes, corners[i], sizeof corners[i]);
-}
-
-static double column(const void *user, int64_t i, int32_t k)
-{
-    const struct tri_tile_store *s = look_at(user, i);
-    const int32_t *regions = s->sheet[REGIONS].at;
-    return s->columns[(int64_t)regions[i] * s->n_columns + k];
-}
-
-static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
-{
-    const struct tri_tile_store *s = look_at(user, i);
-    const int64_t(*ends)[2] = s->sheet[ENDS].at;
-    const int32_t *markers = s->sheet[SEGMENT_MARKERS].at;
-    *segment = (struct tri_grid_edge){{ends[i][0], ends[i][1]}, markers[i], {0}};
 }
 
 enum tri_status tri_tile_store_grid(struct tri_tile_store *s, bool markers, struct tri_grid *grid,
                                     struct tri_error *error)
 {
-    *grid = (struct tri_grid){.user = s, .has_markers = markers, .n_points = s->n_points,
-                              .n_triangles = s->n_triangles, .n_segments = s->n_segments,
-                              .n_attributes = s->n_attributes, .n_columns = s->n_columns, .n_nodes = 3,
-                              .storage = &s->storage, .point = point, .attribute = attribute, .triangle = triangle,
-                              .column = column, .segment = segment};
     for (int k = 0; k < KINDS; k++)
         if (!map(&s->sheet[k]))
             return cannot_write(s, error);
+    s->all.tile = (struct tri_tile){.points = s->sheet[POINTS].at, .point_markers = s->sheet[POINT_MARKERS].at,
+                                    .attributes = s->sheet[ATTRIBUTES].at, .corners = s->sheet[CORNERS].at,
+                                    .regions = s->sheet[REGIONS].at, .ends = s->sheet[ENDS].at,
+                                    .segment_markers = s->sheet[SEGMENT_MARKERS].at};
+    s->all.grid.has_markers = markers;
+    s->all.grid.storage = &s->storage;
+    *grid = s->all.grid;
     return TRI_OK;
 }
 
@@ -232,6 +181,6 @@ void tri_tile_store_free(struct tri_tile_store *s)
         return;
     for (int k = 0; k < SHEETS; k++)
         empty(&s->sheet[k]);
-    free(s->columns);
+    free(s->all.columns);
     free(s);
 }

@@ -14,77 +14,70 @@
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_QUADRATIC_TRIANGLE = 22 };
 enum { MOST_ARRAYS = 8, HEAD_BYTES = 4096 };
 
-typedef char *row_call(void *user, size_t i, char *at);
-
-/* Rows of the same size; cells have two kinds of them. */
-struct rows {
-    int64_t n;
-    size_t bytes;
-    row_call *row;
-};
-
+/* A row for each point, or for each triangle and then each segment, whose rows are no longer. */
 struct array {
     const char *section, *type, *name;
     int32_t components;
-    struct rows rows[2]; /* one after the other */
+    int64_t n[2]; /* rows of either kind, */
+    size_t bytes[2];
+    tri_row_call *row;
 };
 
 struct vtu {
     const struct tri_grid *grid;
     bool wide; /* indices of 64 bits */
-    size_t row_bytes; /* of what is written */
     int n_arrays;
     struct array arrays[MOST_ARRAYS]; /* those of a section together */
 };
 
-/* --- rows */
+/* --- rows of points */
 
-static char *marker_row(void *user, size_t i, char *at)
+static struct tri_grid_point point_at(const struct vtu *v, int64_t i)
 {
-    const struct vtu *v = user;
     struct tri_grid_point point;
-    v->grid->point(v->grid->user, (int64_t)i, &point);
-    return tri_put_i32(at, point.marker);
+    v->grid->point(v->grid->user, i, &point);
+    return point;
 }
 
-static char *attributes_row(void *user, size_t i, char *at)
+static char *marker_row(const void *user, int64_t i, char *at) { return tri_put_i32(at, point_at(user, i).marker); }
+
+static char *attributes_row(const void *user, int64_t i, char *at)
 {
     const struct vtu *v = user;
     for (int32_t k = 0; k < v->grid->n_attributes; k++)
-        at = tri_put_f64(at, v->grid->attribute(v->grid->user, (int64_t)i, k));
+        at = tri_put_f64(at, v->grid->attribute(v->grid->user, i, k));
     return at;
 }
 
-static char *segment_marker_row(void *user, size_t i, char *at)
+static char *place_row(const void *user, int64_t i, char *at)
 {
-    const struct vtu *v = user;
-    struct tri_grid_edge segment;
-    v->grid->segment(v->grid->user, (int64_t)i, &segment);
-    return tri_put_i32(at, segment.marker);
-}
-
-static char *columns_row(void *user, size_t i, char *at)
-{
-    const struct vtu *v = user;
-    for (int32_t k = 0; k < v->grid->n_columns; k++)
-        at = tri_put_f64(at, v->grid->column(v->grid->user, (int64_t)i, k));
-    return at;
-}
-
-static char *zero_row(void *user, size_t i, char *at)
-{
-    const struct vtu *v = user;
-    (void)i;
-    memset(at, 0, v->row_bytes);
-    return at + v->row_bytes;
-}
-
-static char *place_row(void *user, size_t i, char *at)
-{
-    const struct vtu *v = user;
-    struct tri_grid_point point;
-    v->grid->point(v->grid->user, (int64_t)i, &point);
+    const struct tri_grid_point point = point_at(user, i);
     return tri_put_f64(tri_put_f64(tri_put_f64(at, point.at[0]), point.at[1]), 0);
+}
+
+/* --- rows of cells */
+
+/* Is cell i a segment? Then this is it. */
+static bool get_segment(const struct vtu *v, int64_t i, struct tri_grid_edge *segment)
+{
+    const bool is_segment = i >= v->grid->n_triangles;
+    if (is_segment)
+        v->grid->segment(v->grid->user, i - v->grid->n_triangles, segment);
+    return is_segment;
+}
+
+static char *cell_marker_row(const void *user, int64_t i, char *at)
+{
+    struct tri_grid_edge segment;
+    return tri_put_i32(at, get_segment(user, i, &segment) ? segment.marker : 0);
+}
+
+static char *columns_row(const void *user, int64_t i, char *at)
+{
+    const struct tri_grid *g = ((const struct vtu *)user)->grid;
+    for (int32_t k = 0; k < g->n_columns; k++)
+        at = tri_put_f64(at, i < g->n_triangles ? g->column(g->user, i, k) : 0);
+    return at;
 }
 
 static char *put_index(char *at, const struct vtu *v, int64_t index)
@@ -93,94 +86,68 @@ static char *put_index(char *at, const struct vtu *v, int64_t index)
 }
 
 /* VTK has the nodes amid edges in the order of the edges from corner to corner. */
-static char *triangle_row(void *user, size_t i, char *at)
+static char *nodes_row(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 1, 2, 5, 3, 4};
     const struct vtu *v = user;
+    struct tri_grid_edge segment;
     int64_t nodes[6];
-    v->grid->triangle(v->grid->user, (int64_t)i, nodes);
+    if (get_segment(v, i, &segment))
+        return put_index(put_index(at, v, segment.ends[0]), v, segment.ends[1]);
+    v->grid->triangle(v->grid->user, i, nodes);
     for (int k = 0; k < v->grid->n_nodes; k++)
         at = put_index(at, v, nodes[order[k]]);
     return at;
 }
 
-static char *segment_row(void *user, size_t i, char *at)
-{
-    const struct vtu *v = user;
-    struct tri_grid_edge segment;
-    v->grid->segment(v->grid->user, (int64_t)i, &segment);
-    return put_index(put_index(at, v, segment.ends[0]), v, segment.ends[1]);
-}
-
 /* Where the list of a cell's nodes ends. */
-static char *triangle_end_row(void *user, size_t i, char *at)
+static char *end_row(const void *user, int64_t i, char *at)
 {
     const struct vtu *v = user;
-    return put_index(at, v, v->grid->n_nodes * ((int64_t)i + 1));
+    const int64_t m = v->grid->n_triangles, n_nodes = v->grid->n_nodes;
+    return put_index(at, v, i < m ? n_nodes * (i + 1) : n_nodes * m + 2 * (i - m + 1));
 }
 
-static char *segment_end_row(void *user, size_t i, char *at)
+static char *type_row(const void *user, int64_t i, char *at)
 {
-    const struct vtu *v = user;
-    return put_index(at, v, v->grid->n_nodes * v->grid->n_triangles + 2 * ((int64_t)i + 1));
-}
-
-static char *triangle_type_row(void *user, size_t i, char *at)
-{
-    const struct vtu *v = user;
-    (void)i;
-    *at = v->grid->n_nodes == 6 ? VTK_QUADRATIC_TRIANGLE : VTK_TRIANGLE;
-    return at + 1;
-}
-
-static char *segment_type_row(void *user, size_t i, char *at)
-{
-    (void)user, (void)i;
-    *at = VTK_LINE;
+    const struct tri_grid *g = ((const struct vtu *)user)->grid;
+    *at = i >= g->n_triangles ? VTK_LINE : g->n_nodes == 6 ? VTK_QUADRATIC_TRIANGLE : VTK_TRIANGLE;
     return at + 1;
 }
 
 /* --- arrays */
 
-static void add(struct vtu *v, const char *section, const char *type, const char *name, int32_t components,
-                struct rows first, struct rows second)
+static void add(struct vtu *v, struct array array)
 {
     assert(v->n_arrays < MOST_ARRAYS);
-    v->arrays[v->n_arrays++] = (struct array){section, type, name, components, {first, second}};
+    v->arrays[v->n_arrays++] = array;
 }
 
 static void list_arrays(struct vtu *v)
 {
     const struct tri_grid *g = v->grid;
-    const int64_t points = g->n_points, triangles = g->n_triangles, segments = g->n_segments;
+    const int64_t n = g->n_points, m = g->n_triangles, s = g->n_segments;
     const char *index = v->wide ? "Int64" : "Int32";
-    const struct rows none = {0, 1, NULL};
-    const size_t index_bytes = v->wide ? 8 : 4, attributes = 8 * (size_t)g->n_attributes,
-                 columns = 8 * (size_t)g->n_columns;
+    const size_t wide = v->wide ? 8 : 4, attributes = 8 * (size_t)g->n_attributes, columns = 8 * (size_t)g->n_columns;
     if (g->has_markers)
-        add(v, "PointData", "Int32", "marker", 1, (struct rows){points, 4, marker_row}, none);
+        add(v, (struct array){"PointData", "Int32", "marker", 1, {n}, {4}, marker_row});
     if (g->n_attributes > 0)
-        add(v, "PointData", "Float64", "attributes", g->n_attributes,
-            (struct rows){points, attributes, attributes_row}, none);
+        add(v, (struct array){"PointData", "Float64", "attributes", g->n_attributes, {n}, {attributes},
+                              attributes_row});
     if (g->has_markers)
-        add(v, "CellData", "Int32", "marker", 1, (struct rows){triangles, 4, zero_row},
-            (struct rows){segments, 4, segment_marker_row});
+        add(v, (struct array){"CellData", "Int32", "marker", 1, {m, s}, {4, 4}, cell_marker_row});
     if (g->n_columns > 0)
-        add(v, "CellData", "Float64", "attributes", g->n_columns, (struct rows){triangles, columns, columns_row},
-            (struct rows){segments, columns, zero_row});
-    add(v, "Points", "Float64", "points", 3, (struct rows){points, 24, place_row}, none);
-    add(v, "Cells", index, "connectivity", 1,
-        (struct rows){triangles, index_bytes * (size_t)g->n_nodes, triangle_row},
-        (struct rows){segments, 2 * index_bytes, segment_row});
-    add(v, "Cells", index, "offsets", 1, (struct rows){triangles, index_bytes, triangle_end_row},
-        (struct rows){segments, index_bytes, segment_end_row});
-    add(v, "Cells", "UInt8", "types", 1, (struct rows){triangles, 1, triangle_type_row},
-        (struct rows){segments, 1, segment_type_row});
+        add(v, (struct array){"CellData", "Float64", "attributes", g->n_columns, {m, s}, {columns, columns},
+                              columns_row});
+    add(v, (struct array){"Points", "Float64", "points", 3, {n}, {24}, place_row});
+    add(v, (struct array){"Cells", index, "connectivity", 1, {m, s}, {wide * (size_t)g->n_nodes, 2 * wide}, nodes_row});
+    add(v, (struct array){"Cells", index, "offsets", 1, {m, s}, {wide, wide}, end_row});
+    add(v, (struct array){"Cells", "UInt8", "types", 1, {m, s}, {1, 1}, type_row});
 }
 
 static uint64_t bytes_of(const struct array *array)
 {
-    return (uint64_t)array->rows[0].n * array->rows[0].bytes + (uint64_t)array->rows[1].n * array->rows[1].bytes;
+    return (uint64_t)array->n[0] * array->bytes[0] + (uint64_t)array->n[1] * array->bytes[1];
 }
 
 /* --- the file */
@@ -214,17 +181,13 @@ static enum tri_status write_head(struct tri_output *output, const struct vtu *v
     return tri_output_write(output, head, (size_t)n, error);
 }
 
-static enum tri_status write_array(struct tri_output *output, struct vtu *v, const struct array *array,
+static enum tri_status write_array(struct tri_output *output, const struct vtu *v, const struct array *array,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
-    char size[8];
-    enum tri_status status = tri_output_write(output, size, (size_t)(tri_put_u64(size, bytes_of(array)) - size), error);
-    for (int k = 0; k < 2 && !status; k++) {
-        const struct rows *rows = &array->rows[k];
-        v->row_bytes = rows->bytes;
-        status = tri_write_table(output, (size_t)rows->n, rows->bytes, rows->row, v, executor, error);
-    }
-    return status;
+    char size[8], *end = tri_put_u64(size, bytes_of(array));
+    enum tri_status status = tri_output_write(output, size, (size_t)(end - size), error);
+    const int64_t n = array->n[0] + array->n[1];
+    return status ? status : tri_write_table(output, 0, n, array->bytes[0], array->row, v, executor, error);
 }
 
 enum tri_status tri_write_vtu(struct tri_output *output, const struct tri_grid *grid,

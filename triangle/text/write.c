@@ -43,11 +43,11 @@ struct chunk {
 
 struct table {
     struct tri_output *output;
-    char *(*format_row)(void *user, size_t i, char *at);
-    void *user;
-    size_t n_rows, max_row_bytes;
-    size_t chunk_rows, buffer_bytes;
-    size_t begin;     /* first row of the wave that is formatted */
+    tri_row_call *row;
+    const void *user;
+    size_t max_row_bytes, buffer_bytes;
+    int64_t chunk_rows;
+    int64_t begin, end; /* rows from the wave that is formatted on */
     size_t n_new;     /* chunks of that wave */
     size_t n_waiting; /* chunks of the wave before, which are written */
     struct chunk chunks[WAVE_CHUNKS];
@@ -64,10 +64,10 @@ static void write_chunk(struct table *table, size_t i)
 static void format_chunk(struct table *table, size_t i)
 {
     char *const buffer = table->buffers + i * table->buffer_bytes, *at = buffer;
-    const size_t begin = table->begin + i * table->chunk_rows, left = table->n_rows - begin;
-    const size_t n = left < table->chunk_rows ? left : table->chunk_rows;
-    for (size_t row = begin; row < begin + n; row++) {
-        char *const end = table->format_row(table->user, row, at);
+    const int64_t begin = table->begin + (int64_t)i * table->chunk_rows, left = table->end - begin;
+    const int64_t n = left < table->chunk_rows ? left : table->chunk_rows;
+    for (int64_t k = begin; k < begin + n; k++) {
+        char *const end = table->row(table->user, k, at);
         assert((size_t)(end - at) <= table->max_row_bytes);
         at = end;
     }
@@ -110,32 +110,32 @@ static enum tri_status run_table(struct table *table, size_t wave_chunks, const 
                                  struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    while (!status && (table->begin < table->n_rows || table->n_waiting > 0)) {
-        const size_t left = (table->n_rows - table->begin + table->chunk_rows - 1) / table->chunk_rows;
+    while (!status && (table->begin < table->end || table->n_waiting > 0)) {
+        const size_t left = (size_t)((table->end - table->begin + table->chunk_rows - 1) / table->chunk_rows);
         table->n_new = left < wave_chunks ? left : wave_chunks;
         tri_execute(executor, table->n_new > table->n_waiting ? table->n_new : table->n_waiting, table_task, table);
         status = conclude_wave(table, error);
         if (!status)
             place_wave(table);
-        table->begin = table->n_new == left ? table->n_rows : table->begin + table->n_new * table->chunk_rows;
+        table->begin = table->n_new == left ? table->end : table->begin + (int64_t)table->n_new * table->chunk_rows;
     }
     return status;
 }
 
-enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t max_row_bytes,
-                                char *(*format_row)(void *user, size_t i, char *at), void *user,
-                                const struct tri_executor *executor, struct tri_error *error)
+enum tri_status tri_write_table(struct tri_output *output, int64_t first, int64_t n, size_t max_row_bytes,
+                                tri_row_call *row, const void *user, const struct tri_executor *executor,
+                                struct tri_error *error)
 {
     assert(max_row_bytes > 0);
-    if (n_rows == 0)
+    if (n == 0)
         return TRI_OK;
     const size_t chunk_rows = max_row_bytes < CHUNK_BYTES ? CHUNK_BYTES / max_row_bytes : 1;
-    const size_t all_chunks = (n_rows - 1) / chunk_rows + 1;
+    const size_t all_chunks = ((size_t)n - 1) / chunk_rows + 1;
     executor = all_chunks < WORTH_THREADS ? NULL : executor;
     const size_t most = executor ? WAVE_CHUNKS : 1;
     const size_t wave_chunks = all_chunks < most ? all_chunks : most;
-    struct table table = {.output = output, .format_row = format_row, .user = user, .n_rows = n_rows,
-                          .max_row_bytes = max_row_bytes, .chunk_rows = chunk_rows,
+    struct table table = {.output = output, .row = row, .user = user, .begin = first, .end = first + n,
+                          .max_row_bytes = max_row_bytes, .chunk_rows = (int64_t)chunk_rows,
                           .buffer_bytes = chunk_rows * max_row_bytes + TRI_ROW_SLACK};
     table.buffers = malloc(wave_chunks * table.buffer_bytes);
     if (!table.buffers)

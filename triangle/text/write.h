@@ -23,12 +23,15 @@
 
 enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see triangle/text/decimal.h */
 
-/* Writes n_rows rows. format_row stores the text of row i at `at` and returns its end; it may be called for any row by
- * any thread, has max_row_bytes for the text, and may touch TRI_ROW_SLACK bytes behind it. The bytes written do not
- * depend on the executor. Memory: about 0.1 MB, with an executor 17 MB. */
-enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t max_row_bytes,
-                                char *(*format_row)(void *user, size_t i, char *at), void *user,
-                                const struct tri_executor *executor, struct tri_error *error);
+/* Stores the text of row i at `at` and returns its end. Called for any row by any thread; may touch TRI_ROW_SLACK bytes
+ * behind the text. */
+typedef char *tri_row_call(const void *user, int64_t i, char *at);
+
+/* Writes rows first .. first + n - 1, whose texts have at most max_row_bytes. The bytes written do not depend on the
+ * executor. Memory: about 0.1 MB, with an executor 17 MB. */
+enum tri_status tri_write_table(struct tri_output *output, int64_t first, int64_t n, size_t max_row_bytes,
+                                tri_row_call *row, const void *user, const struct tri_executor *executor,
+                                struct tri_error *error);
 
 /* The text of a line of up to TRI_MOST_COUNTS numbers, two blanks between them: every header. Returns its end. */
 enum { TRI_MOST_COUNTS = 8, TRI_COUNTS_ROOM = TRI_MOST_COUNTS * 24 };
