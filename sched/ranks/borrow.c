@@ -4,11 +4,11 @@
 
 #include "sched/ranks/ranks.h"
 
-static enum tri_status borrow_from(struct par_ranks *r, int h, struct tri_error *error)
+enum tri_status par_borrow_from(struct par_ranks *r, struct par_talk *talk, const struct par_bytes *told,
+                                struct tri_error *error)
 {
     struct par_message message;
-    struct par_talk *talk = &r->borrowed[h];
-    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[h], error);
+    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, told, error);
     status = status ? status : par_paste(r, talk, &message, true, error);
     if (!status && !par_merge_entries(r->state, &message, talk))
         status = par_ranks_no_memory(error);
@@ -21,7 +21,7 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
     enum tri_status status = TRI_OK;
     for (int h = 0; !status && h < r->carrier->n_ranks; h++)
         if (r->in[h].n > 0)
-            status = borrow_from(r, h, error);
+            status = par_borrow_from(r, &r->borrowed[h], &r->in[h], error);
     return status;
 }
 
@@ -171,27 +171,16 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
-static bool write_to(struct par_ranks *r, int h, const struct par_message *message)
-{
-    if (message->gone.n + message->gone_subs.n + message->n_entries + message->n_triangles == 0)
-        return true;
-    return par_message_write(message, &r->borrowed[h], r->state->mesh->n_attributes, &r->out[h]);
-}
-
 static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
-                     unsigned char *place, struct par_message *message, int32_t *first)
+                     unsigned char *place)
 {
-    bool memory = true;
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++) {
+    struct par_message *message = par_messages_begin(r, r->borrowed);
+    bool memory = message;
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
-        first[h] = r->borrowed[h].triangle.n;
-    }
-    memory = memory && add_new(r, changed, place);
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = par_message_tell(&message[h], &r->borrowed[h], r->state->mesh, r->n_common, first[h]);
-    memory = memory && give_entries(r, message);
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = write_to(r, h, &message[h]);
+    memory = memory && add_new(r, changed, place) && par_messages_tell(r, r->borrowed, message) &&
+             give_entries(r, message) && par_messages_send(r, r->borrowed, message);
+    par_messages_free(r, message);
     return memory;
 }
 
@@ -306,19 +295,12 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
 
 enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
     unsigned char *place = malloc((size_t)changed->n + 1);
     struct par_triangle_set set;
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first && place;
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && place;
     if (memory)
         list_set(changed, &set, r->state->mesh->n_triangles);
-    memory = memory && give_all(r, changed, &set, place, message, first) && drop_all(r, changed, &set, place);
-    for (size_t h = 0; message && h < n; h++)
-        par_message_free(&message[h]);
-    free(message);
-    free(first);
+    memory = memory && give_all(r, changed, &set, place) && drop_all(r, changed, &set, place);
     free(place);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);

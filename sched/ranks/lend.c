@@ -163,39 +163,12 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
-static bool tell_all(struct par_ranks *r, struct par_message *message, const int32_t *first)
-{
-    bool memory = true;
-    for (int w = 0; memory && w < r->carrier->n_ranks; w++)
-        memory = par_message_tell(&message[w], &r->lent[w], r->state->mesh, r->n_common, first[w]);
-    return memory;
-}
-
-static bool write_messages(struct par_ranks *r, struct par_message *message, const int32_t *first)
-{
-    bool memory = true;
-    for (int w = 0; memory && w < r->carrier->n_ranks; w++)
-        if (r->lent[w].triangle.n > first[w])
-            memory = par_message_write(&message[w], &r->lent[w], r->state->mesh->n_attributes, &r->out[w]);
-    return memory;
-}
-
-static void free_messages(struct par_message *message, int n)
-{
-    for (int p = 0; message && p < n; p++)
-        par_message_free(&message[p]);
-    free(message);
-}
-
 enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
-    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) &&
-                  tell_all(r, message, first) && lend_entries(r, message) && write_messages(r, message, first);
-    free_messages(message, r->carrier->n_ranks);
-    free(first);
+    struct par_message *message = par_messages_begin(r, r->lent);
+    bool memory = message && tell_straddlers(r) && tell_surroundings(r) && par_messages_tell(r, r->lent, message) &&
+                  lend_entries(r, message) && par_messages_send(r, r->lent, message);
+    par_messages_free(r, message);
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
@@ -273,18 +246,14 @@ static bool fulfil(const struct par_ranks *r, int w)
 
 enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
-    bool memory = message && first, bad = false;
+    struct par_message *message = par_messages_begin(r, r->lent);
+    bool memory = message, bad = false;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++) {
-        first[w] = r->lent[w].triangle.n;
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
         memory = bad || r->in[w].n == 0 || fulfil(r, w);
     }
-    memory = memory && tell_all(r, message, first) && write_messages(r, message, first);
-    free_messages(message, r->carrier->n_ranks);
-    free(first);
+    memory = memory && par_messages_tell(r, r->lent, message) && par_messages_send(r, r->lent, message);
+    par_messages_free(r, message);
     if (bad)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank asks for what is not here");
     return memory ? TRI_OK : par_ranks_no_memory(error);

@@ -32,6 +32,42 @@ int32_t par_block_here(const struct par_ranks *r, struct tri_point q)
     return r->shift.partition ? par_block_at(r->shift.partition, r->shift.phase, q) : 0;
 }
 
+/* --- messages */
+
+struct par_message *par_messages_begin(const struct par_ranks *r, const struct par_talk *talk)
+{
+    struct par_message *message = calloc((size_t)r->carrier->n_ranks, sizeof *message);
+    for (int p = 0; message && p < r->carrier->n_ranks; p++)
+        message[p].first = talk[p].triangle.n;
+    return message;
+}
+
+bool par_messages_tell(const struct par_ranks *r, struct par_talk *talk, struct par_message *message)
+{
+    bool memory = true;
+    for (int p = 0; memory && p < r->carrier->n_ranks; p++)
+        memory = par_message_tell(&message[p], &talk[p], r->state->mesh, r->n_common);
+    return memory;
+}
+
+bool par_messages_send(struct par_ranks *r, const struct par_talk *talk, struct par_message *message)
+{
+    bool memory = true;
+    for (int p = 0; memory && p < r->carrier->n_ranks; p++) {
+        struct par_message *m = &message[p];
+        if (m->gone.n + m->gone_subs.n + m->n_entries + m->n_triangles > 0)
+            memory = par_message_write(m, &talk[p], r->state->mesh, r->n_common, &r->out[p]);
+    }
+    return memory;
+}
+
+void par_messages_free(const struct par_ranks *r, struct par_message *message)
+{
+    for (int p = 0; message && p < r->carrier->n_ranks; p++)
+        par_message_free(&message[p]);
+    free(message);
+}
+
 /* --- the worklist */
 
 void par_worklist_keep(struct par_run *state, const bool *keep)

@@ -123,7 +123,7 @@ static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *t
     bool memory = true;
     for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
-    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common, 0);
+    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common);
     for (int32_t i = entries->start[tile]; memory && i < entries->start[tile + 1]; i++) {
         int32_t entry = entries->item[i];
         memory = par_message_add_entry(message, state->key.item[entry],
@@ -142,7 +142,7 @@ static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *
     struct par_message message = {0};
     bytes->n = 0;
     bool memory = tell_piece(s, tile, &talk, &message) &&
-                  par_message_write(&message, &talk, s->ranks->state->mesh->n_attributes, bytes);
+                  par_message_write(&message, &talk, s->ranks->state->mesh, s->ranks->n_common, bytes);
     par_message_free(&message);
     par_talk_free(&talk);
     return memory;
@@ -226,30 +226,19 @@ static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t 
     return NULL;
 }
 
-static enum tri_status paste_piece(struct par_ranks *r, const struct par_bytes *bytes, struct tri_error *error)
-{
-    struct par_talk talk = {0};
-    struct par_message message;
-    enum tri_status status = par_message_read(&message, &talk, r->state->mesh, r->n_common, bytes, error);
-    status = status ? status : par_paste(r, &talk, &message, true, error);
-    if (!status && !par_merge_entries(r->state, &message, &talk))
-        status = par_ranks_no_memory(error);
-    par_message_free(&message);
-    par_talk_free(&talk);
-    return status;
-}
-
 static enum tri_status read_piece(struct par_ranks *r, int file, const char *path, const int64_t offset[2],
                                   struct tri_error *error)
 {
     struct par_bytes bytes = {.n = 0};
+    struct par_talk talk = {0};
     if (offset[1] < offset[0] || offset[0] < 0)
         return damaged(path, error);
     if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
         return par_ranks_no_memory(error);
     bytes.n = (size_t)(offset[1] - offset[0]);
     enum tri_status status = tri_read_again(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
-    status = status ? status : paste_piece(r, &bytes, error);
+    status = status ? status : par_borrow_from(r, &talk, &bytes, error);
+    par_talk_free(&talk);
     free(bytes.at);
     return status == TRI_INTERNAL ? damaged(path, error) : status;
 }

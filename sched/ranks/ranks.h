@@ -93,6 +93,10 @@ enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 
 /* --- borrow.c: what this rank works on */
 
+/* What somebody has told of to lend it: from then on it is here. */
+enum tri_status par_borrow_from(struct par_ranks *ranks, struct par_talk *talk, const struct par_bytes *told,
+                                struct tri_error *error);
+
 /* in[h]: what rank h lends. */
 enum tri_status par_borrow(struct par_ranks *ranks, struct tri_error *error);
 
@@ -106,6 +110,14 @@ enum tri_status par_give_back(struct par_ranks *ranks, struct par_ids *changed, 
 enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);
 
 /* --- paste.c: what both have in common */
+
+/* A message to each rank that tells of what joins the talks from here on; NULL: no memory. */
+struct par_message *par_messages_begin(const struct par_ranks *ranks, const struct par_talk *talk);
+/* par_message_tell for each. False: no memory. */
+bool par_messages_tell(const struct par_ranks *ranks, struct par_talk *talk, struct par_message *message);
+/* out[p]: what the message to rank p says, if it says anything. False: no memory. */
+bool par_messages_send(struct par_ranks *ranks, const struct par_talk *talk, struct par_message *message);
+void par_messages_free(const struct par_ranks *ranks, struct par_message *message);
 
 /* All that a message tells of is put into the mesh, and counted in the talk. is_borrowed: some of it may be here
  * already, and more of it may come from others. */
