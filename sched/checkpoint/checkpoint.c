@@ -5,7 +5,6 @@
 #include "sched/checkpoint/checkpoint.h"
 
 #include <assert.h>
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -28,7 +27,6 @@ enum { WAITING = 1 << 20 }; /* bytes that are written at a time; a multiple of a
 static const uint64_t MANIFEST = UINT64_C(0x346863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
-static const char piece_prefix[] = "piece-";
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
 
 /* --- files in the directory */
@@ -107,12 +105,9 @@ static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_
 /* "piece-0-12" */
 static bool is_piece(const char *name)
 {
-    const char *rest = name + sizeof piece_prefix - 1;
-    if (strncmp(name, piece_prefix, sizeof piece_prefix - 1) != 0 || (rest[0] != '0' && rest[0] != '1') ||
-        rest[1] != '-' || !isdigit((unsigned char)rest[2]))
-        return false;
-    rest += 2;
-    return rest[strspn(rest, "0123456789")] == 0;
+    int n = 0;
+    sscanf(name, "piece-%*1[01]-%*[0-9]%n", &n);
+    return n > 0 && name[n] == 0;
 }
 
 /* A new manifest that has not got its name, or has been begun. */
@@ -250,7 +245,7 @@ int64_t par_checkpoint_next(const struct par_checkpoint *c)
 int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh)
 {
     char name[64];
-    snprintf(name, sizeof name, "%s%d-%d", piece_prefix, (int)which, rank);
+    snprintf(name, sizeof name, "piece-%d-%d", (int)which, rank);
     path_of(path, directory, name);
     const int folder = par_folder_open(directory);
     if (folder < 0)

@@ -136,7 +136,7 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
 /* An own corner, or one of another rank's that knows the triangle: the others need not have its entry. */
 static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, const int *owner, int n)
 {
-    bool is = par_has_own(r, t);
+    bool is = par_own_corners(r, t) > 0;
     for (int k = 0; k < n; k++)
         is = is || par_talk_number(&r->borrowed[owner[k]], t) != TRI_NONE;
     return is;
@@ -153,7 +153,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     assert(state->key.n == state->worklist.n);
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
-        keep[i] = par_has_own(r, t);
+        keep[i] = par_own_corners(r, t) > 0;
         if (!is_of_border(r, state->key.item[i]))
             continue;
         int n = owners_of(r, t, owner, &has_own);
@@ -224,7 +224,7 @@ static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word
 {
     struct tri_triangle *triangle = &r->state->mesh->tri[t];
     bool memory = true;
-    assert(tri_is_live(triangle) && !par_has_own(r, t));
+    assert(tri_is_live(triangle) && par_own_corners(r, t) == 0);
     for (int k = 0; memory && k < 3; k++) {
         if (triangle->v[k] >= r->n_common)
             mark(word, triangle->v[k], true);
@@ -261,7 +261,7 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++) {
         tri_triangle_id t = triangles->item[i];
-        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && !par_has_own(r, t))
+        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && par_own_corners(r, t) == 0)
             memory = drop_triangle(r, t, word);
     }
     return memory;
@@ -308,14 +308,15 @@ enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, stru
 
 static enum place place_of(const struct par_ranks *r, tri_triangle_id t)
 {
-    return !par_has_own(r, t) ? WITH_OTHERS : par_has_foreign(r, t) ? BOTH : HERE;
+    int n = par_own_corners(r, t);
+    return n == 0 ? WITH_OTHERS : n < 3 ? BOTH : HERE;
 }
 
 static bool keep_own_entries(struct par_ranks *r)
 {
     bool *keep = malloc((size_t)r->state->worklist.n + 1);
     for (int32_t i = 0; keep && i < r->state->worklist.n; i++)
-        keep[i] = par_has_own(r, r->state->worklist.item[i]);
+        keep[i] = par_own_corners(r, r->state->worklist.item[i]) > 0;
     if (!keep)
         return false;
     par_worklist_keep(r->state, keep);

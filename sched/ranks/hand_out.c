@@ -168,9 +168,8 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
             take_numbers(h, &r->in[p]);
         else if (!status)
             status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank tells of vertices that do not exist");
-        free(r->in[p].at);
-        r->in[p] = (struct par_bytes){0};
     }
+    par_bytes_free(r->in, r->carrier->n_ranks);
     return status;
 }
 

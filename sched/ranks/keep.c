@@ -59,26 +59,21 @@ static bool find_straddlers(struct par_ranks *r)
 {
     bool memory = true;
     for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
-        memory = !par_has_foreign(r, t) || par_ids_add(&r->straddlers, t);
+        memory = par_own_corners(r, t) == 3 || par_ids_add(&r->straddlers, t);
     return memory;
 }
 
 static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct writer *writer,
                                    struct tri_error *error)
 {
-    char path[PAR_CHECKPOINT_PATH];
     enum tri_status status = TRI_OK;
     forget_all(r->state, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
     for (int p = 0; !status && p < m->n_ranks; p++) {
-        const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
-                                            writer[p].hash};
-        if (!par_pieces_are_wanted(r, &file))
-            continue;
-        const char *directory = r->state->options->checkpoint->directory;
-        const int piece = par_checkpoint_piece(path, directory, m->which, p, false);
-        status = par_pieces_read(r, piece, path, &file, error);
+        const struct par_piece_file file = {m->which, p, p > 0 ? (int32_t)writer[p - 1].end : 0,
+                                            (int32_t)writer[p].end, writer[p].hash};
+        status = par_pieces_read(r, &file, error);
     }
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
@@ -178,17 +173,10 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
 /* The manifest, which rank 0 has, says which files are free. */
 static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct tri_error *error)
 {
-    const struct par_checkpoint *c = r->state->options->checkpoint;
-    char path[PAR_CHECKPOINT_PATH];
     uint64_t hash = 0;
-    int64_t which = par_checkpoint_next(c);
+    int64_t which = par_checkpoint_next(r->state->options->checkpoint);
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
-    if (status)
-        return status;
-    const int piece = par_checkpoint_piece(path, c->directory, which, r->carrier->rank, true);
-    status = par_pieces_write(r, piece, path, r->run, &hash, error);
-    if (!status && !par_checkpoint_sync(c->directory))
-        status = tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot write");
+    status = status ? status : par_pieces_write(r, which, &hash, error);
     told[0] = (int64_t)hash;
     told[1] = count_triangles(r);
     return status;

@@ -10,8 +10,8 @@ enum { LAYERS = 2 };
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
 {
-    int32_t block = par_block_here(r, q);
-    return r->shift.is_held[block] ? r->shift.worker[block] : -1;
+    const struct par_shift *s = &r->shift;
+    return s->worker[s->partition ? par_block_at(s->partition, s->phase, q) : 0];
 }
 
 static bool tell_of(struct par_talk *talk, tri_triangle_id t)
@@ -123,7 +123,7 @@ static bool tell_straddlers(const struct par_ranks *r)
 static int taker_of(const struct par_ranks *r, int32_t i)
 {
     int32_t block = r->shift.block_of[i];
-    return block != TRI_NONE && r->shift.is_held[block] ? r->shift.worker[block] : -1;
+    return block != TRI_NONE ? r->shift.worker[block] : -1;
 }
 
 static bool tell_surroundings(const struct par_ranks *r)
@@ -309,7 +309,7 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
     if (!status && memory)
         status = par_paste(r, talk, &message, false, error);
     for (int32_t i = first; !status && memory && i < talk->triangle.n; i++)
-        memory = !par_has_foreign(r, talk->triangle.item[i]) ||
+        memory = par_own_corners(r, talk->triangle.item[i]) == 3 ||
                  par_ids_add(&r->straddlers, talk->triangle.item[i]);
     memory = memory && (status || (remove_lone_subs(r, talk) && par_merge_entries(r->state, &message, talk)));
     par_message_free(&message);

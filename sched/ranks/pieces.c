@@ -175,11 +175,11 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     return status;
 }
 
-static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t run, uint64_t *hash,
+static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t *hash,
                                   struct tri_error *error)
 {
     const struct par_territory *territory = &s->ranks->territory;
-    const struct head head = {PIECES, run, territory->start[territory->rank], s->n_tiles};
+    const struct head head = {PIECES, s->ranks->run, territory->start[territory->rank], s->n_tiles};
     size_t n = (size_t)s->n_tiles + 1;
     int64_t *offset = calloc(n, sizeof *offset);
     if (!offset)
@@ -190,16 +190,18 @@ static enum tri_status write_file(const struct sorting *s, int file, const char 
     return status;
 }
 
-enum tri_status par_pieces_write(const struct par_ranks *r, int file, const char *path, uint64_t run, uint64_t *hash,
-                                 struct tri_error *error)
+enum tri_status par_pieces_write(const struct par_ranks *r, int64_t which, uint64_t *hash, struct tri_error *error)
 {
+    const char *directory = r->state->options->checkpoint->directory;
+    char path[PAR_CHECKPOINT_PATH];
     struct sorting s;
+    const int file = par_checkpoint_piece(path, directory, which, r->carrier->rank, true);
     if (file < 0)
         return cannot_write(path, error);
     par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
-    status = status ? status : write_file(&s, file, path, run, hash, error);
-    if (close(file) != 0 && !status)
+    status = status ? status : write_file(&s, file, path, hash, error);
+    if ((close(file) != 0 || !par_checkpoint_sync(directory)) && !status)
         status = cannot_write(path, error);
     free_sorting(&s);
     return status;
@@ -243,29 +245,19 @@ static enum tri_status read_piece(struct par_ranks *r, int file, const char *pat
     return status == TRI_INTERNAL ? damaged(path, error) : status;
 }
 
-/* The tiles of a file that this rank owns now. */
-static struct tri_range own_tiles(const struct par_ranks *r, const struct par_piece_file *of)
+enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file *of, struct tri_error *error)
 {
-    const struct par_territory *t = &r->territory;
-    const int32_t own = t->start[t->rank], own_end = t->start[t->rank + 1];
-    return (struct tri_range){own > of->first ? own : of->first, own_end < of->end ? own_end : of->end};
-}
-
-bool par_pieces_are_wanted(const struct par_ranks *r, const struct par_piece_file *of)
-{
-    const struct tri_range tiles = own_tiles(r, of);
-    return tiles.first < tiles.last;
-}
-
-enum tri_status par_pieces_read(struct par_ranks *r, int file, const char *path, const struct par_piece_file *of,
-                                struct tri_error *error)
-{
-    const struct tri_range tiles = own_tiles(r, of);
+    const int32_t *own = &r->territory.start[r->carrier->rank];
+    const int32_t first = own[0] > of->first ? own[0] : of->first, end = own[1] < of->end ? own[1] : of->end;
+    char path[PAR_CHECKPOINT_PATH];
+    if (first >= end)
+        return TRI_OK;
+    const int file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
-    int64_t *offset = read_offsets(file, of->first, of->end - of->first, of->run, of->hash);
+    int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
-    for (int32_t tile = tiles.first; !status && tile < tiles.last; tile++)
+    for (int32_t tile = first; !status && tile < end; tile++)
         status = read_piece(r, file, path, &offset[tile - of->first], error);
     free(offset);
     close(file);

@@ -43,9 +43,8 @@ static bool init_shift(struct par_ranks *r)
     s->worker = malloc(n * sizeof *s->worker);
     s->is_mine = calloc(n, sizeof *s->is_mine);
     s->is_border = calloc(n, sizeof *s->is_border);
-    s->is_held = calloc(n, sizeof *s->is_held);
     s->block_of = malloc(((size_t)r->state->worklist.n + 1) * sizeof *s->block_of);
-    return s->worker && s->is_mine && s->is_border && s->is_held && s->block_of;
+    return s->worker && s->is_mine && s->is_border && s->block_of;
 }
 
 static void free_shift(struct par_shift *s)
@@ -53,12 +52,11 @@ static void free_shift(struct par_shift *s)
     free(s->worker);
     free(s->is_mine);
     free(s->is_border);
-    free(s->is_held);
     free(s->block_of);
     *s = (struct par_shift){0};
 }
 
-/* Blocks over the tiles of several ranks; returns whether there are any. */
+/* Blocks over the tiles of several ranks: worker[b] is whoever would work on it; returns whether there are any. */
 static bool find_borders(struct par_ranks *r)
 {
     struct par_shift *s = &r->shift;
@@ -101,7 +99,8 @@ static void assign(struct par_ranks *r, const int64_t *word)
         s->worker[b] = s->worker[b] >= 0 && is_in(word, b) ? s->worker[b] : -1;
         s->is_mine[b] = (s->worker[b] < 0 || s->worker[b] == rank) && has_its_turn(s, b);
         s->is_border[b] = s->worker[b] == rank;
-        s->is_held[b] = s->worker[b] >= 0 && s->worker[b] != rank && par_has_part(&r->territory, &box, rank);
+        if (s->worker[b] == rank || (s->worker[b] >= 0 && !par_has_part(&r->territory, &box, rank)))
+            s->worker[b] = -1;
     }
 }
 
@@ -136,13 +135,7 @@ static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_st
                     status, error);
 }
 
-static void free_in(struct par_ranks *r)
-{
-    for (int p = 0; p < r->carrier->n_ranks; p++) {
-        free(r->in[p].at);
-        r->in[p] = (struct par_bytes){0};
-    }
-}
+static void free_in(struct par_ranks *r) { par_bytes_free(r->in, r->carrier->n_ranks); }
 
 /* *any: somebody has asked for more, and has got it. Collective. */
 static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *asked, bool *any,
@@ -524,12 +517,8 @@ static bool init(struct par_ranks *r, const struct par_partition *partition)
 
 static void clean_up(struct par_ranks *r)
 {
-    for (int p = 0; p < r->carrier->n_ranks; p++) {
-        if (r->out)
-            free(r->out[p].at);
-        if (r->in)
-            free(r->in[p].at);
-    }
+    par_bytes_free(r->out, r->carrier->n_ranks);
+    par_bytes_free(r->in, r->carrier->n_ranks);
     par_territory_free(&r->territory);
     free(r->straddlers.item);
     free(r->places.id);

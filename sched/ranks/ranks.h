@@ -27,15 +27,15 @@ struct par_shift {
     const struct par_partition *partition; /* NULL: there is one block, the plane */
     int phase;
     int32_t step, n_steps; /* only every n_steps-th block, from the step-th on */
-    int *worker;     /* [blocks] of blocks at a border that have work; else -1 */
+    int *worker;     /* [blocks] the other rank that works on it, of those of which this one holds a part; else -1 */
     bool *is_mine;   /* [blocks] as struct par_share has it */
     bool *is_border; /* [blocks] this rank works on it, and others hold a part */
-    bool *is_held;   /* [blocks] another rank works on it, and this one holds a part */
     int32_t *block_of; /* [worklist.n] of each entry; TRI_NONE: none of this phase takes it */
 };
 
 /* Ids by what they stand for, open addressing: vertices by their places, or triangles by their corners. */
 struct par_index {
+    bool is_of_places;
     int32_t *id;
     int32_t n, capacity;
 };
@@ -140,12 +140,8 @@ static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[
 /* The worklist without the entries for which keep[] is false. */
 void par_worklist_keep(struct par_run *state, const bool *keep);
 
-/* Has the triangle a corner that is this rank's own, or one that is another's? */
-bool par_has_own(const struct par_ranks *ranks, tri_triangle_id t);
-bool par_has_foreign(const struct par_ranks *ranks, tri_triangle_id t);
-
-/* The block of the phase at hand that holds a place. */
-int32_t par_block_here(const struct par_ranks *ranks, struct tri_point q);
+/* How many corners of a triangle are this rank's own? */
+int par_own_corners(const struct par_ranks *ranks, tri_triangle_id t);
 
 enum tri_status par_ranks_no_memory(struct tri_error *error);
 
