@@ -148,26 +148,25 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *state = r->state;
-    bool memory = true, has_own, *keep = malloc((size_t)state->worklist.n + 1);
+    bool memory = true, has_own;
+    int32_t kept = 0;
     int owner[3] = {0};
-    assert(state->key.n == state->worklist.n);
-    for (int32_t i = 0; keep && i < state->worklist.n; i++) {
+    for (int32_t i = 0; i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
-        keep[i] = par_own_corners(r, t) > 0;
-        if (!is_of_border(r, state->key.item[i]))
+        const uint64_t key = state->key.item[i];
+        if (par_own_corners(r, t) > 0)
+            par_keep_entry(state, i, &kept);
+        if (!is_of_border(r, key))
             continue;
         int n = owners_of(r, t, owner, &has_own);
         assert(is_known_to_owner(r, t, owner, n));
         for (int k = 0; k < n; k++) {
             int32_t number = par_talk_number(&r->borrowed[owner[k]], t);
             if (number != TRI_NONE)
-                memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i], number);
+                memory = memory && par_message_add_entry(&message[owner[k]], key, number);
         }
     }
-    if (keep)
-        par_worklist_keep(state, keep);
-    memory = memory && keep;
-    free(keep);
+    state->worklist.n = state->key.n = kept;
     return memory;
 }
 
@@ -312,16 +311,14 @@ static enum place place_of(const struct par_ranks *r, tri_triangle_id t)
     return n == 0 ? WITH_OTHERS : n < 3 ? BOTH : HERE;
 }
 
-static bool keep_own_entries(struct par_ranks *r)
+static void keep_own_entries(struct par_ranks *r)
 {
-    bool *keep = malloc((size_t)r->state->worklist.n + 1);
-    for (int32_t i = 0; keep && i < r->state->worklist.n; i++)
-        keep[i] = par_own_corners(r, r->state->worklist.item[i]) > 0;
-    if (!keep)
-        return false;
-    par_worklist_keep(r->state, keep);
-    free(keep);
-    return true;
+    struct par_run *state = r->state;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < state->worklist.n; i++)
+        if (par_own_corners(r, state->worklist.item[i]) > 0)
+            par_keep_entry(state, i, &kept);
+    state->worklist.n = state->key.n = kept;
 }
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
@@ -329,7 +326,8 @@ enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
     const struct tri_mesh *mesh = r->state->mesh;
     assert(r->straddlers.n == 0);
     uint64_t *word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *word);
-    bool memory = word && keep_own_entries(r);
+    bool memory = word;
+    keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             memory = put_in_place(r, t, place_of(r, t), word); /* all vertices stay: all ranks have them */

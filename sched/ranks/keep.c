@@ -21,26 +21,17 @@ struct kept {
     int64_t left_over;
     int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];
+    int64_t n_ranks;
     struct writer writer[]; /* [n_ranks] */
 };
 
-/* On its way to there, or from there. */
-struct cargo {
-    struct kept *kept;
-    size_t bytes;
-};
-
-static struct cargo cargo_of(int64_t n_ranks)
-{
-    const size_t bytes = sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer);
-    return (struct cargo){calloc(1, bytes), bytes};
-}
+static size_t size_of(int64_t n_ranks) { return sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer); }
 
 static enum tri_status carry(struct par_state_file *file, void *user, struct tri_error *error)
 {
-    const struct cargo *cargo = user;
+    struct kept *kept = user;
     (void)error;
-    par_carry(file, cargo->kept, cargo->bytes);
+    par_carry(file, kept, size_of(kept->n_ranks));
     return TRI_OK;
 }
 
@@ -93,15 +84,17 @@ static void go_on_from(struct par_ranks *r, const struct kept *c)
 
 static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, struct tri_error *error)
 {
-    struct cargo cargo = cargo_of(m->n_ranks);
-    enum tri_status status = cargo.kept ? TRI_OK : par_ranks_no_memory(error);
-    if (!status && r->carrier->rank == 0)
-        status = par_checkpoint_read(r->state->options->checkpoint, carry, &cargo, error);
-    status = par_spread(r->carrier, PAR_MOVE_INPUT, cargo.kept, cargo.bytes, status, error);
-    status = status ? status : read_pieces(r, m, cargo.kept->writer, error);
+    struct kept *kept = calloc(1, size_of(m->n_ranks));
+    enum tri_status status = kept ? TRI_OK : par_ranks_no_memory(error);
+    if (!status && r->carrier->rank == 0) {
+        kept->n_ranks = m->n_ranks;
+        status = par_checkpoint_read(r->state->options->checkpoint, carry, kept, error);
+    }
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, kept, size_of(m->n_ranks), status, error);
+    status = status ? status : read_pieces(r, m, kept->writer, error);
     if (!status)
-        go_on_from(r, cargo.kept);
-    free(cargo.kept);
+        go_on_from(r, kept);
+    free(kept);
     return status;
 }
 
@@ -152,21 +145,21 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
                            struct tri_error *error)
 {
     const int n_ranks = r->carrier->n_ranks;
-    struct cargo cargo = cargo_of(n_ranks);
+    struct kept *kept = calloc(1, size_of(n_ranks));
     int64_t triangles = 0;
-    if (!cargo.kept)
+    if (!kept)
         return par_ranks_no_memory(error);
-    *cargo.kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
-                                .left_over = r->state->report->left_over - r->left_before,
-                                .rounds = r->state->report->rounds - r->rounds_before - 1};
-    memcpy(cargo.kept->done, done, sizeof cargo.kept->done);
+    *kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
+                          .left_over = r->state->report->left_over - r->left_before,
+                          .rounds = r->state->report->rounds - r->rounds_before - 1, .n_ranks = n_ranks};
+    memcpy(kept->done, done, sizeof kept->done);
     for (int p = 0; p < n_ranks; p++) {
-        cargo.kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
+        kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
         triangles += told[2 * p + 1];
     }
     enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, n_ranks, triangles,
-                                                  carry, &cargo, error);
-    free(cargo.kept);
+                                                  carry, kept, error);
+    free(kept);
     return status;
 }
 

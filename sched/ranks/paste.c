@@ -58,18 +58,6 @@ void par_messages_free(const struct par_ranks *r, struct par_message *message)
 
 /* --- the worklist */
 
-void par_worklist_keep(struct par_run *state, const bool *keep)
-{
-    int32_t kept = 0;
-    assert(state->key.n == state->worklist.n);
-    for (int32_t i = 0; i < state->worklist.n; i++)
-        if (keep[i]) {
-            state->key.item[kept] = state->key.item[i];
-            state->worklist.item[kept++] = state->worklist.item[i];
-        }
-    state->worklist.n = state->key.n = kept;
-}
-
 /* From behind, in place. Who is on both sides is the same, told by several ranks. */
 bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
 {

@@ -17,17 +17,11 @@ struct head {
 
 /* --- what belongs to which tile */
 
-/* Lists of the own tiles, one behind the other. */
-struct lists {
-    int32_t *start; /* [tiles + 1] */
-    int32_t *item;
-};
-
 struct sorting {
     const struct par_ranks *ranks;
     int32_t n_tiles;
     int32_t *tile_of; /* [n_vertices] own tiles, from 0; TRI_NONE: of others, or no vertex */
-    struct lists triangles, entries;
+    struct par_ids *triangles, *entries; /* [n_tiles] */
 };
 
 static void find_tiles(struct sorting *s)
@@ -52,44 +46,46 @@ static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
     return n;
 }
 
-/* The triangles triangle[0] to triangle[n - 1], NULL: of the same numbers, as indices into this list. */
-static bool sort_lists(const struct sorting *s, struct lists *lists, const int32_t *triangle, int32_t n)
+/* Into the lists of these tiles. */
+static bool add(const struct sorting *s, struct par_ids *lists, int32_t item, tri_triangle_id t)
 {
     int32_t tile[3];
-    lists->start = calloc((size_t)s->n_tiles + 2, sizeof *lists->start);
-    for (int32_t i = 0; lists->start && i < n; i++)
-        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
-            lists->start[tile[k - 1] + 2]++;
-    for (int32_t b = 0; lists->start && b < s->n_tiles; b++)
-        lists->start[b + 2] += lists->start[b + 1];
-    lists->item = lists->start ? malloc(((size_t)lists->start[s->n_tiles + 1] + 1) * sizeof *lists->item) : NULL;
-    for (int32_t i = 0; lists->item && i < n; i++)
-        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
-            lists->item[lists->start[tile[k - 1] + 1]++] = i;
-    return lists->item;
+    bool memory = true;
+    for (int k = tiles_of(s, t, tile); k > 0; k--)
+        memory = memory && par_ids_add(&lists[tile[k - 1]], item);
+    return memory;
 }
 
 static void free_sorting(struct sorting *s)
 {
+    for (int32_t i = 0; i < s->n_tiles; i++) {
+        if (s->triangles)
+            free(s->triangles[i].item);
+        if (s->entries)
+            free(s->entries[i].item);
+    }
     free(s->tile_of);
-    free(s->triangles.start);
-    free(s->triangles.item);
-    free(s->entries.start);
-    free(s->entries.item);
+    free(s->triangles);
+    free(s->entries);
 }
 
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
 {
     const struct par_territory *territory = &r->territory;
     const struct par_run *state = r->state;
-    *s = (struct sorting){.ranks = r};
-    s->n_tiles = territory->start[territory->rank + 1] - territory->start[territory->rank];
+    const int32_t n = territory->start[territory->rank + 1] - territory->start[territory->rank];
+    *s = (struct sorting){.ranks = r, .n_tiles = n};
     s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
-    if (!s->tile_of)
-        return false;
-    find_tiles(s);
-    return sort_lists(s, &s->triangles, NULL, state->mesh->n_triangles) &&
-           sort_lists(s, &s->entries, state->worklist.item, state->worklist.n);
+    s->triangles = calloc((size_t)n + 1, sizeof *s->triangles);
+    s->entries = calloc((size_t)n + 1, sizeof *s->entries);
+    bool memory = s->tile_of && s->triangles && s->entries;
+    if (memory)
+        find_tiles(s);
+    for (tri_triangle_id t = 0; memory && t < state->mesh->n_triangles; t++)
+        memory = add(s, s->triangles, t, t);
+    for (int32_t i = 0; memory && i < state->worklist.n; i++)
+        memory = add(s, s->entries, i, state->worklist.item[i]);
+    return memory;
 }
 
 /* --- writing */
@@ -119,12 +115,12 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
     const struct par_run *state = s->ranks->state;
-    const struct lists *triangles = &s->triangles, *entries = &s->entries;
+    const struct par_ids *triangles = &s->triangles[tile], *entries = &s->entries[tile];
     bool memory = true;
-    for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)
+    for (int32_t i = 0; memory && i < triangles->n; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
     memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common);
-    for (int32_t i = entries->start[tile]; memory && i < entries->start[tile + 1]; i++) {
+    for (int32_t i = 0; memory && i < entries->n; i++) {
         int32_t entry = entries->item[i];
         memory = par_message_add_entry(message, state->key.item[entry],
                                        par_talk_number(talk, state->worklist.item[entry]));

@@ -137,8 +137,12 @@ bool par_release(struct par_run *state, enum par_kind kind, int32_t id);
 
 static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
 
-/* The worklist without the entries for which keep[] is false. */
-void par_worklist_keep(struct par_run *state, const bool *keep);
+/* Of a worklist that is gone through entry i stays: as the next one, of *kept so far. */
+static inline void par_keep_entry(struct par_run *state, int32_t i, int32_t *kept)
+{
+    state->key.item[*kept] = state->key.item[i];
+    state->worklist.item[(*kept)++] = state->worklist.item[i];
+}
 
 /* How many corners of a triangle are this rank's own? */
 int par_own_corners(const struct par_ranks *ranks, tri_triangle_id t);
