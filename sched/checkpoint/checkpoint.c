@@ -16,13 +16,12 @@
 
 #include "sched/checkpoint/folder.h"
 #include "sched/checkpoint/spool.h"
+#include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
 #endif
-
-enum { WAITING = 1 << 20 }; /* bytes that are written at a time; a multiple of any block of a disk */
 
 static const uint64_t MANIFEST = UINT64_C(0x346863697274706b); /* a version, too */
 
@@ -329,11 +328,11 @@ static bool write_waiting(struct par_state_file *f, size_t n)
     const int64_t place = f->place - (int64_t)n;
     const int flags = fcntl(f->file, F_GETFL);
     f->hash = par_hash(f->hash, f->waiting, n);
-    if (n == WAITING && is_zero(f->waiting, n))
+    if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
-    if (n == WAITING && tri_write_at(f->file, f->waiting, n, place))
+    if (n == PAR_STATE_WRITE && tri_write_at(f->file, f->waiting, n, place))
         return true;
-    if (n == WAITING && !(flags & O_DIRECT))
+    if (n == PAR_STATE_WRITE && !(flags & O_DIRECT))
         return false;
     return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
 }
@@ -341,10 +340,11 @@ static bool write_waiting(struct par_state_file *f, size_t n)
 static void put_bytes(struct par_state_file *f, const char *at, size_t n)
 {
     while (n > 0 && !f->failed) {
-        const size_t waits = (size_t)(f->place % WAITING), room = WAITING - waits, part = n < room ? n : room;
+        const size_t waits = (size_t)(f->place % PAR_STATE_WRITE), room = PAR_STATE_WRITE - waits;
+        const size_t part = n < room ? n : room;
         memcpy(f->waiting + waits, at, part);
         f->place += (int64_t)part;
-        f->failed = part == room && !write_waiting(f, WAITING);
+        f->failed = part == room && !write_waiting(f, PAR_STATE_WRITE);
         at += part;
         n -= part;
     }
@@ -368,14 +368,14 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
 {
     *to = (struct par_state_file){.file = par_folder_create(c->folder, name)};
     to->failed = to->file < 0;
-    if (posix_memalign((void **)&to->waiting, 1 << 12, WAITING) != 0) {
+    if (posix_memalign((void **)&to->waiting, 1 << 12, PAR_STATE_WRITE) != 0) {
         close(to->file);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
     }
     if (!to->failed)
         (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
     enum tri_status status = walk(to, user, error);
-    bool done = !to->failed && write_waiting(to, (size_t)(to->place % WAITING)) &&
+    bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
                 ftruncate(to->file, (off_t)to->place) == 0 && fsync(to->file) == 0;
     const int fault = errno;
     if (to->file >= 0)
@@ -418,11 +418,11 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
 {
     const int64_t all = c->manifest.state_bytes;
     const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
-    char *piece = malloc(WAITING);
+    char *piece = malloc(PAR_STATE_WRITE);
     uint64_t hash = 0;
     bool sound = true, stopped = false;
-    for (int64_t place = 0; piece && sound && !stopped && place < all; place += WAITING) {
-        const size_t n = all - place < WAITING ? (size_t)(all - place) : WAITING;
+    for (int64_t place = 0; piece && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
+        const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
         sound = tri_read_again(file, piece, n, place);
         hash = sound ? par_hash(hash, piece, n) : hash;
         stopped = tri_stop_is_asked(stop);

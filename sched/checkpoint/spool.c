@@ -1,6 +1,7 @@
 /* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
 #include "sched/checkpoint/spool.h"
 #include "sched/tiles/tile_arrays.h"
+#include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 
 #include <errno.h>
@@ -118,8 +119,7 @@ static enum tri_status fail_writing(const struct par_spool *spool, struct tri_er
  * A hint, which may be ignored. */
 static void send_off(struct par_spool *spool)
 {
-    enum { SHIP = 1 << 23 };
-    if (spool->length - spool->sent < SHIP)
+    if (spool->length - spool->sent < PAR_SPOOL_SHIP)
         return;
     (void)posix_fadvise(spool->file, (off_t)spool->sent, (off_t)(spool->length - spool->sent), POSIX_FADV_DONTNEED);
     spool->sent = spool->length;

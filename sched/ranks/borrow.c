@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "sched/ranks/ranks.h"
+#include "sched/tunables.h"
 
 enum tri_status par_borrow_from(struct par_ranks *r, struct par_talk *talk, const struct par_bytes *told,
                                 struct tri_error *error)
@@ -105,13 +106,12 @@ enum place { HERE, WITH_OTHERS, BOTH };
  * ahead. */
 static bool add_new(struct par_ranks *r, const struct par_ids *changed, unsigned char *place)
 {
-    enum { AHEAD = 8 };
     const struct tri_mesh *mesh = r->state->mesh;
     bool memory = true, has_own;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
-        for (int k = 0; i + AHEAD < changed->n && k < 3; k++)
-            __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + AHEAD]].v[k]]);
+        for (int k = 0; i + PAR_CORNERS_AHEAD < changed->n && k < 3; k++)
+            __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + PAR_CORNERS_AHEAD]].v[k]]);
         int n = owners_of(r, changed->item[i], owner, &has_own);
         place[i] = n == 0 ? HERE : has_own ? BOTH : WITH_OTHERS;
         for (int k = 0; memory && k < n; k++)

@@ -3,13 +3,11 @@
  * by their places; and hands out its own tiles, as one process would. */
 #include "sched/ranks/ranks.h"
 #include "sched/tiles/park.h"
+#include "sched/tunables.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A sink that writes files makes its buffers when it begins, which is only now. */
-enum { SINK_BYTES = 1 << 25 };
 
 struct numbered_place {
     struct tri_point at;
@@ -210,7 +208,8 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     assert(h->first <= h->end && h->first_tile <= h->end_tile);
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
-    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) + SINK_BYTES;
+    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) +
+                         PAR_SINK_BYTES; /* a sink makes its buffers when it begins, which is only now */
     enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
     if (status)
         return status;

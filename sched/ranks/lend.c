@@ -3,9 +3,7 @@
 #include <stdlib.h>
 
 #include "sched/ranks/ranks.h"
-
-/* Layers around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
-enum { LAYERS = 2 };
+#include "sched/tunables.h"
 
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
@@ -124,11 +122,11 @@ static bool tell_surroundings(const struct par_ranks *r)
     struct par_ids *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
     bool memory = layer;
     for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
-        const struct telling telling = {r, taker_of(r, i), LAYERS};
+        const struct telling telling = {r, taker_of(r, i), PAR_GHOST_LAYERS};
         memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->state->worklist.item[i]);
     }
     for (int w = 0; layer && w < r->carrier->n_ranks; w++) {
-        const struct telling telling = {r, w, memory ? LAYERS : 0};
+        const struct telling telling = {r, w, memory ? PAR_GHOST_LAYERS : 0};
         memory = tell_layers(&telling, &layer[w]) && memory;
     }
     free(layer);
@@ -226,7 +224,7 @@ static bool fulfil(const struct par_ranks *r, int w)
     bool memory = n != TRI_NONE;
     for (int32_t i = 0; memory && i < n; i++) {
         assert(wish[i].corner != TRI_NONE); /* vertices are told as corners */
-        const struct telling telling = {r, w, wish[i].layers > 0 ? 2 * wish[i].layers : LAYERS};
+        const struct telling telling = {r, w, wish[i].layers > 0 ? 2 * wish[i].layers : PAR_GHOST_LAYERS};
         struct par_ids layer = {0};
         memory = join(&telling, &layer, wish[i].corner);
         memory = tell_layers(&telling, &layer) && memory;

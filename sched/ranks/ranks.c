@@ -8,6 +8,7 @@
 #include "sched/checkpoint/state.h"
 #include "sched/schedule/by_tile.h"
 #include "sched/tiles/park.h"
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
 /* --- who works where */
@@ -236,11 +237,10 @@ static enum tri_status give_back(struct par_ranks *r, struct par_ids *changed, e
 /* Steps of a phase, between which there may be a checkpoint: as many for any number of ranks. */
 static int32_t steps_of(const struct par_ranks *r, const struct par_partition *partition)
 {
-    enum { MOST_STEPS = 8, BLOCKS_A_STEP = 16 };
-    int32_t steps = par_blocks(partition) / PAR_PHASES / BLOCKS_A_STEP;
+    int32_t steps = par_blocks(partition) / PAR_PHASES / PAR_BLOCKS_A_STEP;
     if (!r->state->options->checkpoint || steps < 1)
         return 1;
-    return steps < MOST_STEPS ? steps : MOST_STEPS;
+    return steps < PAR_MOST_STEPS ? steps : PAR_MOST_STEPS;
 }
 
 static enum tri_status refine_step(struct par_ranks *r, const struct par_partition *partition,

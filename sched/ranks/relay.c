@@ -4,8 +4,7 @@
 #include <stdlib.h>
 
 #include "sched/tiles/tile_arrays.h"
-
-static const size_t MOST_BYTES = (size_t)1 << 25;
+#include "sched/tunables.h"
 
 static enum tri_status no_memory(struct tri_error *error)
 {
@@ -27,7 +26,7 @@ static bool pack(struct par_relay *relay, const struct tri_tile *tile)
 /* Whole tiles that have not been sent, about as many bytes as are good. */
 static size_t next_piece(const struct par_relay *relay)
 {
-    size_t most = relay->most_bytes > 0 ? relay->most_bytes : MOST_BYTES, n = 0;
+    size_t most = relay->most_bytes > 0 ? relay->most_bytes : PAR_RELAY_BYTES, n = 0;
     struct tri_tile tile;
     while (relay->sent + n < relay->tiles.n && n < most)
         n += par_tile_unpack(relay->tiles.at + relay->sent + n, relay->tiles.n - relay->sent - n, relay->n_attributes,

@@ -10,11 +10,10 @@
 
 #include "sched/ranks/carrier.h"
 #include "sched/schedule/worklist.h"
+#include "sched/tunables.h"
 #include "triangle/mesh/mesh.h"
 
 /* From ids to numbers. What lies at a border has ids that lie together: so there are pages where there are any. */
-enum { PAR_PAGE = 1024 };
-
 struct par_map {
     int32_t **page;
     int32_t n, capacity;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "sched/checkpoint/spool.h"
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
 struct coder {
@@ -20,13 +21,13 @@ struct coder {
 
 /* --- numbers */
 
-enum { LONGEST = 16, AHEAD = 1 << 12 }; /* bytes of a number at most; so many are reserved at once */
+enum { LONGEST = 16 }; /* bytes of a number at most */
 
 /* Where the next LONGEST bytes may go; NULL: no memory. */
 static char *room_for_one(struct coder *c)
 {
     struct par_bytes *to = c->to;
-    c->failed = c->failed || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, AHEAD));
+    c->failed = c->failed || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, PAR_MESSAGE_GROWTH));
     return c->failed ? NULL : to->at + to->n;
 }
 

@@ -29,8 +29,8 @@ size_t par_tile_bytes(const struct tri_tile *tile, int32_t n_attributes);
 
 void par_tile_pack(char *to, const struct tri_tile *tile, int32_t n_attributes);
 
-/* Points *tile at what is packed, of which there are n bytes at most, aligned as malloc does; returns how many it takes,
- * or 0: it is no tile. */
+/* Points *tile at what is packed, of which there are n bytes at most, aligned as malloc does; returns how many it
+ * takes, or 0: it is no tile. */
 size_t par_tile_unpack(const char *bytes, size_t n, int32_t n_attributes, struct tri_tile *tile);
 
 #endif
