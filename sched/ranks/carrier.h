@@ -87,7 +87,7 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
 enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void *bytes, size_t n,
                            enum tri_status status, struct tri_error *error);
 
-/* Collective: an agreement, and all[n_ranks][n] receives everybody's n numbers. */
+/* Collective: an agreement, and all[n_ranks][n] receives everybody's n numbers; for a few, it may be of_each. */
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error);
 

@@ -285,19 +285,10 @@ static bool paste_triangles(struct pasting *p)
     return memory;
 }
 
-/* The edge of a triangle that runs from `from` to `to`; -1: none does. */
-static int edge_between(const struct tri_triangle *t, tri_vertex_id from, tri_vertex_id to)
-{
-    for (int e = 0; e < 3; e++)
-        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
-            return e;
-    return -1;
-}
-
 static bool link(struct tri_mesh *mesh, tri_triangle_id t, int e, tri_triangle_id other)
 {
     struct tri_triangle *a = &mesh->tri[t], *b = other == TRI_NONE ? NULL : &mesh->tri[other];
-    int f = b ? edge_between(b, a->v[tri_prev[e]], a->v[tri_next[e]]) : -1;
+    int f = b ? par_edge_between(b->v, a->v[tri_prev[e]], a->v[tri_next[e]]) : -1;
     if (f < 0)
         return false;
     if (a->n[e] == TRI_BEYOND) {

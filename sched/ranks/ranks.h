@@ -31,6 +31,7 @@ struct par_shift {
     bool *is_mine;   /* [blocks] as struct par_share has it */
     bool *is_border; /* [blocks] this rank works on it, and others hold a part */
     int32_t *block_of; /* [worklist.n] of each entry; TRI_NONE: none of this phase takes it */
+    struct par_ids changed; /* triangles made by blocks at a border, some of them several times */
 };
 
 /* Ids by what they stand for, open addressing: vertices by their places, or triangles by their corners. */

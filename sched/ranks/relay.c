@@ -60,11 +60,11 @@ static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error
         relay->sent += n;
         last = ends && relay->sent == relay->tiles.n;
     }
-    status = par_gather(relay->carrier, &last, 1, relay->told, status, error);
+    status = par_gather(relay->carrier, &last, 1, relay->carrier->of_each, status, error);
+    relay->turn += !status && relay->carrier->of_each[turn] != 0;
     status = par_swap(relay->carrier, PAR_MOVE_TILES, relay->out, relay->in, status, error);
     if (status)
         return status;
-    relay->turn += relay->told[turn] != 0;
     if (rank == 0)
         status = hand_on(relay, &relay->in[turn], error);
     par_bytes_free(&relay->in[turn], 1);
@@ -94,8 +94,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     relay->turn = 1;
     relay->out = calloc(n, sizeof *relay->out);
     relay->in = calloc(n, sizeof *relay->in);
-    relay->told = calloc(n, sizeof *relay->told);
-    if (!relay->out || !relay->in || !relay->told)
+    if (!relay->out || !relay->in)
         return no_memory(error);
     one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
     one.first_vertex = one.first_triangle = one.first_segment = NULL;
@@ -137,7 +136,6 @@ enum tri_status par_relay_finish(struct par_relay *relay, enum tri_status status
     par_bytes_free(relay->in, relay->carrier->n_ranks);
     free(relay->out);
     free(relay->in);
-    free(relay->told);
     free(relay->tiles.at);
     *relay = (struct par_relay){.carrier = relay->carrier};
     return par_agree(relay->carrier, status, error);

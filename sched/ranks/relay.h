@@ -20,7 +20,6 @@ struct par_relay {
     size_t sent;                    /* bytes of them */
     int turn;                       /* whose pieces are on their way */
     struct par_bytes *out, *in;     /* [n_ranks] */
-    int64_t *told;                  /* [n_ranks] */
 };
 
 struct tri_sink par_relay_sink(struct par_relay *relay);

@@ -61,6 +61,15 @@ struct par_told_triangle {
     int32_t region;
 };
 
+/* The edge of a triangle, by its corners, that runs from `from` to `to`; -1: none does. */
+static inline int par_edge_between(const int32_t v[3], int32_t from, int32_t to)
+{
+    for (int e = 0; e < 3; e++)
+        if (v[tri_next[e]] == from && v[tri_prev[e]] == to)
+            return e;
+    return -1;
+}
+
 struct par_told_side { /* a triangle beside a subsegment */
     int32_t triangle, edge, side, sub; /* numbers */
     int32_t marker, parent; /* of a subsegment that is new */

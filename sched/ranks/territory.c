@@ -51,7 +51,7 @@ void par_territory_free(struct par_territory *t)
     t->boxes = NULL;
 }
 
-int par_owner_of_tile(const struct par_territory *t, int32_t tile)
+static int owner_of_tile(const struct par_territory *t, int32_t tile)
 {
     int rank = par_holder_of(t->start, t->n_ranks, tile);
     assert(t->start[rank] <= tile && tile < t->start[rank + 1]);
@@ -65,7 +65,7 @@ int32_t par_tile_at(const struct par_territory *t, struct tri_point q)
 
 int par_owner_at(const struct par_territory *t, struct tri_point q)
 {
-    return par_owner_of_tile(t, par_tile_at(t, q));
+    return owner_of_tile(t, par_tile_at(t, q));
 }
 
 /* The rows of tiles in a column that a box meets: *first to *end - 1. */
@@ -96,8 +96,8 @@ bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, i
         rows_in(t, box, c, &row, &end);
         if (row == end)
             continue;
-        *first = *first >= 0 ? *first : par_owner_of_tile(t, c * t->n_rows + row);
-        *last = par_owner_of_tile(t, c * t->n_rows + end - 1);
+        *first = *first >= 0 ? *first : owner_of_tile(t, c * t->n_rows + row);
+        *last = owner_of_tile(t, c * t->n_rows + end - 1);
     }
     assert(*first <= *last && *last < t->n_ranks); /* they come in order, as tiles do */
     return *first >= 0;

@@ -229,15 +229,6 @@ static int parent_of(const struct par_told_triangle *t, int32_t first)
     return e;
 }
 
-/* The edge of a triangle that runs from `from` to `to`, by numbers; -1: none does. */
-static int edge_of(const struct par_told_triangle *t, int32_t from, int32_t to)
-{
-    for (int e = 0; e < 3; e++)
-        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
-            return e;
-    return -1;
-}
-
 static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, int32_t top, int32_t region)
 {
     const struct par_told_triangle *t = &m->triangle[i];
@@ -246,7 +237,7 @@ static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, 
         flags |= (t->next[e] != TRI_NONE) << e;
     if (parent < 3) {
         const struct par_told_triangle *other = &m->triangle[t->next[parent] - first];
-        flags |= edge_of(other, t->v[tri_prev[parent]], t->v[tri_next[parent]]) * PARENT_EDGE;
+        flags |= par_edge_between(other->v, t->v[tri_prev[parent]], t->v[tri_next[parent]]) * PARENT_EDGE;
         flags |= t->v[parent] == top ? NEW_APEX : 0;
         bool is_first = (flags & ((1 << parent) - 1)) == 0;
         flags |= is_first && t->next[parent] == first + i - 1 ? LAST_IS_PARENT : 0;
