@@ -75,20 +75,16 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     return memory;
 }
 
-/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0].
- * *has_own: this rank owns some, too. */
-static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3], bool *has_own)
+/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
+static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
     const struct tri_mesh *mesh = r->state->mesh;
     int n = 0, guess = owner[0];
     assert(tri_is_live(&mesh->tri[t]));
-    *has_own = false;
     for (int k = 0; k < 3; k++) {
         struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
-        if (par_is_own(&r->territory, q)) {
-            *has_own = true;
+        if (par_is_own(&r->territory, q))
             continue;
-        }
         int p = par_owns(&r->territory, guess, q) ? guess : par_owner_at(&r->territory, q);
         bool is_told = false;
         for (int i = 0; i < n; i++)
@@ -99,21 +95,16 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3],
     return n;
 }
 
-/* Where a triangle is to be afterwards. */
-enum place { HERE, WITH_OTHERS, BOTH };
-
-/* place[i] receives that of triangle i of the list. Triangles lie in its order, their corners do not: these are fetched
- * ahead. */
-static bool add_new(struct par_ranks *r, const struct par_ids *changed, unsigned char *place)
+/* Triangles lie in the order of the list, their corners do not: these are fetched ahead. */
+static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
     const struct tri_mesh *mesh = r->state->mesh;
-    bool memory = true, has_own;
+    bool memory = true;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
         for (int k = 0; i + PAR_CORNERS_AHEAD < changed->n && k < 3; k++)
             __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + PAR_CORNERS_AHEAD]].v[k]]);
-        int n = owners_of(r, changed->item[i], owner, &has_own);
-        place[i] = n == 0 ? HERE : has_own ? BOTH : WITH_OTHERS;
+        int n = owners_of(r, changed->item[i], owner);
         for (int k = 0; memory && k < n; k++)
             memory = par_talk_add_triangle(&r->borrowed[owner[k]], changed->item[i]);
     }
@@ -148,7 +139,7 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *state = r->state;
-    bool memory = true, has_own;
+    bool memory = true;
     int32_t kept = 0;
     int owner[3] = {0};
     for (int32_t i = 0; i < state->worklist.n; i++) {
@@ -158,7 +149,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
             par_keep_entry(state, i, &kept);
         if (!is_of_border(r, key))
             continue;
-        int n = owners_of(r, t, owner, &has_own);
+        int n = owners_of(r, t, owner);
         assert(is_known_to_owner(r, t, owner, n));
         for (int k = 0; k < n; k++) {
             int32_t number = par_talk_number(&r->borrowed[owner[k]], t);
@@ -170,14 +161,13 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
-static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
-                     unsigned char *place)
+static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     struct par_message *message = par_messages_begin(r, r->borrowed);
     bool memory = message;
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
-    memory = memory && add_new(r, changed, place) && par_messages_tell(r, r->borrowed, message) &&
+    memory = memory && add_new(r, changed) && par_messages_tell(r, r->borrowed, message) &&
              give_entries(r, message) && par_messages_send(r, r->borrowed, message);
     par_messages_free(r, message);
     return memory;
@@ -247,11 +237,13 @@ static void cut_off(struct par_ranks *r)
     }
 }
 
-static bool put_in_place(struct par_ranks *r, tri_triangle_id t, enum place place, uint64_t *word)
+/* A triangle goes, or stays, as a straddler if others have it, too. */
+static bool put_in_place(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
-    if (place == WITH_OTHERS)
+    int n = par_own_corners(r, t);
+    if (n == 0)
         return drop_triangle(r, t, word);
-    return place == HERE || par_ids_add(&r->straddlers, t);
+    return n == 3 || par_ids_add(&r->straddlers, t);
 }
 
 /* What is borrowed, and has not changed. */
@@ -275,14 +267,13 @@ static void forget_changed(struct par_ranks *r, const struct par_triangle_set *c
     r->straddlers.n = kept;
 }
 
-static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
-                     const unsigned char *place)
+static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
     forget_changed(r, set);
     for (int32_t i = 0; memory && i < changed->n; i++)
-        memory = put_in_place(r, changed->item[i], place[i], word);
+        memory = put_in_place(r, changed->item[i], word);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = drop_borrowed(r, &r->borrowed[h].triangle, word);
     if (memory)
@@ -294,21 +285,13 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
 
 enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
-    unsigned char *place = malloc((size_t)changed->n + 1);
     struct par_triangle_set set;
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && place;
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles);
     if (memory)
         list_set(changed, &set, r->state->mesh->n_triangles);
-    memory = memory && give_all(r, changed, &set, place) && drop_all(r, changed, &set, place);
-    free(place);
+    memory = memory && give_all(r, changed, &set) && drop_all(r, changed, &set);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
-}
-
-static enum place place_of(const struct par_ranks *r, tri_triangle_id t)
-{
-    int n = par_own_corners(r, t);
-    return n == 0 ? WITH_OTHERS : n < 3 ? BOTH : HERE;
 }
 
 static void keep_own_entries(struct par_ranks *r)
@@ -330,7 +313,7 @@ enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
     keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
-            memory = put_in_place(r, t, place_of(r, t), word); /* all vertices stay: all ranks have them */
+            memory = put_in_place(r, t, word); /* all vertices stay: all ranks have them */
     if (memory)
         cut_off(r);
     free(word);

@@ -58,31 +58,19 @@ void par_messages_free(const struct par_ranks *r, struct par_message *message)
 
 /* --- the worklist */
 
-/* From behind, in place. Who is on both sides is the same, told by several ranks. */
 bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
 {
-    int32_t n = state->worklist.n, all = n + m->n_entries, kept = 0;
-    assert(state->key.n == n);
-    if (!tri_grow(&state->worklist.item, &state->worklist.capacity, all, sizeof *state->worklist.item) ||
-        !tri_grow(&state->key.item, &state->key.capacity, all, sizeof *state->key.item))
-        return false;
-    int32_t *item = state->worklist.item;
-    uint64_t *key = state->key.item;
-    for (int32_t at = all, i = n, k = m->n_entries; at > 0;) {
-        bool own = k == 0 || (i > 0 && key[i - 1] > m->entry[k - 1].key);
-        at--;
-        key[at] = own ? key[i - 1] : m->entry[k - 1].key;
-        item[at] = own ? item[i - 1] : talk->triangle.item[m->entry[k - 1].triangle];
-        i -= own;
-        k -= !own;
+    int32_t *item = malloc(((size_t)m->n_entries + 1) * sizeof *item);
+    uint64_t *key = malloc(((size_t)m->n_entries + 1) * sizeof *key);
+    bool memory = item && key;
+    for (int32_t i = 0; memory && i < m->n_entries; i++) {
+        item[i] = talk->triangle.item[m->entry[i].triangle];
+        key[i] = m->entry[i].key;
     }
-    for (int32_t i = 0; i < all; i++)
-        if (i == 0 || key[i] != key[kept - 1]) {
-            key[kept] = key[i];
-            item[kept++] = item[i];
-        }
-    state->worklist.n = state->key.n = kept;
-    return true;
+    memory = memory && par_merge_worklist(state, item, key, m->n_entries);
+    free(item);
+    free(key);
+    return memory;
 }
 
 /* --- ids */
