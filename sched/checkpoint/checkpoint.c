@@ -418,17 +418,17 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
 {
     const int64_t all = c->manifest.state_bytes;
     const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
-    char *piece = malloc(PAR_STATE_WRITE);
+    char *bytes = malloc(PAR_STATE_WRITE);
     uint64_t hash = 0;
     bool sound = true, stopped = false;
-    for (int64_t place = 0; piece && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
+    for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
-        sound = tri_read_again(file, piece, n, place);
-        hash = sound ? par_hash(hash, piece, n) : hash;
+        sound = tri_read_again(file, bytes, n, place);
+        hash = sound ? par_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }
-    const bool memory = piece;
-    free(piece);
+    const bool memory = bytes;
+    free(bytes);
     if (!memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
     if (stopped)

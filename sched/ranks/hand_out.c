@@ -233,8 +233,8 @@ static void clean_up(struct handing *h)
 }
 
 /* Where each rank's numbers begin: *first receives three lists of n_ranks + 1. Collective. */
-static enum tri_status share_numbers(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
-                                     int64_t **first, enum tri_status status, struct tri_error *error)
+static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
+                              int64_t **first, enum tri_status status, struct tri_error *error)
 {
     size_t n = (size_t)carrier->n_ranks;
     int64_t *all = malloc(3 * n * sizeof *all);
@@ -251,7 +251,7 @@ static enum tri_status share_numbers(struct par_carrier *carrier, int32_t n_kept
     return status;
 }
 
-static void tell_shares(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
+static void tell_first(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
 {
     tiles->kept_elsewhere = carrier->rank > 0;
     tiles->n_ranks = carrier->n_ranks;
@@ -270,7 +270,7 @@ enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par
     for (size_t k = 0; k < 3; k++)
         for (size_t p = 1; p < n; p++)
             first[k * n + p] = count[k];
-    tell_shares(tiles, carrier, first);
+    tell_first(tiles, carrier, first);
     enum tri_status status = TRI_OK;
     if (carrier->rank == 0)
         status = par_tiles_whole(tiles, error);
@@ -289,9 +289,9 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, count, error);
-    status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
+    status = sum_up(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
-        tell_shares(tiles, r->carrier, first);
+        tell_first(tiles, r->carrier, first);
     for (int k = 0; !status && k < 3; k++)
         base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_columns(&h, base, error);

@@ -54,13 +54,13 @@ static bool deal(void *self, const int64_t *to, int64_t *from)
            wait_for(m, &request, 1);
 }
 
-static int piece_of(size_t n, size_t at)
+static int batch_of(size_t n, size_t at)
 {
     size_t left = at < n ? n - at : 0;
     return (int)(left < MOST_BYTES ? left : MOST_BYTES);
 }
 
-/* The pieces that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
+/* The batches that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
  * Ranks begin with different ones. */
 static bool exchange(const struct messenger *m, const struct par_bytes *out, const struct par_bytes *in, size_t at)
 {
@@ -69,13 +69,13 @@ static bool exchange(const struct messenger *m, const struct par_bytes *out, con
     for (int k = 1; good && k < n; k++) {
         int p = (rank - k + n) % n;
         if (at < in[p].n)
-            good = MPI_Irecv(in[p].at + at, piece_of(in[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+            good = MPI_Irecv(in[p].at + at, batch_of(in[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
                              &m->request[posted++]) == MPI_SUCCESS;
     }
     for (int k = 1; good && k < n; k++) {
         int p = (rank + k) % n;
         if (at < out[p].n)
-            good = MPI_Isend(out[p].at + at, piece_of(out[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+            good = MPI_Isend(out[p].at + at, batch_of(out[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
                              &m->request[posted++]) == MPI_SUCCESS;
     }
     return good && wait_for(m, m->request, posted);
@@ -101,7 +101,7 @@ static bool spread(void *self, void *bytes, size_t n)
     bool good = true;
     for (size_t at = 0; good && at < n; at += MOST_BYTES) {
         MPI_Request request;
-        good = MPI_Ibcast((char *)bytes + at, piece_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
+        good = MPI_Ibcast((char *)bytes + at, batch_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
                wait_for(m, &request, 1);
     }
     return good;

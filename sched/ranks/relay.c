@@ -21,10 +21,10 @@ static bool pack(struct par_relay *relay, const struct tri_tile *tile)
     return true;
 }
 
-/* --- pieces */
+/* --- batches */
 
 /* Whole tiles that have not been sent, about as many bytes as are good. */
-static size_t next_piece(const struct par_relay *relay)
+static size_t next_batch(const struct par_relay *relay)
 {
     size_t most = relay->most_bytes > 0 ? relay->most_bytes : PAR_RELAY_BYTES, n = 0;
     struct tri_tile tile;
@@ -34,12 +34,12 @@ static size_t next_piece(const struct par_relay *relay)
     return n;
 }
 
-static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *piece, struct tri_error *error)
+static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *batch, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     struct tri_tile tile;
-    for (size_t at = 0; !status && at < piece->n;) {
-        const size_t n = par_tile_unpack(piece->at + at, piece->n - at, relay->n_attributes, &tile);
+    for (size_t at = 0; !status && at < batch->n;) {
+        const size_t n = par_tile_unpack(batch->at + at, batch->n - at, relay->n_attributes, &tile);
         if (n == 0)
             return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no tile");
         status = relay->to->take(relay->to->user, &tile, error);
@@ -48,14 +48,14 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     return status;
 }
 
-/* Of the rank whose turn it is the next piece goes to rank 0. ends: this one has no more tiles to come. Collective. */
+/* Of the rank whose turn it is the next batch goes to rank 0. ends: this one has no more tiles to come. Collective. */
 static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     const int rank = relay->carrier->rank, turn = relay->turn;
     enum tri_status status = TRI_OK;
     int64_t last = 0;
     if (rank == turn) {
-        const size_t n = next_piece(relay);
+        const size_t n = next_batch(relay);
         status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : no_memory(error);
         relay->sent += n;
         last = ends && relay->sent == relay->tiles.n;
