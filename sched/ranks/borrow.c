@@ -54,8 +54,6 @@ static void list_set(struct par_ids *list, const struct par_triangle_set *set, i
     list->n = n;
 }
 
-static bool is_in(const struct par_triangle_set *set, tri_triangle_id t) { return set->word[t / 64] >> t % 64 & 1; }
-
 /* Triangles that were made anew, and subsegments that were split, are no longer what was told. */
 static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const struct par_triangle_set *changed,
                       struct par_message *message)
@@ -63,7 +61,7 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     const struct tri_mesh *mesh = r->state->mesh;
     bool memory = true;
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
-        if (is_in(changed, talk->triangle.item[i])) {
+        if (par_is_in(changed, talk->triangle.item[i])) {
             memory = par_ids_add(&message->gone, i);
             talk->triangle.item[i] = TRI_NONE;
         }
@@ -258,20 +256,11 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
     return memory;
 }
 
-static void forget_changed(struct par_ranks *r, const struct par_triangle_set *changed)
-{
-    int32_t kept = 0;
-    for (int32_t i = 0; i < r->straddlers.n; i++)
-        if (!is_in(changed, r->straddlers.item[i]))
-            r->straddlers.item[kept++] = r->straddlers.item[i];
-    r->straddlers.n = kept;
-}
-
 static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
-    forget_changed(r, set);
+    par_forget_straddlers(r, set);
     for (int32_t i = 0; memory && i < changed->n; i++)
         memory = put_in_place(r, changed->item[i], word);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)

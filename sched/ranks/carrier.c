@@ -38,20 +38,6 @@ void par_bytes_free(struct par_bytes *bytes, int n)
     }
 }
 
-/* --- one rank */
-
-static bool gather_own(void *self, const int64_t *mine, int32_t n, int64_t *all)
-{
-    (void)self;
-    memcpy(all, mine, (size_t)n * sizeof *all);
-    return true;
-}
-
-struct par_carrier par_carrier_alone(int64_t *room)
-{
-    return (struct par_carrier){.n_ranks = 1, .of_each = room, .gather = gather_own};
-}
-
 /* --- agreements */
 
 static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
@@ -61,7 +47,7 @@ static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_erro
     return tri_fail(error, TRI_INTERNAL, NULL, 0, "the ranks cannot reach each other");
 }
 
-static enum tri_status no_memory(struct tri_error *error)
+enum tri_status par_ranks_no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what ranks exchange");
 }
@@ -70,7 +56,11 @@ static enum tri_status no_memory(struct tri_error *error)
 static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all)
 {
     double began = tri_seconds();
-    bool good = carrier->gather(carrier->self, mine, n, all);
+    bool good = true;
+    if (carrier->n_ranks > 1)
+        good = carrier->gather(carrier->self, mine, n, all);
+    else if (n > 0)
+        memcpy(all, mine, (size_t)n * sizeof *all);
     carrier->seconds_waiting += tri_seconds() - began;
     return good;
 }
@@ -161,7 +151,7 @@ static enum tri_status prepare(struct par_carrier *carrier, const struct par_byt
     carrier->seconds_waiting += tri_seconds() - began;
     for (size_t p = 0; !status && p < n; p++)
         if (p != (size_t)carrier->rank && !par_bytes_reserve(&in[p], (size_t)from[p]))
-            status = no_memory(error);
+            status = par_ranks_no_memory(error);
         else if (p != (size_t)carrier->rank)
             in[p].n = (size_t)from[p];
     return par_agree(carrier, status, error);
@@ -228,7 +218,7 @@ enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32
 {
     size_t width = (size_t)n;
     int64_t *all = malloc((size_t)carrier->n_ranks * width * sizeof *all + 1);
-    status = par_gather(carrier, value, n, all, status ? status : all ? TRI_OK : no_memory(error), error);
+    status = par_gather(carrier, value, n, all, status ? status : all ? TRI_OK : par_ranks_no_memory(error), error);
     for (size_t i = 0; i < width; i++) {
         sum[i] = 0;
         for (size_t p = 0; !status && p < (size_t)carrier->n_ranks; p++)

@@ -113,11 +113,6 @@ static bool tell_all(struct handing *h)
     return memory;
 }
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a rank's vertices");
-}
-
 static int compare_places(const void *left, const void *right)
 {
     const struct tri_point *a = left, *b = right; /* a struct numbered_place begins with its place */
@@ -159,7 +154,7 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
 {
     struct par_ranks *r = h->ranks;
     if (!status && !tell_all(h))
-        status = no_memory(error);
+        status = par_ranks_no_memory(error);
     status = par_swap(r->carrier, PAR_MOVE_NUMBERS, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
         if (!status && are_numbers(h, &r->in[p]))
@@ -215,7 +210,7 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
         return status;
     par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     count[0] = count_vertices(h);
     count[1] = count_triangles(h);
     count[2] = count_subs(h);
@@ -240,7 +235,7 @@ static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const
     int64_t *all = malloc(3 * n * sizeof *all);
     *first = calloc(3 * (n + 1), sizeof **first);
     if (!status && !(all && *first))
-        status = no_memory(error);
+        status = par_ranks_no_memory(error);
     status = par_gather(carrier, count, 3, all, status, error);
     if (!status)
         all[0] += n_kept; /* vertices of rank 0 */
@@ -266,7 +261,7 @@ enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par
     size_t n = (size_t)carrier->n_ranks + 1;
     int64_t *first = calloc(3 * n, sizeof *first);
     if (!first)
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     for (size_t k = 0; k < 3; k++)
         for (size_t p = 1; p < n; p++)
             first[k * n + p] = count[k];

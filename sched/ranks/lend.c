@@ -278,15 +278,6 @@ static bool remove_lone_subs(struct par_ranks *r, const struct par_talk *talk)
     return memory;
 }
 
-static void keep_live_straddlers(struct par_ranks *r)
-{
-    int32_t kept = 0;
-    for (int32_t i = 0; i < r->straddlers.n; i++)
-        if (tri_is_live(&r->state->mesh->tri[r->straddlers.item[i]]))
-            r->straddlers.item[kept++] = r->straddlers.item[i];
-    r->straddlers.n = kept;
-}
-
 static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *error)
 {
     struct par_talk *talk = &r->lent[w];
@@ -294,7 +285,7 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
     int32_t first = talk->triangle.n;
     enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[w], error);
     bool memory = status || remove_gone(r, talk, &message);
-    keep_live_straddlers(r);
+    par_forget_straddlers(r, NULL);
     if (!status && memory)
         status = par_paste(r, talk, &message, false, error);
     for (int32_t i = first; !status && memory && i < talk->triangle.n; i++)

@@ -7,11 +7,6 @@
 #include "sched/ranks/ranks.h"
 #include "triangle/base/grow.h"
 
-enum tri_status par_ranks_no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
-}
-
 int par_own_corners(const struct par_ranks *r, tri_triangle_id t)
 {
     const tri_vertex_id *v = r->state->mesh->tri[t].v;
@@ -193,6 +188,16 @@ bool par_index_straddlers(struct par_ranks *r)
                 note(&r->places, mesh, v[k]);
     }
     return true;
+}
+
+void par_forget_straddlers(struct par_ranks *r, const struct par_triangle_set *changed)
+{
+    const tri_triangle_id *t = r->straddlers.item;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < r->straddlers.n; i++)
+        if (tri_is_live(&r->state->mesh->tri[t[i]]) && !(changed && par_is_in(changed, t[i])))
+            r->straddlers.item[kept++] = t[i];
+    r->straddlers.n = kept;
 }
 
 /* --- paste */

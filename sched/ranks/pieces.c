@@ -21,7 +21,7 @@ struct sorting {
     const struct par_ranks *ranks;
     int32_t n_tiles;
     int32_t *tile_of; /* [n_vertices] own tiles, from 0; TRI_NONE: of others, or no vertex */
-    struct par_ids *triangles, *entries; /* [n_tiles] */
+    struct par_ids (*lists)[2]; /* [n_tiles] triangles, and entries of the worklist */
 };
 
 static void find_tiles(struct sorting *s)
@@ -46,27 +46,24 @@ static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
     return n;
 }
 
-/* Into the lists of these tiles. */
-static bool add(const struct sorting *s, struct par_ids *lists, int32_t item, tri_triangle_id t)
+/* Into the lists of the triangle's tiles. */
+static bool add(const struct sorting *s, int which, int32_t item, tri_triangle_id t)
 {
     int32_t tile[3];
     bool memory = true;
     for (int k = tiles_of(s, t, tile); k > 0; k--)
-        memory = memory && par_ids_add(&lists[tile[k - 1]], item);
+        memory = memory && par_ids_add(&s->lists[tile[k - 1]][which], item);
     return memory;
 }
 
 static void free_sorting(struct sorting *s)
 {
-    for (int32_t i = 0; i < s->n_tiles; i++) {
-        if (s->triangles)
-            free(s->triangles[i].item);
-        if (s->entries)
-            free(s->entries[i].item);
+    for (int32_t i = 0; s->lists && i < s->n_tiles; i++) {
+        free(s->lists[i][0].item);
+        free(s->lists[i][1].item);
     }
     free(s->tile_of);
-    free(s->triangles);
-    free(s->entries);
+    free(s->lists);
 }
 
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
@@ -76,15 +73,14 @@ static bool sort_all(struct sorting *s, const struct par_ranks *r)
     const int32_t n = territory->start[territory->rank + 1] - territory->start[territory->rank];
     *s = (struct sorting){.ranks = r, .n_tiles = n};
     s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
-    s->triangles = calloc((size_t)n + 1, sizeof *s->triangles);
-    s->entries = calloc((size_t)n + 1, sizeof *s->entries);
-    bool memory = s->tile_of && s->triangles && s->entries;
+    s->lists = calloc((size_t)n + 1, sizeof *s->lists);
+    bool memory = s->tile_of && s->lists;
     if (memory)
         find_tiles(s);
     for (tri_triangle_id t = 0; memory && t < state->mesh->n_triangles; t++)
-        memory = add(s, s->triangles, t, t);
+        memory = add(s, 0, t, t);
     for (int32_t i = 0; memory && i < state->worklist.n; i++)
-        memory = add(s, s->entries, i, state->worklist.item[i]);
+        memory = add(s, 1, i, state->worklist.item[i]);
     return memory;
 }
 
@@ -115,7 +111,7 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
     const struct par_run *state = s->ranks->state;
-    const struct par_ids *triangles = &s->triangles[tile], *entries = &s->entries[tile];
+    const struct par_ids *triangles = &s->lists[tile][0], *entries = &s->lists[tile][1];
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);

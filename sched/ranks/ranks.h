@@ -125,6 +125,9 @@ void par_messages_free(const struct par_ranks *ranks, struct par_message *messag
 enum tri_status par_paste(struct par_ranks *ranks, struct par_talk *talk, const struct par_message *message,
                           bool is_borrowed, struct tri_error *error);
 
+/* Those that are no more, or (NULL: none) are in a set, leave the list of straddlers. */
+void par_forget_straddlers(struct par_ranks *ranks, const struct par_triangle_set *changed);
+
 /* The straddlers, and nothing else. False: no memory. */
 bool par_index_straddlers(struct par_ranks *ranks);
 
@@ -147,8 +150,6 @@ static inline void par_keep_entry(struct par_run *state, int32_t i, int32_t *kep
 
 /* How many corners of a triangle are this rank's own? */
 int par_own_corners(const struct par_ranks *ranks, tri_triangle_id t);
-
-enum tri_status par_ranks_no_memory(struct tri_error *error);
 
 /* --- hand_out.c */
 

@@ -6,11 +6,6 @@
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a rank's tiles");
-}
-
 static bool pack(struct par_relay *relay, const struct tri_tile *tile)
 {
     const size_t n = par_tile_bytes(tile, relay->n_attributes);
@@ -56,7 +51,7 @@ static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error
     int64_t last = 0;
     if (rank == turn) {
         const size_t n = next_batch(relay);
-        status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : no_memory(error);
+        status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : par_ranks_no_memory(error);
         relay->sent += n;
         last = ends && relay->sent == relay->tiles.n;
     }
@@ -95,7 +90,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     relay->out = calloc(n, sizeof *relay->out);
     relay->in = calloc(n, sizeof *relay->in);
     if (!relay->out || !relay->in)
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
     one.first_vertex = one.first_triangle = one.first_segment = NULL;
     if (relay->carrier->rank > 0 || !relay->to->begin)
@@ -109,7 +104,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     if (relay->carrier->rank == 0)
         return relay->to->take(relay->to->user, tile, error);
     if (!pack(relay, tile))
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     return relay->room == 0 || relay->tiles.n < relay->room ? TRI_OK : send_all(relay, false, error);
 }
 

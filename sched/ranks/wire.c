@@ -420,7 +420,7 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
     begin_reading(&c, from);
     code_counts(&c, m);
     if (!c.failed && !reserve(m, mesh->n_attributes))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
+        return par_ranks_no_memory(error);
     if (!c.failed)
         code_all(&c, m);
     if (c.failed || c.at != c.end || !are_there(m, talk))
