@@ -38,6 +38,20 @@ void par_bytes_free(struct par_bytes *bytes, int n)
     }
 }
 
+/* --- one rank */
+
+static bool gather_own(void *self, const int64_t *mine, int32_t n, int64_t *all)
+{
+    (void)self;
+    memcpy(all, mine, (size_t)n * sizeof *all);
+    return true;
+}
+
+struct par_carrier par_carrier_alone(int64_t *room)
+{
+    return (struct par_carrier){.n_ranks = 1, .of_each = room, .gather = gather_own};
+}
+
 /* --- agreements */
 
 static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
@@ -56,11 +70,7 @@ enum tri_status par_ranks_no_memory(struct tri_error *error)
 static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all)
 {
     double began = tri_seconds();
-    bool good = true;
-    if (carrier->n_ranks > 1)
-        good = carrier->gather(carrier->self, mine, n, all);
-    else if (n > 0)
-        memcpy(all, mine, (size_t)n * sizeof *all);
+    bool good = carrier->gather(carrier->self, mine, n, all);
     carrier->seconds_waiting += tri_seconds() - began;
     return good;
 }

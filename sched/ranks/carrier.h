@@ -42,9 +42,9 @@ struct par_carrier {
     int rank, n_ranks;
     void *self;
     int64_t *of_each;        /* [n_ranks * PAR_ROOM] for agreements: these must not fail for want of memory */
-    /* Collective: all[n_ranks][n] receives everybody's n numbers. This and what follows: of several ranks alone. */
+    /* Collective: all[n_ranks][n] receives everybody's n numbers. */
     bool (*gather)(void *self, const int64_t *mine, int32_t n, int64_t *all);
-    /* Collective: from[p] receives what rank p has in to[rank]. */
+    /* Collective: from[p] receives what rank p has in to[rank]. This and what follows: of several ranks alone. */
     bool (*deal)(void *self, const int64_t *to, int64_t *from);
     /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0, in
      * any order. Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
@@ -66,10 +66,7 @@ struct par_carrier {
 };
 
 /* A rank that is alone, with nobody to wait for. room[PAR_ROOM] lives as long. */
-static inline struct par_carrier par_carrier_alone(int64_t *room)
-{
-    return (struct par_carrier){.n_ranks = 1, .of_each = room};
-}
+struct par_carrier par_carrier_alone(int64_t *room);
 
 enum tri_status par_ranks_no_memory(struct tri_error *error);
 
