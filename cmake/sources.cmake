@@ -148,6 +148,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/by_tile.c
     sched/schedule/partition.c
     sched/schedule/room.c
+    sched/tiles/tile_arrays.c
     sched/tiles/tile_copy.c
     sched/tiles/finds.c
     sched/tiles/pipeline.c

@@ -38,12 +38,13 @@ static bool tell(struct pair *pair, int32_t from, int32_t end, struct par_messag
 {
     int32_t first = pair->teller.triangle.n;
     bool memory = true;
+    m->first = first;
     for (int32_t t = from; memory && t < end; t++)
         memory = par_talk_add_triangle(&pair->teller, t);
-    memory = memory && par_message_tell(m, &pair->teller, &pair->mesh, pair->n_common, first);
+    memory = memory && par_message_tell(m, &pair->teller, &pair->mesh, pair->n_common);
     for (int32_t i = first; memory && i < pair->teller.triangle.n; i += 7)
         memory = par_message_add_entry(m, (uint64_t)i << 32, pair->teller.triangle.n - 1 - (i - first));
-    return memory && par_message_write(m, &pair->teller, pair->mesh.n_attributes, bytes);
+    return memory && par_message_write(m, &pair->teller, &pair->mesh, pair->n_common, bytes);
 }
 
 /* The other side knows it, too. */

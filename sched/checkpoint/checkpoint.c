@@ -5,7 +5,6 @@
 #include "sched/checkpoint/checkpoint.h"
 
 #include <assert.h>
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -17,18 +16,16 @@
 
 #include "sched/checkpoint/folder.h"
 #include "sched/checkpoint/spool.h"
+#include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
 #endif
 
-enum { WAITING = 1 << 20 }; /* bytes that are written at a time; a multiple of any block of a disk */
-
 static const uint64_t MANIFEST = UINT64_C(0x346863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
-static const char piece_prefix[] = "piece-";
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
 
 /* --- files in the directory */
@@ -107,12 +104,9 @@ static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_
 /* "piece-0-12" */
 static bool is_piece(const char *name)
 {
-    const char *rest = name + sizeof piece_prefix - 1;
-    if (strncmp(name, piece_prefix, sizeof piece_prefix - 1) != 0 || (rest[0] != '0' && rest[0] != '1') ||
-        rest[1] != '-' || !isdigit((unsigned char)rest[2]))
-        return false;
-    rest += 2;
-    return rest[strspn(rest, "0123456789")] == 0;
+    int n = 0;
+    sscanf(name, "piece-%*1[01]-%*[0-9]%n", &n);
+    return n > 0 && name[n] == 0;
 }
 
 /* A new manifest that has not got its name, or has been begun. */
@@ -250,7 +244,7 @@ int64_t par_checkpoint_next(const struct par_checkpoint *c)
 int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh)
 {
     char name[64];
-    snprintf(name, sizeof name, "%s%d-%d", piece_prefix, (int)which, rank);
+    snprintf(name, sizeof name, "piece-%d-%d", (int)which, rank);
     path_of(path, directory, name);
     const int folder = par_folder_open(directory);
     if (folder < 0)
@@ -334,11 +328,11 @@ static bool write_waiting(struct par_state_file *f, size_t n)
     const int64_t place = f->place - (int64_t)n;
     const int flags = fcntl(f->file, F_GETFL);
     f->hash = par_hash(f->hash, f->waiting, n);
-    if (n == WAITING && is_zero(f->waiting, n))
+    if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
-    if (n == WAITING && tri_write_at(f->file, f->waiting, n, place))
+    if (n == PAR_STATE_WRITE && tri_write_at(f->file, f->waiting, n, place))
         return true;
-    if (n == WAITING && !(flags & O_DIRECT))
+    if (n == PAR_STATE_WRITE && !(flags & O_DIRECT))
         return false;
     return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
 }
@@ -346,10 +340,11 @@ static bool write_waiting(struct par_state_file *f, size_t n)
 static void put_bytes(struct par_state_file *f, const char *at, size_t n)
 {
     while (n > 0 && !f->failed) {
-        const size_t waits = (size_t)(f->place % WAITING), room = WAITING - waits, part = n < room ? n : room;
+        const size_t waits = (size_t)(f->place % PAR_STATE_WRITE), room = PAR_STATE_WRITE - waits;
+        const size_t part = n < room ? n : room;
         memcpy(f->waiting + waits, at, part);
         f->place += (int64_t)part;
-        f->failed = part == room && !write_waiting(f, WAITING);
+        f->failed = part == room && !write_waiting(f, PAR_STATE_WRITE);
         at += part;
         n -= part;
     }
@@ -373,14 +368,14 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
 {
     *to = (struct par_state_file){.file = par_folder_create(c->folder, name)};
     to->failed = to->file < 0;
-    if (posix_memalign((void **)&to->waiting, 1 << 12, WAITING) != 0) {
+    if (posix_memalign((void **)&to->waiting, 1 << 12, PAR_STATE_WRITE) != 0) {
         close(to->file);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
     }
     if (!to->failed)
         (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
     enum tri_status status = walk(to, user, error);
-    bool done = !to->failed && write_waiting(to, (size_t)(to->place % WAITING)) &&
+    bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
                 ftruncate(to->file, (off_t)to->place) == 0 && fsync(to->file) == 0;
     const int fault = errno;
     if (to->file >= 0)
@@ -423,17 +418,17 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
 {
     const int64_t all = c->manifest.state_bytes;
     const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
-    char *piece = malloc(WAITING);
+    char *bytes = malloc(PAR_STATE_WRITE);
     uint64_t hash = 0;
     bool sound = true, stopped = false;
-    for (int64_t place = 0; piece && sound && !stopped && place < all; place += WAITING) {
-        const size_t n = all - place < WAITING ? (size_t)(all - place) : WAITING;
-        sound = tri_read_again(file, piece, n, place);
-        hash = sound ? par_hash(hash, piece, n) : hash;
+    for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
+        const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
+        sound = tri_read_again(file, bytes, n, place);
+        hash = sound ? par_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }
-    const bool memory = piece;
-    free(piece);
+    const bool memory = bytes;
+    free(bytes);
     if (!memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
     if (stopped)

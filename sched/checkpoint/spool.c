@@ -1,5 +1,7 @@
 /* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
 #include "sched/checkpoint/spool.h"
+#include "sched/tiles/tile_arrays.h"
+#include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 
 #include <errno.h>
@@ -46,37 +48,25 @@ uint64_t par_hash(uint64_t hash, const void *bytes, size_t n)
     return hash;
 }
 
-static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
-
 /* --- arrays of a tile, packed */
 
-enum { CORNERS = 3, ENDS = 5, ARRAYS = 7 };
+static bool is_of_numbers(int k) { return k == PAR_TILE_CORNERS || k == PAR_TILE_ENDS; }
 
-struct array {
-    const void *at;
-    size_t bytes; /* packed */
-};
-
-/* In the order in which they are packed. */
-static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct array array[ARRAYS])
+/* As they are packed: numbers of vertices take half the bytes. */
+static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct par_array array[PAR_TILE_ARRAYS])
 {
-    const size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
-    array[0] = (struct array){tile->points, 16 * v};
-    array[1] = (struct array){tile->point_markers, 4 * v};
-    array[2] = (struct array){tile->attributes, 8 * v * (size_t)n_attributes};
-    array[CORNERS] = (struct array){tile->corners, 12 * t};
-    array[4] = (struct array){tile->regions, 4 * t};
-    array[ENDS] = (struct array){tile->ends, 8 * s};
-    array[6] = (struct array){tile->segment_markers, 4 * s};
+    par_tile_arrays(tile, n_attributes, array);
+    array[PAR_TILE_CORNERS].bytes /= 2;
+    array[PAR_TILE_ENDS].bytes /= 2;
 }
 
 static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
 {
-    struct array array[ARRAYS];
+    struct par_array array[PAR_TILE_ARRAYS];
     size_t sum = 0;
     arrays_of(tile, n_attributes, array);
-    for (int k = 0; k < ARRAYS; k++)
-        sum += padded(array[k].bytes);
+    for (int k = 0; k < PAR_TILE_ARRAYS; k++)
+        sum += par_padded(array[k].bytes);
     return sum;
 }
 
@@ -102,15 +92,15 @@ static bool pack_numbers(char *to, const int64_t *number, size_t n, int64_t end)
 /* False: a tile reaches back too far. `to` is zero before. */
 static bool pack(char *to, const struct tri_tile *tile, int32_t n_attributes)
 {
-    struct array array[ARRAYS];
+    struct par_array array[PAR_TILE_ARRAYS];
     bool fits = true;
     arrays_of(tile, n_attributes, array);
-    for (int k = 0; k < ARRAYS; k++) {
-        if (k == CORNERS || k == ENDS)
+    for (int k = 0; k < PAR_TILE_ARRAYS; k++) {
+        if (is_of_numbers(k))
             fits = pack_numbers(to, array[k].at, array[k].bytes / 4, tile->first_vertex + tile->n_vertices) && fits;
         else if (array[k].bytes > 0)
             memcpy(to, array[k].at, array[k].bytes);
-        to += padded(array[k].bytes);
+        to += par_padded(array[k].bytes);
     }
     return fits;
 }
@@ -129,8 +119,7 @@ static enum tri_status fail_writing(const struct par_spool *spool, struct tri_er
  * A hint, which may be ignored. */
 static void send_off(struct par_spool *spool)
 {
-    enum { SHIP = 1 << 23 };
-    if (spool->length - spool->sent < SHIP)
+    if (spool->length - spool->sent < PAR_SPOOL_SHIP)
         return;
     (void)posix_fadvise(spool->file, (off_t)spool->sent, (off_t)(spool->length - spool->sent), POSIX_FADV_DONTNEED);
     spool->sent = spool->length;
@@ -178,23 +167,21 @@ static enum tri_status hand_out(const struct par_spool *spool, const struct head
                                 struct tri_error *error)
 {
     struct tri_tile tile = h->tile;
-    struct array array[ARRAYS];
-    const int64_t end = tile.first_vertex + tile.n_vertices;
+    struct par_array array[PAR_TILE_ARRAYS];
+    int64_t *number[PAR_TILE_ARRAYS] = {NULL};
+    bool memory = true;
     arrays_of(&tile, h->n_attributes, array);
-    for (int k = 0; k < ARRAYS; arrays += padded(array[k++].bytes))
+    for (int k = 0; k < PAR_TILE_ARRAYS; arrays += par_padded(array[k++].bytes)) {
         array[k].at = arrays;
-    int64_t *corners = unpacked(array[CORNERS].at, array[CORNERS].bytes / 4, end);
-    int64_t *ends = unpacked(array[ENDS].at, array[ENDS].bytes / 4, end);
-    tile.points = (const double(*)[2])array[0].at;
-    tile.point_markers = array[1].at;
-    tile.attributes = array[2].at;
-    tile.corners = (const int64_t(*)[3])corners;
-    tile.regions = array[4].at;
-    tile.ends = (const int64_t(*)[2])ends;
-    tile.segment_markers = array[6].at;
-    enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
-    free(corners);
-    free(ends);
+        if (!is_of_numbers(k))
+            continue;
+        array[k].at = number[k] = unpacked(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
+        memory = memory && number[k];
+    }
+    par_tile_point_at(&tile, array);
+    enum tri_status status = memory ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
+    free(number[PAR_TILE_CORNERS]);
+    free(number[PAR_TILE_ENDS]);
     return status;
 }
 

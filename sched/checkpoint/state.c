@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sched/schedule/phase.h"
+#include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 
@@ -279,7 +280,7 @@ static bool is_halt_due(void *user)
 {
     const struct par_checkpoint *c = user;
     const double passed = tri_seconds() - c->last;
-    return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= 9 * c->cost);
+    return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= PAR_STATE_REST * c->cost);
 }
 
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *state,

@@ -3,12 +3,13 @@
 #include <stdlib.h>
 
 #include "sched/ranks/ranks.h"
+#include "sched/tunables.h"
 
-static enum tri_status borrow_from(struct par_ranks *r, int h, struct tri_error *error)
+enum tri_status par_borrow_from(struct par_ranks *r, struct par_talk *talk, const struct par_bytes *told,
+                                struct tri_error *error)
 {
     struct par_message message;
-    struct par_talk *talk = &r->borrowed[h];
-    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[h], error);
+    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, told, error);
     status = status ? status : par_paste(r, talk, &message, true, error);
     if (!status && !par_merge_entries(r->state, &message, talk))
         status = par_ranks_no_memory(error);
@@ -21,7 +22,7 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
     enum tri_status status = TRI_OK;
     for (int h = 0; !status && h < r->carrier->n_ranks; h++)
         if (r->in[h].n > 0)
-            status = borrow_from(r, h, error);
+            status = par_borrow_from(r, &r->borrowed[h], &r->in[h], error);
     return status;
 }
 
@@ -53,8 +54,6 @@ static void list_set(struct par_ids *list, const struct par_triangle_set *set, i
     list->n = n;
 }
 
-static bool is_in(const struct par_triangle_set *set, tri_triangle_id t) { return set->word[t / 64] >> t % 64 & 1; }
-
 /* Triangles that were made anew, and subsegments that were split, are no longer what was told. */
 static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const struct par_triangle_set *changed,
                       struct par_message *message)
@@ -62,7 +61,7 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     const struct tri_mesh *mesh = r->state->mesh;
     bool memory = true;
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
-        if (is_in(changed, talk->triangle.item[i])) {
+        if (par_is_in(changed, talk->triangle.item[i])) {
             memory = par_ids_add(&message->gone, i);
             talk->triangle.item[i] = TRI_NONE;
         }
@@ -74,20 +73,16 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     return memory;
 }
 
-/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0].
- * *has_own: this rank owns some, too. */
-static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3], bool *has_own)
+/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
+static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
     const struct tri_mesh *mesh = r->state->mesh;
     int n = 0, guess = owner[0];
     assert(tri_is_live(&mesh->tri[t]));
-    *has_own = false;
     for (int k = 0; k < 3; k++) {
         struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
-        if (par_is_own(&r->territory, q)) {
-            *has_own = true;
+        if (par_is_own(&r->territory, q))
             continue;
-        }
         int p = par_owns(&r->territory, guess, q) ? guess : par_owner_at(&r->territory, q);
         bool is_told = false;
         for (int i = 0; i < n; i++)
@@ -98,22 +93,16 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3],
     return n;
 }
 
-/* Where a triangle is to be afterwards. */
-enum place { HERE, WITH_OTHERS, BOTH };
-
-/* place[i] receives that of triangle i of the list. Triangles lie in its order, their corners do not: these are fetched
- * ahead. */
-static bool add_new(struct par_ranks *r, const struct par_ids *changed, unsigned char *place)
+/* Triangles lie in the order of the list, their corners do not: these are fetched ahead. */
+static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
-    enum { AHEAD = 8 };
     const struct tri_mesh *mesh = r->state->mesh;
-    bool memory = true, has_own;
+    bool memory = true;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
-        for (int k = 0; i + AHEAD < changed->n && k < 3; k++)
-            __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + AHEAD]].v[k]]);
-        int n = owners_of(r, changed->item[i], owner, &has_own);
-        place[i] = n == 0 ? HERE : has_own ? BOTH : WITH_OTHERS;
+        for (int k = 0; i + PAR_CORNERS_AHEAD < changed->n && k < 3; k++)
+            __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + PAR_CORNERS_AHEAD]].v[k]]);
+        int n = owners_of(r, changed->item[i], owner);
         for (int k = 0; memory && k < n; k++)
             memory = par_talk_add_triangle(&r->borrowed[owner[k]], changed->item[i]);
     }
@@ -136,7 +125,7 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
 /* An own corner, or one of another rank's that knows the triangle: the others need not have its entry. */
 static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, const int *owner, int n)
 {
-    bool is = par_has_own(r, t);
+    bool is = par_own_corners(r, t) > 0;
     for (int k = 0; k < n; k++)
         is = is || par_talk_number(&r->borrowed[owner[k]], t) != TRI_NONE;
     return is;
@@ -148,50 +137,37 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *state = r->state;
-    bool memory = true, has_own, *keep = malloc((size_t)state->worklist.n + 1);
+    bool memory = true;
+    int32_t kept = 0;
     int owner[3] = {0};
-    assert(state->key.n == state->worklist.n);
-    for (int32_t i = 0; keep && i < state->worklist.n; i++) {
+    for (int32_t i = 0; i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
-        keep[i] = par_has_own(r, t);
-        if (!is_of_border(r, state->key.item[i]))
+        const uint64_t key = state->key.item[i];
+        if (par_own_corners(r, t) > 0)
+            par_keep_entry(state, i, &kept);
+        if (!is_of_border(r, key))
             continue;
-        int n = owners_of(r, t, owner, &has_own);
+        int n = owners_of(r, t, owner);
         assert(is_known_to_owner(r, t, owner, n));
         for (int k = 0; k < n; k++) {
             int32_t number = par_talk_number(&r->borrowed[owner[k]], t);
             if (number != TRI_NONE)
-                memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i], number);
+                memory = memory && par_message_add_entry(&message[owner[k]], key, number);
         }
     }
-    if (keep)
-        par_worklist_keep(state, keep);
-    memory = memory && keep;
-    free(keep);
+    state->worklist.n = state->key.n = kept;
     return memory;
 }
 
-static bool write_to(struct par_ranks *r, int h, const struct par_message *message)
+static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
-    if (message->gone.n + message->gone_subs.n + message->n_entries + message->n_triangles == 0)
-        return true;
-    return par_message_write(message, &r->borrowed[h], r->state->mesh->n_attributes, &r->out[h]);
-}
-
-static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
-                     unsigned char *place, struct par_message *message, int32_t *first)
-{
-    bool memory = true;
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++) {
+    struct par_message *message = par_messages_begin(r, r->borrowed);
+    bool memory = message;
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
-        first[h] = r->borrowed[h].triangle.n;
-    }
-    memory = memory && add_new(r, changed, place);
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = par_message_tell(&message[h], &r->borrowed[h], r->state->mesh, r->n_common, first[h]);
-    memory = memory && give_entries(r, message);
-    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = write_to(r, h, &message[h]);
+    memory = memory && add_new(r, changed) && par_messages_tell(r, r->borrowed, message) &&
+             give_entries(r, message) && par_messages_send(r, r->borrowed, message);
+    par_messages_free(r, message);
     return memory;
 }
 
@@ -235,7 +211,7 @@ static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word
 {
     struct tri_triangle *triangle = &r->state->mesh->tri[t];
     bool memory = true;
-    assert(tri_is_live(triangle) && !par_has_own(r, t));
+    assert(tri_is_live(triangle) && par_own_corners(r, t) == 0);
     for (int k = 0; memory && k < 3; k++) {
         if (triangle->v[k] >= r->n_common)
             mark(word, triangle->v[k], true);
@@ -259,11 +235,13 @@ static void cut_off(struct par_ranks *r)
     }
 }
 
-static bool put_in_place(struct par_ranks *r, tri_triangle_id t, enum place place, uint64_t *word)
+/* A triangle goes, or stays, as a straddler if others have it, too. */
+static bool put_in_place(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
-    if (place == WITH_OTHERS)
+    int n = par_own_corners(r, t);
+    if (n == 0)
         return drop_triangle(r, t, word);
-    return place == HERE || par_ids_add(&r->straddlers, t);
+    return n == 3 || par_ids_add(&r->straddlers, t);
 }
 
 /* What is borrowed, and has not changed. */
@@ -272,29 +250,19 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++) {
         tri_triangle_id t = triangles->item[i];
-        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && !par_has_own(r, t))
+        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && par_own_corners(r, t) == 0)
             memory = drop_triangle(r, t, word);
     }
     return memory;
 }
 
-static void forget_changed(struct par_ranks *r, const struct par_triangle_set *changed)
-{
-    int32_t kept = 0;
-    for (int32_t i = 0; i < r->straddlers.n; i++)
-        if (!is_in(changed, r->straddlers.item[i]))
-            r->straddlers.item[kept++] = r->straddlers.item[i];
-    r->straddlers.n = kept;
-}
-
-static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
-                     const unsigned char *place)
+static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
-    forget_changed(r, set);
+    par_forget_straddlers(r, set);
     for (int32_t i = 0; memory && i < changed->n; i++)
-        memory = put_in_place(r, changed->item[i], place[i], word);
+        memory = put_in_place(r, changed->item[i], word);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = drop_borrowed(r, &r->borrowed[h].triangle, word);
     if (memory)
@@ -306,39 +274,23 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
 
 enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
-    unsigned char *place = malloc((size_t)changed->n + 1);
     struct par_triangle_set set;
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first && place;
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles);
     if (memory)
         list_set(changed, &set, r->state->mesh->n_triangles);
-    memory = memory && give_all(r, changed, &set, place, message, first) && drop_all(r, changed, &set, place);
-    for (size_t h = 0; message && h < n; h++)
-        par_message_free(&message[h]);
-    free(message);
-    free(first);
-    free(place);
+    memory = memory && give_all(r, changed, &set) && drop_all(r, changed, &set);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
-static enum place place_of(const struct par_ranks *r, tri_triangle_id t)
+static void keep_own_entries(struct par_ranks *r)
 {
-    return !par_has_own(r, t) ? WITH_OTHERS : par_has_foreign(r, t) ? BOTH : HERE;
-}
-
-static bool keep_own_entries(struct par_ranks *r)
-{
-    bool *keep = malloc((size_t)r->state->worklist.n + 1);
-    for (int32_t i = 0; keep && i < r->state->worklist.n; i++)
-        keep[i] = par_has_own(r, r->state->worklist.item[i]);
-    if (!keep)
-        return false;
-    par_worklist_keep(r->state, keep);
-    free(keep);
-    return true;
+    struct par_run *state = r->state;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < state->worklist.n; i++)
+        if (par_own_corners(r, state->worklist.item[i]) > 0)
+            par_keep_entry(state, i, &kept);
+    state->worklist.n = state->key.n = kept;
 }
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
@@ -346,10 +298,11 @@ enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
     const struct tri_mesh *mesh = r->state->mesh;
     assert(r->straddlers.n == 0);
     uint64_t *word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *word);
-    bool memory = word && keep_own_entries(r);
+    bool memory = word;
+    keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
-            memory = put_in_place(r, t, place_of(r, t), word); /* all vertices stay: all ranks have them */
+            memory = put_in_place(r, t, word); /* all vertices stay: all ranks have them */
     if (memory)
         cut_off(r);
     free(word);

@@ -30,6 +30,14 @@ bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n)
     return true;
 }
 
+void par_bytes_free(struct par_bytes *bytes, int n)
+{
+    for (int p = 0; bytes && p < n; p++) {
+        free(bytes[p].at);
+        bytes[p] = (struct par_bytes){0};
+    }
+}
+
 /* --- one rank */
 
 static bool gather_own(void *self, const int64_t *mine, int32_t n, int64_t *all)
@@ -39,24 +47,9 @@ static bool gather_own(void *self, const int64_t *mine, int32_t n, int64_t *all)
     return true;
 }
 
-static bool deal_own(void *self, const int64_t *to, int64_t *from) { return gather_own(self, to, 1, from); }
-
-static bool transfer_nothing(void *self, const struct par_bytes *out, const struct par_bytes *in)
-{
-    (void)self, (void)out, (void)in;
-    return true;
-}
-
-static bool spread_to_none(void *self, void *bytes, size_t n)
-{
-    (void)self, (void)bytes, (void)n;
-    return true;
-}
-
 struct par_carrier par_carrier_alone(int64_t *room)
 {
-    return (struct par_carrier){.n_ranks = 1, .of_each = room, .gather = gather_own, .deal = deal_own,
-                                .transfer = transfer_nothing, .spread = spread_to_none};
+    return (struct par_carrier){.n_ranks = 1, .of_each = room, .gather = gather_own};
 }
 
 /* --- agreements */
@@ -68,7 +61,7 @@ static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_erro
     return tri_fail(error, TRI_INTERNAL, NULL, 0, "the ranks cannot reach each other");
 }
 
-static enum tri_status no_memory(struct tri_error *error)
+enum tri_status par_ranks_no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what ranks exchange");
 }
@@ -129,14 +122,6 @@ enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, s
     return agree_with(carrier, NULL, 0, status, error);
 }
 
-static void free_all(struct par_bytes *bytes, int n)
-{
-    for (int p = 0; p < n; p++) {
-        free(bytes[p].at);
-        bytes[p] = (struct par_bytes){0};
-    }
-}
-
 static void count(struct par_carrier *carrier, enum par_move move, const struct par_bytes *out)
 {
     for (int p = 0; p < carrier->n_ranks; p++)
@@ -176,7 +161,7 @@ static enum tri_status prepare(struct par_carrier *carrier, const struct par_byt
     carrier->seconds_waiting += tri_seconds() - began;
     for (size_t p = 0; !status && p < n; p++)
         if (p != (size_t)carrier->rank && !par_bytes_reserve(&in[p], (size_t)from[p]))
-            status = no_memory(error);
+            status = par_ranks_no_memory(error);
         else if (p != (size_t)carrier->rank)
             in[p].n = (size_t)from[p];
     return par_agree(carrier, status, error);
@@ -206,7 +191,7 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
     count(carrier, move, out);
     in[carrier->rank] = out[carrier->rank];
     out[carrier->rank] = (struct par_bytes){0};
-    free_all(out, carrier->n_ranks);
+    par_bytes_free(out, carrier->n_ranks);
     return status;
 }
 
@@ -215,7 +200,7 @@ enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void
 {
     status = par_agree(carrier, status, error);
     double began = tri_seconds();
-    if (!status && !carrier->spread(carrier->self, bytes, n))
+    if (!status && carrier->n_ranks > 1 && !carrier->spread(carrier->self, bytes, n))
         status = out_of_touch(carrier, error);
     carrier->seconds_moving += tri_seconds() - began;
     if (!status && carrier->rank == 0 && n > 0) {
@@ -243,7 +228,7 @@ enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32
 {
     size_t width = (size_t)n;
     int64_t *all = malloc((size_t)carrier->n_ranks * width * sizeof *all + 1);
-    status = par_gather(carrier, value, n, all, status ? status : all ? TRI_OK : no_memory(error), error);
+    status = par_gather(carrier, value, n, all, status ? status : all ? TRI_OK : par_ranks_no_memory(error), error);
     for (size_t i = 0; i < width; i++) {
         sum[i] = 0;
         for (size_t p = 0; !status && p < (size_t)carrier->n_ranks; p++)

@@ -44,7 +44,7 @@ struct par_carrier {
     int64_t *of_each;        /* [n_ranks * PAR_ROOM] for agreements: these must not fail for want of memory */
     /* Collective: all[n_ranks][n] receives everybody's n numbers. */
     bool (*gather)(void *self, const int64_t *mine, int32_t n, int64_t *all);
-    /* Collective: from[p] receives what rank p has in to[rank]. */
+    /* Collective: from[p] receives what rank p has in to[rank]. This and what follows: of several ranks alone. */
     bool (*deal)(void *self, const int64_t *to, int64_t *from);
     /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0, in
      * any order. Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
@@ -68,8 +68,11 @@ struct par_carrier {
 /* A rank that is alone, with nobody to wait for. room[PAR_ROOM] lives as long. */
 struct par_carrier par_carrier_alone(int64_t *room);
 
+enum tri_status par_ranks_no_memory(struct tri_error *error);
+
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more);
 bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n);
+void par_bytes_free(struct par_bytes *bytes, int n); /* what each of n holds; NULL: there is none */
 
 /* Collective: the error of the lowest rank that has one, with its text; TRI_OK where nobody has. After that no call
  * speaks with anybody: it returns the same status. */
@@ -86,7 +89,7 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
 enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void *bytes, size_t n,
                            enum tri_status status, struct tri_error *error);
 
-/* Collective: an agreement, and all[n_ranks][n] receives everybody's n numbers. */
+/* Collective: an agreement, and all[n_ranks][n] receives everybody's n numbers; for a few, it may be of_each. */
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error);
 

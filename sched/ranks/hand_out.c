@@ -3,13 +3,11 @@
  * by their places; and hands out its own tiles, as one process would. */
 #include "sched/ranks/ranks.h"
 #include "sched/tiles/park.h"
+#include "sched/tunables.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A sink that writes files makes its buffers when it begins, which is only now. */
-enum { SINK_BYTES = 1 << 25 };
 
 struct numbered_place {
     struct tri_point at;
@@ -115,11 +113,6 @@ static bool tell_all(struct handing *h)
     return memory;
 }
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a rank's vertices");
-}
-
 static int compare_places(const void *left, const void *right)
 {
     const struct tri_point *a = left, *b = right; /* a struct numbered_place begins with its place */
@@ -161,16 +154,15 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
 {
     struct par_ranks *r = h->ranks;
     if (!status && !tell_all(h))
-        status = no_memory(error);
+        status = par_ranks_no_memory(error);
     status = par_swap(r->carrier, PAR_MOVE_NUMBERS, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
         if (!status && are_numbers(h, &r->in[p]))
             take_numbers(h, &r->in[p]);
         else if (!status)
             status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank tells of vertices that do not exist");
-        free(r->in[p].at);
-        r->in[p] = (struct par_bytes){0};
     }
+    par_bytes_free(r->in, r->carrier->n_ranks);
     return status;
 }
 
@@ -211,13 +203,14 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     assert(h->first <= h->end && h->first_tile <= h->end_tile);
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
-    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) + SINK_BYTES;
+    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) +
+                         PAR_SINK_BYTES; /* a sink makes its buffers when it begins, which is only now */
     enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
     if (status)
         return status;
     par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     count[0] = count_vertices(h);
     count[1] = count_triangles(h);
     count[2] = count_subs(h);
@@ -235,14 +228,14 @@ static void clean_up(struct handing *h)
 }
 
 /* Where each rank's numbers begin: *first receives three lists of n_ranks + 1. Collective. */
-static enum tri_status share_numbers(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
-                                     int64_t **first, enum tri_status status, struct tri_error *error)
+static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
+                              int64_t **first, enum tri_status status, struct tri_error *error)
 {
     size_t n = (size_t)carrier->n_ranks;
     int64_t *all = malloc(3 * n * sizeof *all);
     *first = calloc(3 * (n + 1), sizeof **first);
     if (!status && !(all && *first))
-        status = no_memory(error);
+        status = par_ranks_no_memory(error);
     status = par_gather(carrier, count, 3, all, status, error);
     if (!status)
         all[0] += n_kept; /* vertices of rank 0 */
@@ -253,7 +246,7 @@ static enum tri_status share_numbers(struct par_carrier *carrier, int32_t n_kept
     return status;
 }
 
-static void tell_shares(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
+static void tell_first(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
 {
     tiles->kept_elsewhere = carrier->rank > 0;
     tiles->n_ranks = carrier->n_ranks;
@@ -268,11 +261,11 @@ enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par
     size_t n = (size_t)carrier->n_ranks + 1;
     int64_t *first = calloc(3 * n, sizeof *first);
     if (!first)
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     for (size_t k = 0; k < 3; k++)
         for (size_t p = 1; p < n; p++)
             first[k * n + p] = count[k];
-    tell_shares(tiles, carrier, first);
+    tell_first(tiles, carrier, first);
     enum tri_status status = TRI_OK;
     if (carrier->rank == 0)
         status = par_tiles_whole(tiles, error);
@@ -291,9 +284,9 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, count, error);
-    status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
+    status = sum_up(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
-        tell_shares(tiles, r->carrier, first);
+        tell_first(tiles, r->carrier, first);
     for (int k = 0; !status && k < 3; k++)
         base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_columns(&h, base, error);

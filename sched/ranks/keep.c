@@ -21,26 +21,17 @@ struct kept {
     int64_t left_over;
     int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];
+    int64_t n_ranks;
     struct writer writer[]; /* [n_ranks] */
 };
 
-/* On its way to there, or from there. */
-struct cargo {
-    struct kept *kept;
-    size_t bytes;
-};
-
-static struct cargo cargo_of(int64_t n_ranks)
-{
-    const size_t bytes = sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer);
-    return (struct cargo){calloc(1, bytes), bytes};
-}
+static size_t size_of(int64_t n_ranks) { return sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer); }
 
 static enum tri_status carry(struct par_state_file *file, void *user, struct tri_error *error)
 {
-    const struct cargo *cargo = user;
+    struct kept *kept = user;
     (void)error;
-    par_carry(file, cargo->kept, cargo->bytes);
+    par_carry(file, kept, size_of(kept->n_ranks));
     return TRI_OK;
 }
 
@@ -59,26 +50,21 @@ static bool find_straddlers(struct par_ranks *r)
 {
     bool memory = true;
     for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
-        memory = !par_has_foreign(r, t) || par_ids_add(&r->straddlers, t);
+        memory = par_own_corners(r, t) == 3 || par_ids_add(&r->straddlers, t);
     return memory;
 }
 
 static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct writer *writer,
                                    struct tri_error *error)
 {
-    char path[PAR_CHECKPOINT_PATH];
     enum tri_status status = TRI_OK;
     forget_all(r->state, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
     for (int p = 0; !status && p < m->n_ranks; p++) {
-        const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
-                                            writer[p].hash};
-        if (!par_pieces_are_wanted(r, &file))
-            continue;
-        const char *directory = r->state->options->checkpoint->directory;
-        const int piece = par_checkpoint_piece(path, directory, m->which, p, false);
-        status = par_pieces_read(r, piece, path, &file, error);
+        const struct par_piece_file file = {m->which, p, p > 0 ? (int32_t)writer[p - 1].end : 0,
+                                            (int32_t)writer[p].end, writer[p].hash};
+        status = par_pieces_read(r, &file, error);
     }
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
@@ -98,15 +84,17 @@ static void go_on_from(struct par_ranks *r, const struct kept *c)
 
 static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, struct tri_error *error)
 {
-    struct cargo cargo = cargo_of(m->n_ranks);
-    enum tri_status status = cargo.kept ? TRI_OK : par_ranks_no_memory(error);
-    if (!status && r->carrier->rank == 0)
-        status = par_checkpoint_read(r->state->options->checkpoint, carry, &cargo, error);
-    status = par_spread(r->carrier, PAR_MOVE_INPUT, cargo.kept, cargo.bytes, status, error);
-    status = status ? status : read_pieces(r, m, cargo.kept->writer, error);
+    struct kept *kept = calloc(1, size_of(m->n_ranks));
+    enum tri_status status = kept ? TRI_OK : par_ranks_no_memory(error);
+    if (!status && r->carrier->rank == 0) {
+        kept->n_ranks = m->n_ranks;
+        status = par_checkpoint_read(r->state->options->checkpoint, carry, kept, error);
+    }
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, kept, size_of(m->n_ranks), status, error);
+    status = status ? status : read_pieces(r, m, kept->writer, error);
     if (!status)
-        go_on_from(r, cargo.kept);
-    free(cargo.kept);
+        go_on_from(r, kept);
+    free(kept);
     return status;
 }
 
@@ -157,38 +145,31 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
                            struct tri_error *error)
 {
     const int n_ranks = r->carrier->n_ranks;
-    struct cargo cargo = cargo_of(n_ranks);
+    struct kept *kept = calloc(1, size_of(n_ranks));
     int64_t triangles = 0;
-    if (!cargo.kept)
+    if (!kept)
         return par_ranks_no_memory(error);
-    *cargo.kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
-                                .left_over = r->state->report->left_over - r->left_before,
-                                .rounds = r->state->report->rounds - r->rounds_before - 1};
-    memcpy(cargo.kept->done, done, sizeof cargo.kept->done);
+    *kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
+                          .left_over = r->state->report->left_over - r->left_before,
+                          .rounds = r->state->report->rounds - r->rounds_before - 1, .n_ranks = n_ranks};
+    memcpy(kept->done, done, sizeof kept->done);
     for (int p = 0; p < n_ranks; p++) {
-        cargo.kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
+        kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
         triangles += told[2 * p + 1];
     }
     enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, n_ranks, triangles,
-                                                  carry, &cargo, error);
-    free(cargo.kept);
+                                                  carry, kept, error);
+    free(kept);
     return status;
 }
 
 /* The manifest, which rank 0 has, says which files are free. */
 static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct tri_error *error)
 {
-    const struct par_checkpoint *c = r->state->options->checkpoint;
-    char path[PAR_CHECKPOINT_PATH];
     uint64_t hash = 0;
-    int64_t which = par_checkpoint_next(c);
+    int64_t which = par_checkpoint_next(r->state->options->checkpoint);
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
-    if (status)
-        return status;
-    const int piece = par_checkpoint_piece(path, c->directory, which, r->carrier->rank, true);
-    status = par_pieces_write(r, piece, path, r->run, &hash, error);
-    if (!status && !par_checkpoint_sync(c->directory))
-        status = tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot write");
+    status = status ? status : par_pieces_write(r, which, &hash, error);
     told[0] = (int64_t)hash;
     told[1] = count_triangles(r);
     return status;

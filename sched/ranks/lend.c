@@ -3,15 +3,13 @@
 #include <stdlib.h>
 
 #include "sched/ranks/ranks.h"
-
-/* Layers around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
-enum { LAYERS = 2 };
+#include "sched/tunables.h"
 
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
 {
-    int32_t block = par_block_here(r, q);
-    return r->shift.is_held[block] ? r->shift.worker[block] : -1;
+    const struct par_shift *s = &r->shift;
+    return s->worker[s->partition ? par_block_at(s->partition, s->phase, q) : 0];
 }
 
 static bool tell_of(struct par_talk *talk, tri_triangle_id t)
@@ -19,90 +17,83 @@ static bool tell_of(struct par_talk *talk, tri_triangle_id t)
     return par_talk_number(talk, t) != TRI_NONE || par_talk_add_triangle(talk, t);
 }
 
-/* Own vertices around which a rank has to know all, each with a triangle there. */
-struct layer {
-    struct par_ids vertex, triangle;
-};
-
-static void free_layer(struct layer *layer)
-{
-    free(layer->vertex.item);
-    free(layer->triangle.item);
-    *layer = (struct layer){0};
-}
-
-/* A telling of so many layers to rank w. */
+/* A telling of so many layers to rank w. A layer is own vertices around which it has to know all, as corners: each by a
+ * triangle there and which of its corners it is, as a half-edge is by its edge. */
 struct telling {
     const struct par_ranks *ranks;
     int w;
     int32_t layers;
 };
 
+static tri_vertex_id vertex_at(const struct tri_mesh *mesh, tri_halfedge corner)
+{
+    return mesh->tri[tri_of(corner)].v[tri_edge(corner)];
+}
+
 /* A vertex joins a layer, unless all around it has been told, or is not this rank's to tell. */
-static bool join(const struct telling *telling, struct layer *layer, tri_vertex_id v, tri_triangle_id t)
+static bool join(const struct telling *telling, struct par_ids *layer, tri_halfedge corner)
 {
     const struct par_ranks *r = telling->ranks;
     struct par_map *surrounded = &r->lent[telling->w].surrounded;
+    tri_vertex_id v = vertex_at(r->state->mesh, corner);
     struct tri_point q = r->state->mesh->xy[v];
     if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != telling->w)
         return true;
-    return par_map_put(surrounded, v, telling->layers) && par_ids_add(&layer->vertex, v) &&
-           par_ids_add(&layer->triangle, t);
+    return par_map_put(surrounded, v, telling->layers) && par_ids_add(layer, corner);
 }
 
-static bool join_corners(const struct telling *telling, struct layer *layer, tri_triangle_id t)
+static bool join_corners(const struct telling *telling, struct par_ids *layer, tri_triangle_id t)
 {
-    const struct tri_mesh *mesh = telling->ranks->state->mesh;
-    const tri_vertex_id *v = mesh->tri[t].v;
-    assert(tri_is_live(&mesh->tri[t]));
-    return join(telling, layer, v[0], t) && join(telling, layer, v[1], t) && join(telling, layer, v[2], t);
+    assert(tri_is_live(&telling->ranks->state->mesh->tri[t]));
+    return join(telling, layer, tri_code(t, 0)) && join(telling, layer, tri_code(t, 1)) &&
+           join(telling, layer, tri_code(t, 2));
 }
 
-static int corner_at(const struct tri_triangle *t, tri_vertex_id v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
-
-/* The next triangle around a vertex, to one side or the other; TRI_NONE: there is none. */
-static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
+/* The same vertex as a corner of the next triangle around it, to one side or the other; TRI_NONE: there is none. */
+static tri_halfedge turn(const struct tri_mesh *mesh, tri_halfedge corner, bool left)
 {
-    int k = corner_at(&mesh->tri[t], v), e = left ? tri_next[k] : tri_prev[k];
-    assert(mesh->tri[t].v[k] == v && mesh->tri[t].n[e] != TRI_BEYOND);
-    tri_halfedge across = tri_across(mesh, tri_code(t, e));
-    return across < 0 ? TRI_NONE : tri_of(across);
+    const int *ahead = left ? tri_next : tri_prev;
+    tri_halfedge edge = tri_code(tri_of(corner), ahead[tri_edge(corner)]);
+    assert(*tri_link_at(mesh, edge) != TRI_BEYOND);
+    tri_halfedge across = tri_across(mesh, edge);
+    return across < 0 ? TRI_NONE : tri_code(tri_of(across), ahead[tri_edge(across)]);
 }
 
-/* Tells of all triangles around an own vertex, of which `t` is one; their corners join the next layer. */
-static bool tell_around(const struct telling *telling, tri_vertex_id v, tri_triangle_id t, struct layer *next)
+/* Tells of all triangles around an own vertex; their corners join the next layer. */
+static bool tell_around(const struct telling *telling, tri_halfedge corner, struct par_ids *next)
 {
     const struct par_ranks *r = telling->ranks;
     const struct tri_mesh *mesh = r->state->mesh;
     struct par_talk *talk = &r->lent[telling->w];
-    tri_triangle_id at = t;
+    tri_halfedge at = corner;
     bool memory = true;
-    assert(t != TRI_NONE && par_is_own(&r->territory, mesh->xy[v])); /* so all triangles around it are here */
+    assert(par_is_own(&r->territory, mesh->xy[vertex_at(mesh, corner)])); /* so all triangles around it are here */
     do {
-        memory = memory && tell_of(talk, at) && join_corners(telling, next, at);
-        at = turn(mesh, at, v, true);
-    } while (memory && at != TRI_NONE && at != t);
-    if (at == t)
+        memory = memory && tell_of(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
+        at = turn(mesh, at, true);
+    } while (memory && at != TRI_NONE && at != corner);
+    if (at == corner)
         return memory;
-    for (at = turn(mesh, t, v, false); memory && at != TRI_NONE; at = turn(mesh, at, v, false))
-        memory = tell_of(talk, at) && join_corners(telling, next, at);
+    for (at = turn(mesh, corner, false); memory && at != TRI_NONE; at = turn(mesh, at, false))
+        memory = tell_of(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
     return memory;
 }
 
 /* Its layers, the first of which is given. Frees that. */
-static bool tell_layers(const struct telling *telling, struct layer *layer)
+static bool tell_layers(const struct telling *telling, struct par_ids *layer)
 {
+    const struct par_ranks *r = telling->ranks;
     bool memory = true;
-    for (int32_t n = 0; memory && n < telling->layers && layer->vertex.n > 0; n++) {
-        struct layer next = {0};
-        for (int32_t i = 0; memory && i < layer->vertex.n; i++)
-            memory = tell_around(telling, layer->vertex.item[i], layer->triangle.item[i], &next);
-        free_layer(layer);
+    for (int32_t n = 0; memory && n < telling->layers && layer->n > 0; n++) {
+        struct par_ids next = {0};
+        for (int32_t i = 0; memory && i < layer->n; i++)
+            memory = tell_around(telling, layer->item[i], &next);
+        free(layer->item);
         *layer = next;
     }
-    for (int32_t i = 0; memory && i < layer->vertex.n; i++) /* around these not all has been told */
-        memory = par_map_put(&telling->ranks->lent[telling->w].surrounded, layer->vertex.item[i], TRI_NONE);
-    free_layer(layer);
+    for (int32_t i = 0; memory && i < layer->n; i++) /* around these not all has been told */
+        memory = par_map_put(&r->lent[telling->w].surrounded, vertex_at(r->state->mesh, layer->item[i]), TRI_NONE);
+    free(layer->item);
     return memory;
 }
 
@@ -123,19 +114,19 @@ static bool tell_straddlers(const struct par_ranks *r)
 static int taker_of(const struct par_ranks *r, int32_t i)
 {
     int32_t block = r->shift.block_of[i];
-    return block != TRI_NONE && r->shift.is_held[block] ? r->shift.worker[block] : -1;
+    return block != TRI_NONE ? r->shift.worker[block] : -1;
 }
 
 static bool tell_surroundings(const struct par_ranks *r)
 {
-    struct layer *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
+    struct par_ids *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
     bool memory = layer;
     for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
-        const struct telling telling = {r, taker_of(r, i), LAYERS};
+        const struct telling telling = {r, taker_of(r, i), PAR_GHOST_LAYERS};
         memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->state->worklist.item[i]);
     }
     for (int w = 0; layer && w < r->carrier->n_ranks; w++) {
-        const struct telling telling = {r, w, memory ? LAYERS : 0};
+        const struct telling telling = {r, w, memory ? PAR_GHOST_LAYERS : 0};
         memory = tell_layers(&telling, &layer[w]) && memory;
     }
     free(layer);
@@ -146,56 +137,28 @@ static bool tell_surroundings(const struct par_ranks *r)
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *state = r->state;
-    bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
-    assert(state->key.n == state->worklist.n);
-    for (int32_t i = 0; keep && i < state->worklist.n; i++) {
+    bool memory = true;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < state->worklist.n; i++) {
         int w = taker_of(r, i);
-        keep[i] = w < 0;
-        assert(w < 0 || par_talk_number(&r->lent[w], state->worklist.item[i]) != TRI_NONE);
-        if (w >= 0)
-            memory = memory && par_message_add_entry(&message[w], state->key.item[i],
-                                                     par_talk_number(&r->lent[w], state->worklist.item[i]));
+        if (w < 0) {
+            par_keep_entry(state, i, &kept);
+            continue;
+        }
+        int32_t number = par_talk_number(&r->lent[w], state->worklist.item[i]);
+        assert(number != TRI_NONE);
+        memory = memory && par_message_add_entry(&message[w], state->key.item[i], number);
     }
-    if (keep)
-        par_worklist_keep(state, keep);
-    memory = memory && keep;
-    free(keep);
+    state->worklist.n = state->key.n = kept;
     return memory;
-}
-
-static bool tell_all(struct par_ranks *r, struct par_message *message, const int32_t *first)
-{
-    bool memory = true;
-    for (int w = 0; memory && w < r->carrier->n_ranks; w++)
-        memory = par_message_tell(&message[w], &r->lent[w], r->state->mesh, r->n_common, first[w]);
-    return memory;
-}
-
-static bool write_messages(struct par_ranks *r, struct par_message *message, const int32_t *first)
-{
-    bool memory = true;
-    for (int w = 0; memory && w < r->carrier->n_ranks; w++)
-        if (r->lent[w].triangle.n > first[w])
-            memory = par_message_write(&message[w], &r->lent[w], r->state->mesh->n_attributes, &r->out[w]);
-    return memory;
-}
-
-static void free_messages(struct par_message *message, int n)
-{
-    for (int p = 0; message && p < n; p++)
-        par_message_free(&message[p]);
-    free(message);
 }
 
 enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
-    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) &&
-                  tell_all(r, message, first) && lend_entries(r, message) && write_messages(r, message, first);
-    free_messages(message, r->carrier->n_ranks);
-    free(first);
+    struct par_message *message = par_messages_begin(r, r->lent);
+    bool memory = message && tell_straddlers(r) && tell_surroundings(r) && par_messages_tell(r, r->lent, message) &&
+                  lend_entries(r, message) && par_messages_send(r, r->lent, message);
+    par_messages_free(r, message);
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
@@ -210,19 +173,18 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
     return bad;
 }
 
-/* What is asked for: a vertex, a triangle there that has been told, and the most layers of a telling that told all
- * around one of its neighbours. */
+/* What is asked for: a vertex, as a corner of a triangle that has been told, and the most layers of a telling that told
+ * all around one of its neighbours. */
 struct wish {
-    tri_vertex_id vertex;
-    tri_triangle_id triangle;
+    tri_halfedge corner;
     int32_t layers;
 };
 
-static void look_at(struct wish *wish, const struct par_talk *talk, const struct tri_mesh *mesh, tri_triangle_id t)
+static void look_at(struct wish *wish, const struct par_talk *talk, const struct tri_mesh *mesh, tri_halfedge corner)
 {
-    wish->triangle = t;
+    wish->corner = corner;
     for (int k = 0; k < 3; k++) {
-        int32_t layers = par_map_get(&talk->surrounded, mesh->tri[t].v[k]);
+        int32_t layers = par_map_get(&talk->surrounded, mesh->tri[tri_of(corner)].v[k]);
         wish->layers = layers > wish->layers ? layers : wish->layers;
     }
 }
@@ -232,7 +194,6 @@ static int32_t read_wishes(const struct par_ranks *r, int w, struct wish *wish)
 {
     const int32_t *number = (const int32_t *)(const void *)r->in[w].at;
     const struct par_talk *talk = &r->lent[w];
-    const struct tri_mesh *mesh = r->state->mesh;
     struct par_map at = {0};
     int32_t n = 0;
     bool memory = true;
@@ -241,13 +202,14 @@ static int32_t read_wishes(const struct par_ranks *r, int w, struct wish *wish)
         if (par_map_get(&at, v) != TRI_NONE)
             continue;
         memory = par_map_put(&at, v, n);
-        wish[n++] = (struct wish){v, TRI_NONE, 0};
+        wish[n++] = (struct wish){TRI_NONE, 0};
     }
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
         for (int k = 0; k < 3; k++) {
-            int32_t which = par_map_get(&at, mesh->tri[talk->triangle.item[i]].v[k]);
+            tri_halfedge corner = tri_code(talk->triangle.item[i], k);
+            int32_t which = par_map_get(&at, vertex_at(r->state->mesh, corner));
             if (which != TRI_NONE)
-                look_at(&wish[which], talk, mesh, talk->triangle.item[i]);
+                look_at(&wish[which], talk, r->state->mesh, corner);
         }
     par_map_free(&at);
     return memory ? n : TRI_NONE;
@@ -261,10 +223,10 @@ static bool fulfil(const struct par_ranks *r, int w)
     const int32_t n = wish ? read_wishes(r, w, wish) : TRI_NONE;
     bool memory = n != TRI_NONE;
     for (int32_t i = 0; memory && i < n; i++) {
-        assert(wish[i].triangle != TRI_NONE); /* vertices are told as corners */
-        const struct telling telling = {r, w, wish[i].layers > 0 ? 2 * wish[i].layers : LAYERS};
-        struct layer layer = {0};
-        memory = join(&telling, &layer, wish[i].vertex, wish[i].triangle);
+        assert(wish[i].corner != TRI_NONE); /* vertices are told as corners */
+        const struct telling telling = {r, w, wish[i].layers > 0 ? 2 * wish[i].layers : PAR_GHOST_LAYERS};
+        struct par_ids layer = {0};
+        memory = join(&telling, &layer, wish[i].corner);
         memory = tell_layers(&telling, &layer) && memory;
     }
     free(wish);
@@ -273,18 +235,14 @@ static bool fulfil(const struct par_ranks *r, int w)
 
 enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    struct par_message *message = calloc(n, sizeof *message);
-    int32_t *first = calloc(n, sizeof *first);
-    bool memory = message && first, bad = false;
+    struct par_message *message = par_messages_begin(r, r->lent);
+    bool memory = message, bad = false;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++) {
-        first[w] = r->lent[w].triangle.n;
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
         memory = bad || r->in[w].n == 0 || fulfil(r, w);
     }
-    memory = memory && tell_all(r, message, first) && write_messages(r, message, first);
-    free_messages(message, r->carrier->n_ranks);
-    free(first);
+    memory = memory && par_messages_tell(r, r->lent, message) && par_messages_send(r, r->lent, message);
+    par_messages_free(r, message);
     if (bad)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank asks for what is not here");
     return memory ? TRI_OK : par_ranks_no_memory(error);
@@ -320,15 +278,6 @@ static bool remove_lone_subs(struct par_ranks *r, const struct par_talk *talk)
     return memory;
 }
 
-static void keep_live_straddlers(struct par_ranks *r)
-{
-    int32_t kept = 0;
-    for (int32_t i = 0; i < r->straddlers.n; i++)
-        if (tri_is_live(&r->state->mesh->tri[r->straddlers.item[i]]))
-            r->straddlers.item[kept++] = r->straddlers.item[i];
-    r->straddlers.n = kept;
-}
-
 static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *error)
 {
     struct par_talk *talk = &r->lent[w];
@@ -336,11 +285,11 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
     int32_t first = talk->triangle.n;
     enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[w], error);
     bool memory = status || remove_gone(r, talk, &message);
-    keep_live_straddlers(r);
+    par_forget_straddlers(r, NULL);
     if (!status && memory)
         status = par_paste(r, talk, &message, false, error);
     for (int32_t i = first; !status && memory && i < talk->triangle.n; i++)
-        memory = !par_has_foreign(r, talk->triangle.item[i]) ||
+        memory = par_own_corners(r, talk->triangle.item[i]) == 3 ||
                  par_ids_add(&r->straddlers, talk->triangle.item[i]);
     memory = memory && (status || (remove_lone_subs(r, talk) && par_merge_entries(r->state, &message, talk)));
     par_message_free(&message);

@@ -3,11 +3,12 @@
 #include "ptriangle/mpi.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
+#include "sched/checkpoint/spool.h"
 #include "sched/ranks/mpi_carrier.h"
 #include "sched/ranks/rank_stream.h"
+#include "sched/tunables.h"
 
 /* Counts of MPI are ints. */
 enum { MOST_BYTES = 1 << 30 };
@@ -27,12 +28,12 @@ struct messenger {
 /* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
 static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
-    struct timespec pause = {0, 1000};
+    struct timespec nap = {0, PAR_FIRST_NAP};
     int done = 0;
     while (MPI_Testall(n, request, &done, m->state) == MPI_SUCCESS && !done) {
         (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
-        nanosleep(&pause, NULL);
-        pause.tv_nsec = pause.tv_nsec < 500000 ? 2 * pause.tv_nsec : pause.tv_nsec;
+        nanosleep(&nap, NULL);
+        nap.tv_nsec = nap.tv_nsec < PAR_LONGEST_NAP ? 2 * nap.tv_nsec : nap.tv_nsec;
     }
     return done;
 }
@@ -53,13 +54,13 @@ static bool deal(void *self, const int64_t *to, int64_t *from)
            wait_for(m, &request, 1);
 }
 
-static int piece_of(size_t n, size_t at)
+static int batch_of(size_t n, size_t at)
 {
     size_t left = at < n ? n - at : 0;
     return (int)(left < MOST_BYTES ? left : MOST_BYTES);
 }
 
-/* The pieces that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
+/* The batches that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
  * Ranks begin with different ones. */
 static bool exchange(const struct messenger *m, const struct par_bytes *out, const struct par_bytes *in, size_t at)
 {
@@ -68,13 +69,13 @@ static bool exchange(const struct messenger *m, const struct par_bytes *out, con
     for (int k = 1; good && k < n; k++) {
         int p = (rank - k + n) % n;
         if (at < in[p].n)
-            good = MPI_Irecv(in[p].at + at, piece_of(in[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+            good = MPI_Irecv(in[p].at + at, batch_of(in[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
                              &m->request[posted++]) == MPI_SUCCESS;
     }
     for (int k = 1; good && k < n; k++) {
         int p = (rank + k) % n;
         if (at < out[p].n)
-            good = MPI_Isend(out[p].at + at, piece_of(out[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+            good = MPI_Isend(out[p].at + at, batch_of(out[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
                              &m->request[posted++]) == MPI_SUCCESS;
     }
     return good && wait_for(m, m->request, posted);
@@ -100,7 +101,7 @@ static bool spread(void *self, void *bytes, size_t n)
     bool good = true;
     for (size_t at = 0; good && at < n; at += MOST_BYTES) {
         MPI_Request request;
-        good = MPI_Ibcast((char *)bytes + at, piece_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
+        good = MPI_Ibcast((char *)bytes + at, batch_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
                wait_for(m, &request, 1);
     }
     return good;
@@ -176,12 +177,7 @@ static int64_t layout(void)
         int32_t sizes[4];
     } probe = {1.0 / 3, INT64_C(0x0102030405060708),
                {sizeof(size_t), sizeof(bool), sizeof(struct tri_tile), sizeof(struct tri_error)}};
-    unsigned char byte[sizeof probe];
-    uint64_t hash = 0;
-    memcpy(byte, &probe, sizeof probe);
-    for (size_t i = 0; i < sizeof byte; i++)
-        hash = 31 * hash + byte[i];
-    return (int64_t)(hash >> 1);
+    return (int64_t)(par_hash(0, &probe, sizeof probe) >> 1);
 }
 
 /* Collective: has everybody got memory, and the same kind of machine? Who has none must not let the others wait. */

@@ -3,74 +3,69 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/checkpoint/spool.h"
 #include "sched/ranks/ranks.h"
 #include "triangle/base/grow.h"
 
-enum tri_status par_ranks_no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
-}
-
-bool par_has_own(const struct par_ranks *r, tri_triangle_id t)
+int par_own_corners(const struct par_ranks *r, tri_triangle_id t)
 {
     const tri_vertex_id *v = r->state->mesh->tri[t].v;
     const struct tri_point *xy = r->state->mesh->xy;
-    return par_is_own(&r->territory, xy[v[0]]) || par_is_own(&r->territory, xy[v[1]]) ||
+    return par_is_own(&r->territory, xy[v[0]]) + par_is_own(&r->territory, xy[v[1]]) +
            par_is_own(&r->territory, xy[v[2]]);
 }
 
-bool par_has_foreign(const struct par_ranks *r, tri_triangle_id t)
+/* --- messages */
+
+struct par_message *par_messages_begin(const struct par_ranks *r, const struct par_talk *talk)
 {
-    const tri_vertex_id *v = r->state->mesh->tri[t].v;
-    const struct tri_point *xy = r->state->mesh->xy;
-    return !par_is_own(&r->territory, xy[v[0]]) || !par_is_own(&r->territory, xy[v[1]]) ||
-           !par_is_own(&r->territory, xy[v[2]]);
+    struct par_message *message = calloc((size_t)r->carrier->n_ranks, sizeof *message);
+    for (int p = 0; message && p < r->carrier->n_ranks; p++)
+        message[p].first = talk[p].triangle.n;
+    return message;
 }
 
-int32_t par_block_here(const struct par_ranks *r, struct tri_point q)
+bool par_messages_tell(const struct par_ranks *r, struct par_talk *talk, struct par_message *message)
 {
-    return r->shift.partition ? par_block_at(r->shift.partition, r->shift.phase, q) : 0;
+    bool memory = true;
+    for (int p = 0; memory && p < r->carrier->n_ranks; p++)
+        memory = par_message_tell(&message[p], &talk[p], r->state->mesh, r->n_common);
+    return memory;
+}
+
+bool par_messages_send(struct par_ranks *r, const struct par_talk *talk, struct par_message *message)
+{
+    bool memory = true;
+    for (int p = 0; memory && p < r->carrier->n_ranks; p++) {
+        struct par_message *m = &message[p];
+        if (m->gone.n + m->gone_subs.n + m->n_entries + m->n_triangles > 0)
+            memory = par_message_write(m, &talk[p], r->state->mesh, r->n_common, &r->out[p]);
+    }
+    return memory;
+}
+
+void par_messages_free(const struct par_ranks *r, struct par_message *message)
+{
+    for (int p = 0; message && p < r->carrier->n_ranks; p++)
+        par_message_free(&message[p]);
+    free(message);
 }
 
 /* --- the worklist */
 
-void par_worklist_keep(struct par_run *state, const bool *keep)
-{
-    int32_t kept = 0;
-    assert(state->key.n == state->worklist.n);
-    for (int32_t i = 0; i < state->worklist.n; i++)
-        if (keep[i]) {
-            state->key.item[kept] = state->key.item[i];
-            state->worklist.item[kept++] = state->worklist.item[i];
-        }
-    state->worklist.n = state->key.n = kept;
-}
-
-/* From behind, in place. Who is on both sides is the same, told by several ranks. */
 bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
 {
-    int32_t n = state->worklist.n, all = n + m->n_entries, kept = 0;
-    assert(state->key.n == n);
-    if (!tri_grow(&state->worklist.item, &state->worklist.capacity, all, sizeof *state->worklist.item) ||
-        !tri_grow(&state->key.item, &state->key.capacity, all, sizeof *state->key.item))
-        return false;
-    int32_t *item = state->worklist.item;
-    uint64_t *key = state->key.item;
-    for (int32_t at = all, i = n, k = m->n_entries; at > 0;) {
-        bool own = k == 0 || (i > 0 && key[i - 1] > m->entry[k - 1].key);
-        at--;
-        key[at] = own ? key[i - 1] : m->entry[k - 1].key;
-        item[at] = own ? item[i - 1] : talk->triangle.item[m->entry[k - 1].triangle];
-        i -= own;
-        k -= !own;
+    int32_t *item = malloc(((size_t)m->n_entries + 1) * sizeof *item);
+    uint64_t *key = malloc(((size_t)m->n_entries + 1) * sizeof *key);
+    bool memory = item && key;
+    for (int32_t i = 0; memory && i < m->n_entries; i++) {
+        item[i] = talk->triangle.item[m->entry[i].triangle];
+        key[i] = m->entry[i].key;
     }
-    for (int32_t i = 0; i < all; i++)
-        if (i == 0 || key[i] != key[kept - 1]) {
-            key[kept] = key[i];
-            item[kept++] = item[i];
-        }
-    state->worklist.n = state->key.n = kept;
-    return true;
+    memory = memory && par_merge_worklist(state, item, key, m->n_entries);
+    free(item);
+    free(key);
+    return memory;
 }
 
 /* --- ids */
@@ -129,48 +124,26 @@ bool par_remove_sub(struct par_run *state, tri_sub_id s)
 
 /* --- what is known */
 
-static uint32_t mixed(uint64_t word)
+/* What a vertex or a triangle stands for. */
+static const void *key_of(const struct par_index *index, const struct tri_mesh *mesh, int32_t id)
 {
-    word = (word ^ word >> 31) * 0x9e3779b97f4a7c15ull;
-    return (uint32_t)(word >> 32);
+    return index->is_of_places ? (const void *)&mesh->xy[id] : mesh->tri[id].v;
 }
 
-static uint32_t hash_of_place(struct tri_point q)
+/* Where the id of what stands for this is, or may be put. */
+static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
 {
-    uint64_t bits[2];
-    memcpy(bits, &q, sizeof bits);
-    return mixed(bits[0] * 0x2545f4914f6cdd1dull + bits[1]);
-}
-
-static uint32_t hash_of_corners(const tri_vertex_id v[3])
-{
-    return mixed(((uint64_t)(uint32_t)v[0] << 32 | (uint32_t)v[1]) * 0x2545f4914f6cdd1dull + (uint32_t)v[2]);
-}
-
-/* The place where the one that is sought is, or may be put. */
-static int32_t *at_place(const struct par_index *index, const struct tri_mesh *mesh, struct tri_point q)
-{
-    uint32_t mask = (uint32_t)index->capacity - 1, at = hash_of_place(q) & mask;
-    for (; index->id[at] != TRI_NONE; at = (at + 1) & mask) {
-        const struct tri_point *xy = &mesh->xy[index->id[at]];
-        if (xy->x == q.x && xy->y == q.y)
-            break;
-    }
-    return &index->id[at];
-}
-
-static int32_t *at_corners(const struct par_index *index, const struct tri_mesh *mesh, const tri_vertex_id v[3])
-{
-    uint32_t mask = (uint32_t)index->capacity - 1, at = hash_of_corners(v) & mask;
-    while (index->id[at] != TRI_NONE && memcmp(mesh->tri[index->id[at]].v, v, 3 * sizeof *v) != 0)
+    const size_t width = index->is_of_places ? sizeof(struct tri_point) : 3 * sizeof(tri_vertex_id);
+    uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)par_hash(0, key, width) & mask;
+    while (index->id[at] != TRI_NONE && memcmp(key_of(index, mesh, index->id[at]), key, width) != 0)
         at = (at + 1) & mask;
     return &index->id[at];
 }
 
 /* Room for so many more. */
-static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, int32_t more, bool is_of_places)
+static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, int32_t more)
 {
-    struct par_index larger = {.n = index->n, .capacity = 1024};
+    struct par_index larger = {.is_of_places = index->is_of_places, .n = index->n, .capacity = 1024};
     if (index->n > (1 << 28) - more)
         return false;
     if (2 * (index->n + more) < index->capacity)
@@ -182,18 +155,17 @@ static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, 
         return false;
     for (int32_t i = 0; i < larger.capacity; i++)
         larger.id[i] = TRI_NONE;
-    for (int32_t i = 0; i < index->capacity; i++) {
-        int32_t id = index->id[i];
-        if (id != TRI_NONE)
-            *(is_of_places ? at_place(&larger, mesh, mesh->xy[id]) : at_corners(&larger, mesh, mesh->tri[id].v)) = id;
-    }
+    for (int32_t i = 0; i < index->capacity; i++)
+        if (index->id[i] != TRI_NONE)
+            *find(&larger, mesh, key_of(&larger, mesh, index->id[i])) = index->id[i];
     free(index->id);
     *index = larger;
     return true;
 }
 
-static void note(struct par_index *index, int32_t *at, int32_t id)
+static void note(struct par_index *index, const struct tri_mesh *mesh, int32_t id)
 {
+    int32_t *at = find(index, mesh, key_of(index, mesh, id));
     index->n += *at == TRI_NONE;
     *at = id;
 }
@@ -203,18 +175,29 @@ bool par_index_straddlers(struct par_ranks *r)
     const struct tri_mesh *mesh = r->state->mesh;
     free(r->places.id);
     free(r->triangles.id);
-    r->places = r->triangles = (struct par_index){0};
-    if (!reserve_index(&r->places, mesh, 3 * r->straddlers.n, true) ||
-        !reserve_index(&r->triangles, mesh, r->straddlers.n, false))
+    r->places = (struct par_index){.is_of_places = true};
+    r->triangles = (struct par_index){0};
+    if (!reserve_index(&r->places, mesh, 3 * r->straddlers.n) ||
+        !reserve_index(&r->triangles, mesh, r->straddlers.n))
         return false;
     for (int32_t i = 0; i < r->straddlers.n; i++) {
         const tri_vertex_id *v = mesh->tri[r->straddlers.item[i]].v;
-        note(&r->triangles, at_corners(&r->triangles, mesh, v), r->straddlers.item[i]);
+        note(&r->triangles, mesh, r->straddlers.item[i]);
         for (int k = 0; k < 3; k++)
             if (v[k] >= r->n_common)
-                note(&r->places, at_place(&r->places, mesh, mesh->xy[v[k]]), v[k]);
+                note(&r->places, mesh, v[k]);
     }
     return true;
+}
+
+void par_forget_straddlers(struct par_ranks *r, const struct par_triangle_set *changed)
+{
+    const tri_triangle_id *t = r->straddlers.item;
+    int32_t kept = 0;
+    for (int32_t i = 0; i < r->straddlers.n; i++)
+        if (tri_is_live(&r->state->mesh->tri[t[i]]) && !(changed && par_is_in(changed, t[i])))
+            r->straddlers.item[kept++] = t[i];
+    r->straddlers.n = kept;
 }
 
 /* --- paste */
@@ -255,10 +238,10 @@ static bool paste_vertices(struct pasting *p)
         /* A new vertex that comes back need not be noted: it was made within one block, whose triangles no other block
          * changes (triangle/refine/refine.h), so one rank alone tells of it. */
         if (v == TRI_NONE) {
-            int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
-            v = *at != TRI_NONE ? *at : append_vertex(p, i);
+            v = *find(&p->ranks->places, p->mesh, &told->xy);
+            v = v != TRI_NONE ? v : append_vertex(p, i);
             if (p->is_borrowed)
-                note(&p->ranks->places, at, v);
+                note(&p->ranks->places, p->mesh, v);
         }
         memory = par_talk_add_vertex(p->talk, v);
     }
@@ -277,13 +260,13 @@ static bool may_be_here(const struct pasting *p, const struct par_told_triangle 
 static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle *told)
 {
     const int32_t *id = p->talk->vertex.item, v[3] = {id[told->v[0]], id[told->v[1]], id[told->v[2]]};
-    tri_triangle_id t = may_be_here(p, told) ? *at_corners(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
+    tri_triangle_id t = may_be_here(p, told) ? *find(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
     if (t != TRI_NONE)
         return t;
     t = take_id(p->ranks->state, PAR_TRIANGLES);
     p->mesh->tri[t] = (struct tri_triangle){{v[0], v[1], v[2]}, {TRI_BEYOND, TRI_BEYOND, TRI_BEYOND}, told->region, 0};
     if (p->is_borrowed)
-        note(&p->ranks->triangles, at_corners(&p->ranks->triangles, p->mesh, v), t);
+        note(&p->ranks->triangles, p->mesh, t);
     return t;
 }
 
@@ -295,19 +278,10 @@ static bool paste_triangles(struct pasting *p)
     return memory;
 }
 
-/* The edge of a triangle that runs from `from` to `to`; -1: none does. */
-static int edge_between(const struct tri_triangle *t, tri_vertex_id from, tri_vertex_id to)
-{
-    for (int e = 0; e < 3; e++)
-        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
-            return e;
-    return -1;
-}
-
 static bool link(struct tri_mesh *mesh, tri_triangle_id t, int e, tri_triangle_id other)
 {
     struct tri_triangle *a = &mesh->tri[t], *b = other == TRI_NONE ? NULL : &mesh->tri[other];
-    int f = b ? edge_between(b, a->v[tri_prev[e]], a->v[tri_next[e]]) : -1;
+    int f = b ? par_edge_between(b->v, a->v[tri_prev[e]], a->v[tri_next[e]]) : -1;
     if (f < 0)
         return false;
     if (a->n[e] == TRI_BEYOND) {
@@ -387,8 +361,8 @@ static bool reserve(struct pasting *p, struct tri_error *error)
     return p->is_new && p->sub && !tri_mesh_reserve_vertices(p->mesh, m->n_vertices, error) &&
            !tri_mesh_reserve_triangles(p->mesh, m->n_triangles, error) &&
            !tri_mesh_reserve_subs(p->mesh, m->n_new_subs, error) &&
-           reserve_index(&p->ranks->places, p->mesh, p->is_borrowed ? m->n_vertices : 0, true) &&
-           reserve_index(&p->ranks->triangles, p->mesh, p->is_borrowed ? m->n_triangles : 0, false);
+           reserve_index(&p->ranks->places, p->mesh, p->is_borrowed ? m->n_vertices : 0) &&
+           reserve_index(&p->ranks->triangles, p->mesh, p->is_borrowed ? m->n_triangles : 0);
 }
 
 enum tri_status par_paste(struct par_ranks *r, struct par_talk *talk, const struct par_message *message,

@@ -17,17 +17,11 @@ struct head {
 
 /* --- what belongs to which tile */
 
-/* Lists of the own tiles, one behind the other. */
-struct lists {
-    int32_t *start; /* [tiles + 1] */
-    int32_t *item;
-};
-
 struct sorting {
     const struct par_ranks *ranks;
     int32_t n_tiles;
     int32_t *tile_of; /* [n_vertices] own tiles, from 0; TRI_NONE: of others, or no vertex */
-    struct lists triangles, entries;
+    struct par_ids (*lists)[2]; /* [n_tiles] triangles, and entries of the worklist */
 };
 
 static void find_tiles(struct sorting *s)
@@ -52,44 +46,42 @@ static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
     return n;
 }
 
-/* The triangles triangle[0] to triangle[n - 1], NULL: of the same numbers, as indices into this list. */
-static bool sort_lists(const struct sorting *s, struct lists *lists, const int32_t *triangle, int32_t n)
+/* Into the lists of the triangle's tiles. */
+static bool add(const struct sorting *s, int which, int32_t item, tri_triangle_id t)
 {
     int32_t tile[3];
-    lists->start = calloc((size_t)s->n_tiles + 2, sizeof *lists->start);
-    for (int32_t i = 0; lists->start && i < n; i++)
-        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
-            lists->start[tile[k - 1] + 2]++;
-    for (int32_t b = 0; lists->start && b < s->n_tiles; b++)
-        lists->start[b + 2] += lists->start[b + 1];
-    lists->item = lists->start ? malloc(((size_t)lists->start[s->n_tiles + 1] + 1) * sizeof *lists->item) : NULL;
-    for (int32_t i = 0; lists->item && i < n; i++)
-        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
-            lists->item[lists->start[tile[k - 1] + 1]++] = i;
-    return lists->item;
+    bool memory = true;
+    for (int k = tiles_of(s, t, tile); k > 0; k--)
+        memory = memory && par_ids_add(&s->lists[tile[k - 1]][which], item);
+    return memory;
 }
 
 static void free_sorting(struct sorting *s)
 {
+    for (int32_t i = 0; s->lists && i < s->n_tiles; i++) {
+        free(s->lists[i][0].item);
+        free(s->lists[i][1].item);
+    }
     free(s->tile_of);
-    free(s->triangles.start);
-    free(s->triangles.item);
-    free(s->entries.start);
-    free(s->entries.item);
+    free(s->lists);
 }
 
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
 {
     const struct par_territory *territory = &r->territory;
     const struct par_run *state = r->state;
-    *s = (struct sorting){.ranks = r};
-    s->n_tiles = territory->start[territory->rank + 1] - territory->start[territory->rank];
+    const int32_t n = territory->start[territory->rank + 1] - territory->start[territory->rank];
+    *s = (struct sorting){.ranks = r, .n_tiles = n};
     s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
-    if (!s->tile_of)
-        return false;
-    find_tiles(s);
-    return sort_lists(s, &s->triangles, NULL, state->mesh->n_triangles) &&
-           sort_lists(s, &s->entries, state->worklist.item, state->worklist.n);
+    s->lists = calloc((size_t)n + 1, sizeof *s->lists);
+    bool memory = s->tile_of && s->lists;
+    if (memory)
+        find_tiles(s);
+    for (tri_triangle_id t = 0; memory && t < state->mesh->n_triangles; t++)
+        memory = add(s, 0, t, t);
+    for (int32_t i = 0; memory && i < state->worklist.n; i++)
+        memory = add(s, 1, i, state->worklist.item[i]);
+    return memory;
 }
 
 /* --- writing */
@@ -119,12 +111,12 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
     const struct par_run *state = s->ranks->state;
-    const struct lists *triangles = &s->triangles, *entries = &s->entries;
+    const struct par_ids *triangles = &s->lists[tile][0], *entries = &s->lists[tile][1];
     bool memory = true;
-    for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)
+    for (int32_t i = 0; memory && i < triangles->n; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
-    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common, 0);
-    for (int32_t i = entries->start[tile]; memory && i < entries->start[tile + 1]; i++) {
+    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common);
+    for (int32_t i = 0; memory && i < entries->n; i++) {
         int32_t entry = entries->item[i];
         memory = par_message_add_entry(message, state->key.item[entry],
                                        par_talk_number(talk, state->worklist.item[entry]));
@@ -142,7 +134,7 @@ static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *
     struct par_message message = {0};
     bytes->n = 0;
     bool memory = tell_piece(s, tile, &talk, &message) &&
-                  par_message_write(&message, &talk, s->ranks->state->mesh->n_attributes, bytes);
+                  par_message_write(&message, &talk, s->ranks->state->mesh, s->ranks->n_common, bytes);
     par_message_free(&message);
     par_talk_free(&talk);
     return memory;
@@ -175,11 +167,11 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     return status;
 }
 
-static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t run, uint64_t *hash,
+static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t *hash,
                                   struct tri_error *error)
 {
     const struct par_territory *territory = &s->ranks->territory;
-    const struct head head = {PIECES, run, territory->start[territory->rank], s->n_tiles};
+    const struct head head = {PIECES, s->ranks->run, territory->start[territory->rank], s->n_tiles};
     size_t n = (size_t)s->n_tiles + 1;
     int64_t *offset = calloc(n, sizeof *offset);
     if (!offset)
@@ -190,16 +182,18 @@ static enum tri_status write_file(const struct sorting *s, int file, const char 
     return status;
 }
 
-enum tri_status par_pieces_write(const struct par_ranks *r, int file, const char *path, uint64_t run, uint64_t *hash,
-                                 struct tri_error *error)
+enum tri_status par_pieces_write(const struct par_ranks *r, int64_t which, uint64_t *hash, struct tri_error *error)
 {
+    const char *directory = r->state->options->checkpoint->directory;
+    char path[PAR_CHECKPOINT_PATH];
     struct sorting s;
+    const int file = par_checkpoint_piece(path, directory, which, r->carrier->rank, true);
     if (file < 0)
         return cannot_write(path, error);
     par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
-    status = status ? status : write_file(&s, file, path, run, hash, error);
-    if (close(file) != 0 && !status)
+    status = status ? status : write_file(&s, file, path, hash, error);
+    if ((close(file) != 0 || !par_checkpoint_sync(directory)) && !status)
         status = cannot_write(path, error);
     free_sorting(&s);
     return status;
@@ -226,57 +220,36 @@ static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t 
     return NULL;
 }
 
-static enum tri_status paste_piece(struct par_ranks *r, const struct par_bytes *bytes, struct tri_error *error)
-{
-    struct par_talk talk = {0};
-    struct par_message message;
-    enum tri_status status = par_message_read(&message, &talk, r->state->mesh, r->n_common, bytes, error);
-    status = status ? status : par_paste(r, &talk, &message, true, error);
-    if (!status && !par_merge_entries(r->state, &message, &talk))
-        status = par_ranks_no_memory(error);
-    par_message_free(&message);
-    par_talk_free(&talk);
-    return status;
-}
-
 static enum tri_status read_piece(struct par_ranks *r, int file, const char *path, const int64_t offset[2],
                                   struct tri_error *error)
 {
     struct par_bytes bytes = {.n = 0};
+    struct par_talk talk = {0};
     if (offset[1] < offset[0] || offset[0] < 0)
         return damaged(path, error);
     if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
         return par_ranks_no_memory(error);
     bytes.n = (size_t)(offset[1] - offset[0]);
     enum tri_status status = tri_read_again(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
-    status = status ? status : paste_piece(r, &bytes, error);
+    status = status ? status : par_borrow_from(r, &talk, &bytes, error);
+    par_talk_free(&talk);
     free(bytes.at);
     return status == TRI_INTERNAL ? damaged(path, error) : status;
 }
 
-/* The tiles of a file that this rank owns now. */
-static struct tri_range own_tiles(const struct par_ranks *r, const struct par_piece_file *of)
+enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file *of, struct tri_error *error)
 {
-    const struct par_territory *t = &r->territory;
-    const int32_t own = t->start[t->rank], own_end = t->start[t->rank + 1];
-    return (struct tri_range){own > of->first ? own : of->first, own_end < of->end ? own_end : of->end};
-}
-
-bool par_pieces_are_wanted(const struct par_ranks *r, const struct par_piece_file *of)
-{
-    const struct tri_range tiles = own_tiles(r, of);
-    return tiles.first < tiles.last;
-}
-
-enum tri_status par_pieces_read(struct par_ranks *r, int file, const char *path, const struct par_piece_file *of,
-                                struct tri_error *error)
-{
-    const struct tri_range tiles = own_tiles(r, of);
+    const int32_t *own = &r->territory.start[r->carrier->rank];
+    const int32_t first = own[0] > of->first ? own[0] : of->first, end = own[1] < of->end ? own[1] : of->end;
+    char path[PAR_CHECKPOINT_PATH];
+    if (first >= end)
+        return TRI_OK;
+    const int file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
-    int64_t *offset = read_offsets(file, of->first, of->end - of->first, of->run, of->hash);
+    int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
-    for (int32_t tile = tiles.first; !status && tile < tiles.last; tile++)
+    for (int32_t tile = first; !status && tile < end; tile++)
         status = read_piece(r, file, path, &offset[tile - of->first], error);
     free(offset);
     close(file);

@@ -14,24 +14,19 @@
 #include "sched/checkpoint/checkpoint.h"
 #include "sched/ranks/ranks.h"
 
+/* Of the two states of a checkpoint this one's file of one rank. */
 struct par_piece_file {
+    int64_t which;
+    int writer;
     int32_t first, end; /* its tiles: first .. end - 1 */
-    uint64_t run;       /* as par_state_run says */
     uint64_t hash;      /* as it was told when the file was written */
 };
 
-/* Writes, and syncs, what this rank owns to an open file, and closes it; -1: it could not be opened, which is told.
- * path: for messages. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status par_pieces_write(const struct par_ranks *ranks, int file, const char *path, uint64_t run,
-                                 uint64_t *hash, struct tri_error *error);
+/* Writes what this rank owns to its file, on the disk; *hash of that. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status par_pieces_write(const struct par_ranks *ranks, int64_t which, uint64_t *hash, struct tri_error *error);
 
-/* Pastes the pieces of those tiles in an open file that this rank owns now, and closes it; -1: it could not be opened,
- * which is told. TRI_BAD_INPUT: they are not what was written,
+/* Pastes the pieces of those tiles in a file that this rank owns now. TRI_BAD_INPUT: they are not what was written,
  * TRI_NO_MEMORY. */
-enum tri_status par_pieces_read(struct par_ranks *ranks, int file, const char *path, const struct par_piece_file *of,
-                                struct tri_error *error);
-
-/* Does this rank own any of them? */
-bool par_pieces_are_wanted(const struct par_ranks *ranks, const struct par_piece_file *of);
+enum tri_status par_pieces_read(struct par_ranks *ranks, const struct par_piece_file *of, struct tri_error *error);
 
 #endif

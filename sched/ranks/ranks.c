@@ -8,6 +8,7 @@
 #include "sched/checkpoint/state.h"
 #include "sched/schedule/by_tile.h"
 #include "sched/tiles/park.h"
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
 /* --- who works where */
@@ -43,9 +44,8 @@ static bool init_shift(struct par_ranks *r)
     s->worker = malloc(n * sizeof *s->worker);
     s->is_mine = calloc(n, sizeof *s->is_mine);
     s->is_border = calloc(n, sizeof *s->is_border);
-    s->is_held = calloc(n, sizeof *s->is_held);
     s->block_of = malloc(((size_t)r->state->worklist.n + 1) * sizeof *s->block_of);
-    return s->worker && s->is_mine && s->is_border && s->is_held && s->block_of;
+    return s->worker && s->is_mine && s->is_border && s->block_of;
 }
 
 static void free_shift(struct par_shift *s)
@@ -53,12 +53,12 @@ static void free_shift(struct par_shift *s)
     free(s->worker);
     free(s->is_mine);
     free(s->is_border);
-    free(s->is_held);
     free(s->block_of);
+    free(s->changed.item);
     *s = (struct par_shift){0};
 }
 
-/* Blocks over the tiles of several ranks; returns whether there are any. */
+/* Blocks over the tiles of several ranks: worker[b] is whoever would work on it; returns whether there are any. */
 static bool find_borders(struct par_ranks *r)
 {
     struct par_shift *s = &r->shift;
@@ -101,7 +101,8 @@ static void assign(struct par_ranks *r, const int64_t *word)
         s->worker[b] = s->worker[b] >= 0 && is_in(word, b) ? s->worker[b] : -1;
         s->is_mine[b] = (s->worker[b] < 0 || s->worker[b] == rank) && has_its_turn(s, b);
         s->is_border[b] = s->worker[b] == rank;
-        s->is_held[b] = s->worker[b] >= 0 && s->worker[b] != rank && par_has_part(&r->territory, &box, rank);
+        if (s->worker[b] == rank || (s->worker[b] >= 0 && !par_has_part(&r->territory, &box, rank)))
+            s->worker[b] = -1;
     }
 }
 
@@ -136,13 +137,7 @@ static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_st
                     status, error);
 }
 
-static void free_in(struct par_ranks *r)
-{
-    for (int p = 0; p < r->carrier->n_ranks; p++) {
-        free(r->in[p].at);
-        r->in[p] = (struct par_bytes){0};
-    }
-}
+static void free_in(struct par_ranks *r) { par_bytes_free(r->in, r->carrier->n_ranks); }
 
 /* *any: somebody has asked for more, and has got it. Collective. */
 static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *asked, bool *any,
@@ -224,10 +219,9 @@ static enum tri_status serve(struct par_ranks *r, enum tri_status status, struct
     return status;
 }
 
-static enum tri_status give_back(struct par_ranks *r, struct par_ids *changed, enum tri_status status,
-                                 struct tri_error *error)
+static enum tri_status give_back(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
-    status = status ? status : par_give_back(r, changed, error);
+    status = status ? status : par_give_back(r, &r->shift.changed, error);
     status = swap(r, PAR_MOVE_BACK, status, error);
     status = status ? status : par_take_back(r, error);
     free_in(r);
@@ -238,41 +232,46 @@ static enum tri_status give_back(struct par_ranks *r, struct par_ids *changed, e
     return status;
 }
 
+/* The blocks of a shift, with what they borrow, which is given back then. Collective. */
+static enum tri_status work(struct par_ranks *r, struct par_shift shift,
+                            enum tri_status (*refine)(struct par_ranks *r, struct tri_error *error),
+                            struct tri_error *error)
+{
+    bool any;
+    r->shift = shift;
+    enum tri_status status = share_blocks(r, &any, error);
+    if (!status && any)
+        status = lend(r, error);
+    status = status ? status : refine(r, error);
+    if (any) {
+        status = serve(r, status, error);
+        status = give_back(r, status, error);
+    }
+    free_shift(&r->shift);
+    return status;
+}
+
 /* --- phases */
 
 /* Steps of a phase, between which there may be a checkpoint: as many for any number of ranks. */
 static int32_t steps_of(const struct par_ranks *r, const struct par_partition *partition)
 {
-    enum { MOST_STEPS = 8, BLOCKS_A_STEP = 16 };
-    int32_t steps = par_blocks(partition) / PAR_PHASES / BLOCKS_A_STEP;
+    int32_t steps = par_blocks(partition) / PAR_PHASES / PAR_BLOCKS_A_STEP;
     if (!r->state->options->checkpoint || steps < 1)
         return 1;
-    return steps < MOST_STEPS ? steps : MOST_STEPS;
+    return steps < PAR_MOST_STEPS ? steps : PAR_MOST_STEPS;
 }
 
-static enum tri_status refine_step(struct par_ranks *r, const struct par_partition *partition,
-                                   struct tri_error *error)
+static enum tri_status refine_step(struct par_ranks *r, struct tri_error *error)
 {
     struct par_run *state = r->state;
-    bool any;
-    assert(!state->share && state->phase >= 0 && state->phase < PAR_PHASES);
-    r->shift = (struct par_shift){.partition = partition, .phase = state->phase, .step = state->step,
-                                  .n_steps = steps_of(r, partition)};
-    enum tri_status status = share_blocks(r, &any, error);
     struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch, .user = r};
-    if (!status && any)
-        status = lend(r, error);
+    assert(!state->share && state->phase >= 0 && state->phase < PAR_PHASES);
     par_tell(state, state->phase + 1);
     state->share = &share;
-    if (!status)
-        status = par_phase(state, partition, state->phase, TRI_NONE, error);
+    enum tri_status status = par_phase(state, r->shift.partition, state->phase, TRI_NONE, error);
     state->share = NULL;
-    if (any) {
-        status = serve(r, status, error);
-        status = give_back(r, &share.changed, status, error);
-    }
-    free(share.changed.item);
-    free_shift(&r->shift);
+    r->shift.changed = share.changed;
     return status;
 }
 
@@ -291,8 +290,10 @@ static enum tri_status refine_round(struct par_ranks *r, const struct par_partit
     enum tri_status status = TRI_OK;
     r->state->report->rounds++;
     while (!status && r->state->phase < PAR_PHASES) {
-        status = refine_step(r, partition, error);
-        go_on(r->state, steps_of(r, partition));
+        const struct par_shift shift = {.partition = partition, .phase = r->state->phase, .step = r->state->step,
+                                        .n_steps = steps_of(r, partition)};
+        status = work(r, shift, refine_step, error);
+        go_on(r->state, shift.n_steps);
         status = par_keep(r, status, error);
     }
     int64_t mine = r->state->worklist.n;
@@ -303,7 +304,7 @@ static enum tri_status refine_round(struct par_ranks *r, const struct par_partit
 
 struct last_call {
     struct par_ranks *ranks;
-    struct par_ids changed, asked;
+    struct par_ids asked;
     bool lost;
 };
 
@@ -311,7 +312,7 @@ static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct last_call *call = user;
     for (int32_t i = 0; i < n; i++)
-        call->lost = !par_ids_add(&call->changed, triangle[i]) || call->lost;
+        call->lost = !par_ids_add(&call->ranks->shift.changed, triangle[i]) || call->lost;
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
@@ -338,41 +339,24 @@ static enum tri_status run_last_call(struct last_call *call, struct tri_refiner 
     return status;
 }
 
-/* One call without fences, as of one process, for what the worklist holds. */
-static enum tri_status call_last(struct last_call *call, struct tri_error *error)
+/* One call without fences, as of one process, for what the worklist holds: by the first rank that owns anything. */
+static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_run *state = call->ranks->state;
-    const struct tri_part part = {note_changes, ask_for, call};
+    struct par_run *state = r->state;
+    struct last_call call = {.ranks = r};
+    const struct tri_part part = {note_changes, ask_for, &call};
     struct tri_refine_report report = {0};
     const struct tri_refine_hooks hooks = {
         .worklist = state->worklist.item, .n_worklist = state->worklist.n, .part = &part};
     struct tri_refiner *refiner = NULL;
+    if (state->worklist.n == 0)
+        return TRI_OK;
     enum tri_status status = tri_refiner_new(&refiner, state->mesh, state->quality, &hooks, &report, error);
-    status = status ? status : run_last_call(call, refiner, error);
+    status = status ? status : run_last_call(&call, refiner, error);
     tri_refiner_free(refiner);
-    par_add_up(&state->report->total, &report);
-    return status;
-}
-
-/* By the first rank that owns anything. */
-static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
-{
-    struct last_call call = {.ranks = r};
-    bool any;
-    r->shift = (struct par_shift){.n_steps = 1};
-    enum tri_status status = share_blocks(r, &any, error);
-    if (!status && any)
-        status = lend(r, error);
-    if (!status && r->state->worklist.n > 0)
-        status = call_last(&call, error);
-    r->state->worklist.n = r->state->key.n = 0;
-    if (any) {
-        status = serve(r, status, error);
-        status = give_back(r, &call.changed, status, error);
-    }
-    free(call.changed.item);
     free(call.asked.item);
-    free_shift(&r->shift);
+    par_add_up(&state->report->total, &report);
+    state->worklist.n = state->key.n = 0;
     return status;
 }
 
@@ -465,7 +449,9 @@ static enum tri_status run_schedule(struct par_ranks *r, struct tri_error *error
     int64_t left = 0;
     enum tri_status status = refine_rounds(r, &left, error);
     r->state->report->left_over += status ? 0 : left;
-    return status || left == 0 ? status : par_keep(r, refine_rest(r, error), error);
+    if (status || left == 0)
+        return status;
+    return par_keep(r, work(r, (struct par_shift){.n_steps = 1}, refine_rest, error), error);
 }
 
 /* What is bad now among the triangles of the own tiles. All of these are here, as they are in the mesh of one process;
@@ -524,12 +510,8 @@ static bool init(struct par_ranks *r, const struct par_partition *partition)
 
 static void clean_up(struct par_ranks *r)
 {
-    for (int p = 0; p < r->carrier->n_ranks; p++) {
-        if (r->out)
-            free(r->out[p].at);
-        if (r->in)
-            free(r->in[p].at);
-    }
+    par_bytes_free(r->out, r->carrier->n_ranks);
+    par_bytes_free(r->in, r->carrier->n_ranks);
     par_territory_free(&r->territory);
     free(r->straddlers.item);
     free(r->places.id);

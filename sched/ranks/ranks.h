@@ -27,15 +27,16 @@ struct par_shift {
     const struct par_partition *partition; /* NULL: there is one block, the plane */
     int phase;
     int32_t step, n_steps; /* only every n_steps-th block, from the step-th on */
-    int *worker;     /* [blocks] of blocks at a border that have work; else -1 */
+    int *worker;     /* [blocks] the other rank that works on it, of those of which this one holds a part; else -1 */
     bool *is_mine;   /* [blocks] as struct par_share has it */
     bool *is_border; /* [blocks] this rank works on it, and others hold a part */
-    bool *is_held;   /* [blocks] another rank works on it, and this one holds a part */
     int32_t *block_of; /* [worklist.n] of each entry; TRI_NONE: none of this phase takes it */
+    struct par_ids changed; /* triangles made by blocks at a border, some of them several times */
 };
 
 /* Ids by what they stand for, open addressing: vertices by their places, or triangles by their corners. */
 struct par_index {
+    bool is_of_places;
     int32_t *id;
     int32_t n, capacity;
 };
@@ -93,6 +94,10 @@ enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 
 /* --- borrow.c: what this rank works on */
 
+/* What somebody has told of to lend it: from then on it is here. */
+enum tri_status par_borrow_from(struct par_ranks *ranks, struct par_talk *talk, const struct par_bytes *told,
+                                struct tri_error *error);
+
 /* in[h]: what rank h lends. */
 enum tri_status par_borrow(struct par_ranks *ranks, struct tri_error *error);
 
@@ -107,10 +112,21 @@ enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);
 
 /* --- paste.c: what both have in common */
 
+/* A message to each rank that tells of what joins the talks from here on; NULL: no memory. */
+struct par_message *par_messages_begin(const struct par_ranks *ranks, const struct par_talk *talk);
+/* par_message_tell for each. False: no memory. */
+bool par_messages_tell(const struct par_ranks *ranks, struct par_talk *talk, struct par_message *message);
+/* out[p]: what the message to rank p says, if it says anything. False: no memory. */
+bool par_messages_send(struct par_ranks *ranks, const struct par_talk *talk, struct par_message *message);
+void par_messages_free(const struct par_ranks *ranks, struct par_message *message);
+
 /* All that a message tells of is put into the mesh, and counted in the talk. is_borrowed: some of it may be here
  * already, and more of it may come from others. */
 enum tri_status par_paste(struct par_ranks *ranks, struct par_talk *talk, const struct par_message *message,
                           bool is_borrowed, struct tri_error *error);
+
+/* Those that are no more, or (NULL: none) are in a set, leave the list of straddlers. */
+void par_forget_straddlers(struct par_ranks *ranks, const struct par_triangle_set *changed);
 
 /* The straddlers, and nothing else. False: no memory. */
 bool par_index_straddlers(struct par_ranks *ranks);
@@ -125,17 +141,15 @@ bool par_release(struct par_run *state, enum par_kind kind, int32_t id);
 
 static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
 
-/* The worklist without the entries for which keep[] is false. */
-void par_worklist_keep(struct par_run *state, const bool *keep);
+/* Of a worklist that is gone through entry i stays: as the next one, of *kept so far. */
+static inline void par_keep_entry(struct par_run *state, int32_t i, int32_t *kept)
+{
+    state->key.item[*kept] = state->key.item[i];
+    state->worklist.item[(*kept)++] = state->worklist.item[i];
+}
 
-/* Has the triangle a corner that is this rank's own, or one that is another's? */
-bool par_has_own(const struct par_ranks *ranks, tri_triangle_id t);
-bool par_has_foreign(const struct par_ranks *ranks, tri_triangle_id t);
-
-/* The block of the phase at hand that holds a place. */
-int32_t par_block_here(const struct par_ranks *ranks, struct tri_point q);
-
-enum tri_status par_ranks_no_memory(struct tri_error *error);
+/* How many corners of a triangle are this rank's own? */
+int par_own_corners(const struct par_ranks *ranks, tri_triangle_id t);
 
 /* --- hand_out.c */
 

@@ -1,100 +1,40 @@
-/* A tile on its way: its struct, then its arrays in the order of the struct, each filled up to eight bytes. */
+/* Tiles on their way are bytes (sched/tiles/tile_arrays.h). */
 #include "sched/ranks/relay.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-static const size_t MOST_BYTES = (size_t)1 << 25;
-
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a rank's tiles");
-}
-
-static size_t filled_up(size_t n) { return (n + 7) / 8 * 8; }
-
-/* Bytes of the arrays of a tile. */
-enum { ARRAYS = 7 };
-static void sizes_of(const struct par_relay *relay, const struct tri_tile *tile, size_t size[ARRAYS])
-{
-    size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
-    size[0] = v * sizeof *tile->points;
-    size[1] = v * sizeof *tile->point_markers;
-    size[2] = v * (size_t)relay->n_attributes * sizeof *tile->attributes;
-    size[3] = t * sizeof *tile->corners;
-    size[4] = t * sizeof *tile->regions;
-    size[5] = s * sizeof *tile->ends;
-    size[6] = s * sizeof *tile->segment_markers;
-}
+#include "sched/tiles/tile_arrays.h"
+#include "sched/tunables.h"
 
 static bool pack(struct par_relay *relay, const struct tri_tile *tile)
 {
-    const void *array[ARRAYS] = {tile->points, tile->point_markers, tile->attributes, tile->corners,
-                                 tile->regions, tile->ends, tile->segment_markers};
-    size_t size[ARRAYS], sum = filled_up(sizeof *tile);
-    sizes_of(relay, tile, size);
-    for (int k = 0; k < ARRAYS; k++)
-        sum += filled_up(size[k]);
-    if (!par_bytes_reserve(&relay->tiles, sum))
+    const size_t n = par_tile_bytes(tile, relay->n_attributes);
+    if (!par_bytes_reserve(&relay->tiles, n))
         return false;
-    char *at = relay->tiles.at + relay->tiles.n;
-    memset(at, 0, sum);
-    memcpy(at, tile, sizeof *tile);
-    at += filled_up(sizeof *tile);
-    for (int k = 0; k < ARRAYS; k++) {
-        if (size[k] > 0)
-            memcpy(at, array[k], size[k]);
-        at += filled_up(size[k]);
-    }
-    relay->tiles.n += sum;
+    par_tile_pack(relay->tiles.at + relay->tiles.n, tile, relay->n_attributes);
+    relay->tiles.n += n;
     return true;
 }
 
-/* Points *tile at what is packed, of which there are n bytes; returns how many it takes, or 0: it is no tile. */
-static size_t unpack(const struct par_relay *relay, const char *bytes, size_t n, struct tri_tile *tile)
-{
-    const void *array[ARRAYS];
-    size_t size[ARRAYS], at = filled_up(sizeof *tile);
-    if (n < at)
-        return 0;
-    memcpy(tile, bytes, sizeof *tile);
-    if (tile->n_vertices < 0 || tile->n_triangles < 0 || tile->n_segments < 0)
-        return 0;
-    sizes_of(relay, tile, size);
-    for (int k = 0; k < ARRAYS; k++) {
-        if (n - at < filled_up(size[k]))
-            return 0;
-        array[k] = bytes + at;
-        at += filled_up(size[k]);
-    }
-    tile->points = (const double(*)[2])array[0];
-    tile->point_markers = array[1];
-    tile->attributes = array[2];
-    tile->corners = (const int64_t(*)[3])array[3];
-    tile->regions = array[4];
-    tile->ends = (const int64_t(*)[2])array[5];
-    tile->segment_markers = array[6];
-    return at;
-}
-
-/* --- pieces */
+/* --- batches */
 
 /* Whole tiles that have not been sent, about as many bytes as are good. */
-static size_t next_piece(const struct par_relay *relay)
+static size_t next_batch(const struct par_relay *relay)
 {
-    size_t most = relay->most_bytes > 0 ? relay->most_bytes : MOST_BYTES, n = 0;
+    size_t most = relay->most_bytes > 0 ? relay->most_bytes : PAR_RELAY_BYTES, n = 0;
     struct tri_tile tile;
     while (relay->sent + n < relay->tiles.n && n < most)
-        n += unpack(relay, relay->tiles.at + relay->sent + n, relay->tiles.n - relay->sent - n, &tile);
+        n += par_tile_unpack(relay->tiles.at + relay->sent + n, relay->tiles.n - relay->sent - n, relay->n_attributes,
+                             &tile);
     return n;
 }
 
-static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *piece, struct tri_error *error)
+static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *batch, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     struct tri_tile tile;
-    for (size_t at = 0; !status && at < piece->n;) {
-        const size_t n = unpack(relay, piece->at + at, piece->n - at, &tile);
+    for (size_t at = 0; !status && at < batch->n;) {
+        const size_t n = par_tile_unpack(batch->at + at, batch->n - at, relay->n_attributes, &tile);
         if (n == 0)
             return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no tile");
         status = relay->to->take(relay->to->user, &tile, error);
@@ -103,27 +43,26 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     return status;
 }
 
-/* Of the rank whose turn it is the next piece goes to rank 0. ends: this one has no more tiles to come. Collective. */
+/* Of the rank whose turn it is the next batch goes to rank 0. ends: this one has no more tiles to come. Collective. */
 static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     const int rank = relay->carrier->rank, turn = relay->turn;
     enum tri_status status = TRI_OK;
     int64_t last = 0;
     if (rank == turn) {
-        const size_t n = next_piece(relay);
-        status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : no_memory(error);
+        const size_t n = next_batch(relay);
+        status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : par_ranks_no_memory(error);
         relay->sent += n;
         last = ends && relay->sent == relay->tiles.n;
     }
-    status = par_gather(relay->carrier, &last, 1, relay->told, status, error);
+    status = par_gather(relay->carrier, &last, 1, relay->carrier->of_each, status, error);
+    relay->turn += !status && relay->carrier->of_each[turn] != 0;
     status = par_swap(relay->carrier, PAR_MOVE_TILES, relay->out, relay->in, status, error);
     if (status)
         return status;
-    relay->turn += relay->told[turn] != 0;
     if (rank == 0)
         status = hand_on(relay, &relay->in[turn], error);
-    free(relay->in[turn].at);
-    relay->in[turn] = (struct par_bytes){0};
+    par_bytes_free(&relay->in[turn], 1);
     return status;
 }
 
@@ -150,9 +89,8 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     relay->turn = 1;
     relay->out = calloc(n, sizeof *relay->out);
     relay->in = calloc(n, sizeof *relay->in);
-    relay->told = calloc(n, sizeof *relay->told);
-    if (!relay->out || !relay->in || !relay->told)
-        return no_memory(error);
+    if (!relay->out || !relay->in)
+        return par_ranks_no_memory(error);
     one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
     one.first_vertex = one.first_triangle = one.first_segment = NULL;
     if (relay->carrier->rank > 0 || !relay->to->begin)
@@ -166,7 +104,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     if (relay->carrier->rank == 0)
         return relay->to->take(relay->to->user, tile, error);
     if (!pack(relay, tile))
-        return no_memory(error);
+        return par_ranks_no_memory(error);
     return relay->room == 0 || relay->tiles.n < relay->room ? TRI_OK : send_all(relay, false, error);
 }
 
@@ -189,15 +127,10 @@ struct tri_sink par_relay_sink(struct par_relay *relay)
 
 enum tri_status par_relay_finish(struct par_relay *relay, enum tri_status status, struct tri_error *error)
 {
-    for (int p = 0; p < relay->carrier->n_ranks; p++) {
-        if (relay->out)
-            free(relay->out[p].at);
-        if (relay->in)
-            free(relay->in[p].at);
-    }
+    par_bytes_free(relay->out, relay->carrier->n_ranks);
+    par_bytes_free(relay->in, relay->carrier->n_ranks);
     free(relay->out);
     free(relay->in);
-    free(relay->told);
     free(relay->tiles.at);
     *relay = (struct par_relay){.carrier = relay->carrier};
     return par_agree(relay->carrier, status, error);

@@ -202,9 +202,9 @@ static bool tell_from(struct telling *telling, tri_triangle_id seed)
     return memory;
 }
 
-bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
-                      int32_t first)
+bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common)
 {
+    const int32_t first = m->first;
     struct telling telling = {.message = m, .talk = talk, .mesh = mesh, .n_common = n_common,
                               .n = talk->triangle.n - first, .first = first};
     assert(m->n_triangles == 0 && telling.n >= 0);

@@ -10,11 +10,10 @@
 
 #include "sched/ranks/carrier.h"
 #include "sched/schedule/worklist.h"
+#include "sched/tunables.h"
 #include "triangle/mesh/mesh.h"
 
 /* From ids to numbers. What lies at a border has ids that lie together: so there are pages where there are any. */
-enum { PAR_PAGE = 1024 };
-
 struct par_map {
     int32_t **page;
     int32_t n, capacity;
@@ -62,6 +61,15 @@ struct par_told_triangle {
     int32_t region;
 };
 
+/* The edge of a triangle, by its corners, that runs from `from` to `to`; -1: none does. */
+static inline int par_edge_between(const int32_t v[3], int32_t from, int32_t to)
+{
+    for (int e = 0; e < 3; e++)
+        if (v[tri_next[e]] == from && v[tri_prev[e]] == to)
+            return e;
+    return -1;
+}
+
 struct par_told_side { /* a triangle beside a subsegment */
     int32_t triangle, edge, side, sub; /* numbers */
     int32_t marker, parent; /* of a subsegment that is new */
@@ -74,6 +82,7 @@ struct par_told_entry { /* of the worklist */
 };
 
 struct par_message {
+    int32_t first;                  /* to tell of: the talk's triangles from this number on */
     struct par_ids gone, gone_subs; /* numbers of triangles and subsegments that are no more */
     struct par_told_vertex *vertex;
     double *attribute;
@@ -93,16 +102,16 @@ static inline int32_t par_values_of(int64_t n_vertices, int32_t n_attributes)
 
 void par_message_free(struct par_message *message);
 
-/* Tells of the talk's triangles from number `first` on, which have just been added, and numbers them anew: most lie
- * beside the one before then. False: no memory. n_common: so many vertices were there from the start. */
+/* Tells of the talk's triangles from number message->first on, which have just been added, and numbers them anew: most
+ * lie beside the one before then. False: no memory. n_common: so many vertices were there from the start. */
 bool par_message_tell(struct par_message *message, struct par_talk *talk, const struct tri_mesh *mesh,
-                      int32_t n_common, int32_t first);
+                      int32_t n_common);
 
 bool par_message_add_entry(struct par_message *message, uint64_t key, int32_t triangle);
 
-/* Appends a message. n_vertices, n_triangles, n_subs: numbers that had been told before it. False: no memory. */
-bool par_message_write(const struct par_message *message, const struct par_talk *talk, int32_t n_attributes,
-                       struct par_bytes *to);
+/* Appends a message, which the talk holds already. False: no memory. */
+bool par_message_write(struct par_message *message, const struct par_talk *talk, const struct tri_mesh *mesh,
+                       int32_t n_common, struct par_bytes *to);
 
 /* Reads what another side has written; talk is as it was before it. TRI_INTERNAL: it is no message, TRI_NO_MEMORY. */
 enum tri_status par_message_read(struct par_message *message, const struct par_talk *talk, const struct tri_mesh *mesh,

@@ -51,7 +51,7 @@ void par_territory_free(struct par_territory *t)
     t->boxes = NULL;
 }
 
-int par_owner_of_tile(const struct par_territory *t, int32_t tile)
+static int owner_of_tile(const struct par_territory *t, int32_t tile)
 {
     int rank = par_holder_of(t->start, t->n_ranks, tile);
     assert(t->start[rank] <= tile && tile < t->start[rank + 1]);
@@ -65,39 +65,36 @@ int32_t par_tile_at(const struct par_territory *t, struct tri_point q)
 
 int par_owner_at(const struct par_territory *t, struct tri_point q)
 {
-    return par_owner_of_tile(t, par_tile_at(t, q));
+    return owner_of_tile(t, par_tile_at(t, q));
 }
 
-/* The rows of tiles in a column that a box meets: *first to *end - 1. */
-static void rows_in(const struct par_territory *t, const struct tri_fence *box, int32_t column, int32_t *first,
-                    int32_t *end)
-{
-    for (*first = 0; *first < t->n_rows && !(box_of_tile(t, column, *first).y_max > box->y_min);)
-        ++*first;
-    for (*end = *first; *end < t->n_rows && box_of_tile(t, column, *end).y_min < box->y_max;)
-        ++*end;
-}
-
-static bool meets_column(const struct par_territory *t, const struct tri_fence *box, int32_t column)
+/* The tiles in a column that a box meets: *first to *end - 1. False: there are none. */
+static bool tiles_in(const struct par_territory *t, const struct tri_fence *box, int32_t column, int32_t *first,
+                     int32_t *end)
 {
     const struct tri_fence tile = box_of_tile(t, column, 0);
-    return tile.x_min < tile.x_max && tile.x_max > box->x_min && tile.x_min < box->x_max;
+    int32_t row = 0;
+    if (!(box->x_min < box->x_max && box->y_min < box->y_max && tile.x_min < tile.x_max && tile.x_max > box->x_min &&
+          tile.x_min < box->x_max))
+        return false;
+    while (row < t->n_rows && !(box_of_tile(t, column, row).y_max > box->y_min))
+        row++;
+    *first = column * t->n_rows + row;
+    while (row < t->n_rows && box_of_tile(t, column, row).y_min < box->y_max)
+        row++;
+    *end = column * t->n_rows + row;
+    return *first < *end;
 }
-
-static bool is_empty(const struct tri_fence *box) { return !(box->x_min < box->x_max && box->y_min < box->y_max); }
 
 bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, int *first, int *last)
 {
     *first = *last = -1;
-    for (int32_t c = 0; !is_empty(box) && c < t->n_columns; c++) {
-        int32_t row, end;
-        if (!meets_column(t, box, c))
+    for (int32_t c = 0; c < t->n_columns; c++) {
+        int32_t tile, end;
+        if (!tiles_in(t, box, c, &tile, &end))
             continue;
-        rows_in(t, box, c, &row, &end);
-        if (row == end)
-            continue;
-        *first = *first >= 0 ? *first : par_owner_of_tile(t, c * t->n_rows + row);
-        *last = par_owner_of_tile(t, c * t->n_rows + end - 1);
+        *first = *first >= 0 ? *first : owner_of_tile(t, tile);
+        *last = owner_of_tile(t, end - 1);
     }
     assert(*first <= *last && *last < t->n_ranks); /* they come in order, as tiles do */
     return *first >= 0;
@@ -105,17 +102,11 @@ bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, i
 
 bool par_has_part(const struct par_territory *t, const struct tri_fence *box, int rank)
 {
-    int32_t begin = t->start[rank] / t->n_rows, last = (t->start[rank + 1] - 1) / t->n_rows;
-    if (is_empty(box) || t->start[rank] == t->start[rank + 1])
-        return false;
-    for (int32_t c = begin; c <= last; c++) {
-        int32_t row, end;
-        if (!meets_column(t, box, c))
-            continue;
-        rows_in(t, box, c, &row, &end);
-        if (row < end && c * t->n_rows + row < t->start[rank + 1] && c * t->n_rows + end > t->start[rank])
+    const int32_t *own = &t->start[rank];
+    int32_t tile, end;
+    for (int32_t c = own[0] / t->n_rows; own[0] < own[1] && c <= (own[1] - 1) / t->n_rows; c++)
+        if (tiles_in(t, box, c, &tile, &end) && tile < own[1] && end > own[0])
             return true;
-    }
     return false;
 }
 

@@ -25,8 +25,6 @@ bool par_territory_init(struct par_territory *territory, const struct par_partit
                         const struct par_carrier *carrier);
 void par_territory_free(struct par_territory *territory);
 
-int par_owner_of_tile(const struct par_territory *territory, int32_t tile);
-
 /* The tile that holds a place. O(log tiles). */
 int32_t par_tile_at(const struct par_territory *territory, struct tri_point q);
 

@@ -1,4 +1,5 @@
-/* Messages as bytes: whole numbers seven bits at a time, the least first. */
+/* Messages as bytes: whole numbers seven bits at a time, the least first. One walk over a message both writes it and
+ * reads it: what is said of a field here holds for both. */
 #include "sched/ranks/talk.h"
 
 #include <assert.h>
@@ -6,65 +7,145 @@
 #include <string.h>
 
 #include "sched/checkpoint/spool.h"
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
-/* --- writing */
-
-/* Of what stands before it at the end of a message. */
-static uint64_t hash_of(const char *bytes, size_t n) { return par_hash(n, bytes, n); }
-
-struct writer {
-    struct par_bytes *to;
-    bool lost;
+struct coder {
+    struct par_bytes *to;              /* what is written; NULL: all is read, .. */
+    const unsigned char *at, *end;     /* .. from here */
+    bool failed;                       /* no memory, or what is read is no message */
+    const struct tri_mesh *mesh;
+    int32_t n_common;
+    int32_t vertices, triangles, subs; /* numbers that had been told before */
 };
 
-enum { LONGEST = 40, AHEAD = 1 << 12 }; /* bytes of a number, or of a place; so many are reserved at once */
+/* --- numbers */
+
+enum { LONGEST = 16 }; /* bytes of a number at most */
 
 /* Where the next LONGEST bytes may go; NULL: no memory. */
-static char *room_for_one(struct writer *w)
+static char *room_for_one(struct coder *c)
 {
-    struct par_bytes *to = w->to;
-    w->lost = w->lost || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, AHEAD));
-    return w->lost ? NULL : to->at + to->n;
+    struct par_bytes *to = c->to;
+    c->failed = c->failed || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, PAR_MESSAGE_GROWTH));
+    return c->failed ? NULL : to->at + to->n;
 }
 
-static char *write_number(char *at, uint64_t n)
+static void put(struct coder *c, uint64_t n)
 {
+    char *at = room_for_one(c);
+    if (!at)
+        return;
     for (; n >= 128; n >>= 7)
         *at++ = (char)((n & 127) | 128);
     *at++ = (char)n;
-    return at;
+    c->to->n = (size_t)(at - c->to->at);
 }
 
-static void put(struct writer *w, uint64_t n)
+static uint64_t get(struct coder *c)
 {
-    char *at = room_for_one(w);
-    if (at)
-        w->to->n = (size_t)(write_number(at, n) - w->to->at);
+    uint64_t n = 0;
+    for (int shift = 0; shift < 64 && c->at < c->end; shift += 7) {
+        unsigned char byte = *c->at++;
+        n |= (uint64_t)(byte & 127) << shift;
+        if (byte < 128)
+            return n;
+    }
+    c->failed = true;
+    return 0;
 }
 
-static void put_byte(struct writer *w, unsigned char byte)
+static void code(struct coder *c, uint64_t *n)
 {
-    char *at = room_for_one(w);
-    if (at) {
-        *at = (char)byte;
-        w->to->n++;
+    if (c->to)
+        put(c, *n);
+    else
+        *n = get(c);
+}
+
+/* A number from `from` to end - 1. */
+static void code_from(struct coder *c, int32_t *n, int32_t from, int64_t end)
+{
+    uint64_t ahead = c->to ? (uint64_t)(*n - from) : 0;
+    code(c, &ahead);
+    c->failed = c->failed || end <= from || ahead >= (uint64_t)(end - from);
+    *n = c->failed ? 0 : (int32_t)(from + (int64_t)ahead);
+}
+
+static void code_below(struct coder *c, int32_t *n, int64_t end) { code_from(c, n, 0, end); }
+
+/* A number from 0 to `from`, counted back from there. */
+static void code_back(struct coder *c, int32_t *n, int32_t from)
+{
+    int32_t back = c->to ? from - *n : 0;
+    code_below(c, &back, (int64_t)from + 1);
+    *n = from - back;
+}
+
+static void code_signed(struct coder *c, int64_t *n)
+{
+    uint64_t folded = !c->to ? 0 : *n < 0 ? 2 * ~(uint64_t)*n + 1 : 2 * (uint64_t)*n;
+    code(c, &folded);
+    *n = folded % 2 ? ~(int64_t)(folded / 2) : (int64_t)(folded / 2);
+}
+
+static void code_int(struct coder *c, int32_t *n)
+{
+    int64_t wide = c->to ? *n : 0;
+    code_signed(c, &wide);
+    *n = (int32_t)wide;
+}
+
+/* A number from 0 to end - 1, told as its difference from another. */
+static void code_near(struct coder *c, int32_t *n, int32_t from, int32_t end)
+{
+    int64_t ahead = c->to ? (int64_t)*n - from : 0;
+    code_signed(c, &ahead);
+    c->failed = c->failed || ahead < -(int64_t)from || ahead >= (int64_t)end - from;
+    *n = c->failed ? 0 : (int32_t)(from + ahead);
+}
+
+/* The n lowest of eight bytes. The others are written, too, where what comes next will be; and what may be read has
+ * eight bytes behind it (the hash). */
+static void code_lowest(struct coder *c, uint64_t *word, unsigned n)
+{
+    char *at = c->to ? room_for_one(c) : NULL;
+    c->failed = c->failed || (!c->to && (size_t)(c->end - c->at) < n);
+    if (c->failed || n == 0) {
+        *word = 0;
+    } else if (at) {
+        for (unsigned k = 0; k < sizeof *word; k++)
+            at[k] = (char)(*word >> 8 * k);
+        c->to->n += n;
+    } else {
+        *word = 0;
+        for (unsigned k = 0; k < sizeof *word; k++)
+            *word |= (uint64_t)c->at[k] << 8 * k;
+        *word &= UINT64_MAX >> 8 * (sizeof *word - n);
+        c->at += n;
     }
 }
 
-static void put_signed(struct writer *w, int64_t n) { put(w, n < 0 ? 2 * ~(uint64_t)n + 1 : 2 * (uint64_t)n); }
-
-static void put_bytes(struct writer *w, const void *item, size_t n)
+static void code_bytes(struct coder *c, void *item, size_t n)
 {
-    w->lost = w->lost || !par_bytes_add(w->to, item, n);
+    if (c->to)
+        c->failed = c->failed || !par_bytes_add(c->to, item, n);
+    else
+        c->failed = c->failed || (size_t)(c->end - c->at) < n;
+    if (c->failed || c->to || n == 0)
+        return;
+    memcpy(item, c->at, n);
+    c->at += n;
 }
 
 /* What lies between one and the next: none comes twice. */
-static void put_ascending(struct writer *w, const struct par_ids *list)
+static void code_ascending(struct coder *c, struct par_ids *list, int32_t end)
 {
-    for (int32_t i = 0, last = -1; i < list->n; last = list->item[i++])
-        put(w, (uint64_t)(list->item[i] - last - 1));
+    for (int32_t i = 0, least = 0; !c->failed && i < list->n; least = list->item[i++] + 1)
+        code_from(c, &list->item[i], least, end);
 }
+
+/* --- vertices */
 
 enum { COMMON, FREE, OTHER, KINDS };
 
@@ -75,66 +156,64 @@ struct reals {
     uint64_t bits[REALS];
 };
 
-static struct reals reals_of(const struct par_told_vertex *v)
-{
-    const double real[REALS] = {v->xy.x, v->xy.y, v->feature};
-    struct reals reals;
-    memcpy(&reals, real, sizeof reals);
-    return reals;
-}
-
 static unsigned bytes_in(uint64_t word) { return word ? (unsigned)(71 - __builtin_clzll(word)) / 8 : 0; }
 
-/* The n lowest of eight bytes; the others are written, too, where what comes next will be. */
-static char *write_lowest(char *at, uint64_t word, unsigned n)
+/* What comes before a vertex that is not common: its kind, and how many bytes follow of each number. */
+static int32_t header_of(const struct par_told_vertex *v, const struct reals *last, struct reals *differing)
 {
-    for (unsigned k = 0; k < sizeof word; k++)
-        at[k] = (char)(word >> 8 * k);
-    return at + n;
-}
-
-static void put_place(struct writer *w, const struct reals *reals, struct reals *last, unsigned kind)
-{
-    char *at = room_for_one(w);
-    unsigned n[REALS], header = 0;
+    const double real[REALS] = {v->xy.x, v->xy.y, v->feature};
+    unsigned header = 0;
+    memcpy(differing, real, sizeof real);
     for (int k = REALS - 1; k >= 0; k--) {
-        last->bits[k] ^= reals->bits[k];
-        n[k] = bytes_in(last->bits[k]);
-        header = header * LENGTHS + n[k];
+        differing->bits[k] ^= last->bits[k];
+        header = header * LENGTHS + bytes_in(differing->bits[k]);
     }
-    if (at) {
-        at = write_number(at, header * KINDS + kind);
-        for (int k = 0; k < REALS; k++)
-            at = write_lowest(at, last->bits[k], n[k]);
-        w->to->n = (size_t)(at - w->to->at);
-    }
-    *last = *reals;
+    return (int32_t)header * KINDS + (v->on == TRI_VERTEX_FREE && v->marker == 0 ? FREE : OTHER);
 }
 
-static void put_vertex(struct writer *w, const struct par_told_vertex *v, struct reals *last, const double *attribute,
-                       int32_t n)
+static void code_place(struct coder *c, struct par_told_vertex *v, struct reals *last, struct reals *differing,
+                       unsigned lengths)
 {
-    bool is_free = v->on == TRI_VERTEX_FREE && v->marker == 0;
-    if (v->common != TRI_NONE) {
-        put(w, COMMON);
-        put(w, (uint64_t)v->common);
+    double real[REALS];
+    for (int k = 0; k < REALS; k++, lengths /= LENGTHS) {
+        code_lowest(c, &differing->bits[k], lengths % LENGTHS);
+        last->bits[k] ^= differing->bits[k];
+    }
+    memcpy(real, last, sizeof real);
+    v->xy = (struct tri_point){real[0], real[1]};
+    v->feature = real[2];
+}
+
+static void code_vertex(struct coder *c, struct par_told_vertex *v, struct reals *last, double *attribute)
+{
+    struct reals differing = {{0}};
+    int32_t header = COMMON;
+    if (!c->to)
+        *v = (struct par_told_vertex){.common = TRI_NONE, .on = TRI_VERTEX_FREE};
+    else if (v->common == TRI_NONE)
+        header = header_of(v, last, &differing);
+    code_below(c, &header, KINDS * LENGTHS * LENGTHS * LENGTHS);
+    c->failed = c->failed || (header % KINDS == COMMON && header != COMMON);
+    if (header % KINDS == COMMON) {
+        code_below(c, &v->common, c->n_common);
         return;
     }
-    const struct reals reals = reals_of(v);
-    put_place(w, &reals, last, is_free ? FREE : OTHER);
-    if (!is_free) {
-        put_signed(w, v->on);
-        put_signed(w, v->marker);
+    code_place(c, v, last, &differing, (unsigned)header / KINDS);
+    if (header % KINDS == OTHER) {
+        code_int(c, &v->on);
+        code_int(c, &v->marker);
     }
-    put_bytes(w, attribute, (size_t)n * sizeof *attribute);
+    code_bytes(c, attribute, (size_t)c->mesh->n_attributes * sizeof *attribute);
 }
 
-static void put_vertices(struct writer *w, const struct par_message *m, int32_t n_attributes)
+static void code_vertices(struct coder *c, struct par_message *m)
 {
     struct reals last = {{0}};
-    for (int32_t i = 0; i < m->n_vertices; i++)
-        put_vertex(w, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)n_attributes, n_attributes);
+    for (int32_t i = 0; !c->failed && i < m->n_vertices; i++)
+        code_vertex(c, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)c->mesh->n_attributes);
 }
+
+/* --- triangles */
 
 /* The byte at the beginning of a triangle: which edges lead to triangles that have been told; is the corner opposite to
  * its parent, the first of them that is in this message, new; is the region another one; which is the parent's edge; is
@@ -150,306 +229,164 @@ static int parent_of(const struct par_told_triangle *t, int32_t first)
     return e;
 }
 
-/* The edge of a triangle that runs from `from` to `to`, by numbers; -1: none does. */
-static int edge_of(const struct par_told_triangle *t, int32_t from, int32_t to)
-{
-    for (int e = 0; e < 3; e++)
-        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
-            return e;
-    return -1;
-}
-
-static void put_links(struct writer *w, const struct par_told_triangle *t, int32_t number, bool last_is_parent)
-{
-    for (int e = 0; e < 3; e++)
-        if (t->next[e] != TRI_NONE && !(last_is_parent && t->next[e] == number - 1))
-            put(w, (uint64_t)(number - 1 - t->next[e]));
-}
-
-static void put_triangle(struct writer *w, const struct par_message *m, int32_t first, int32_t i, int32_t *top,
-                         int32_t *region)
+static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, int32_t top, int32_t region)
 {
     const struct par_told_triangle *t = &m->triangle[i];
-    int parent = parent_of(t, first), flags = t->region != *region ? OTHER_REGION : 0;
+    int parent = parent_of(t, first), flags = t->region != region ? OTHER_REGION : 0;
     for (int e = 0; e < 3; e++)
         flags |= (t->next[e] != TRI_NONE) << e;
     if (parent < 3) {
         const struct par_told_triangle *other = &m->triangle[t->next[parent] - first];
-        flags |= edge_of(other, t->v[tri_prev[parent]], t->v[tri_next[parent]]) * PARENT_EDGE;
-        flags |= t->v[parent] == *top ? NEW_APEX : 0;
+        flags |= par_edge_between(other->v, t->v[tri_prev[parent]], t->v[tri_next[parent]]) * PARENT_EDGE;
+        flags |= t->v[parent] == top ? NEW_APEX : 0;
         bool is_first = (flags & ((1 << parent) - 1)) == 0;
         flags |= is_first && t->next[parent] == first + i - 1 ? LAST_IS_PARENT : 0;
     }
-    put_byte(w, (unsigned char)flags);
-    put_links(w, t, first + i, flags & LAST_IS_PARENT);
-    for (int k = 0; k < 3; k++) {
-        if (parent == 3 || (k == parent && !(flags & NEW_APEX)))
-            put(w, (uint64_t)(*top - t->v[k]));
-        *top += t->v[k] == *top;
-    }
-    if (t->region != *region)
-        put(w, (uint64_t)(*region = t->region));
+    return (uint64_t)flags;
 }
 
-static void put_triangles(struct writer *w, const struct par_message *m, const struct par_talk *talk)
-{
-    int32_t top = talk->vertex.n - m->n_vertices, first = talk->triangle.n - m->n_triangles, region = 0;
-    for (int32_t i = 0; i < m->n_triangles; i++)
-        put_triangle(w, m, first, i, &top, &region);
-}
-
-static void put_sides(struct writer *w, const struct par_message *m, const struct par_talk *talk)
-{
-    int32_t top = talk->sub.n - m->n_new_subs, last = 0;
-    for (int32_t i = 0; i < m->n_sides; i++) {
-        const struct par_told_side *s = &m->side[i];
-        put_signed(w, s->triangle - last);
-        put(w, (uint64_t)(s->edge << 2 | s->side << 1 | s->is_boundary));
-        put(w, (uint64_t)(top - s->sub));
-        if (s->sub == top) {
-            put_signed(w, s->marker);
-            put(w, (uint64_t)s->parent);
-            top++;
-        }
-        last = s->triangle;
-    }
-}
-
-static void put_entries(struct writer *w, const struct par_message *m)
-{
-    uint64_t key = 0;
-    int32_t last = 0;
-    for (int32_t i = 0; i < m->n_entries; i++) {
-        assert(m->entry[i].key >= key);
-        put(w, m->entry[i].key - key);
-        put_signed(w, m->entry[i].triangle - last);
-        key = m->entry[i].key;
-        last = m->entry[i].triangle;
-    }
-}
-
-bool par_message_write(const struct par_message *m, const struct par_talk *talk, int32_t n_attributes,
-                       struct par_bytes *to)
-{
-    struct writer w = {to, false};
-    size_t begin = to->n;
-    const int32_t count[7] = {m->gone.n, m->gone_subs.n, m->n_vertices, m->n_triangles, m->n_sides, m->n_new_subs,
-                              m->n_entries};
-    for (int k = 0; k < 7; k++)
-        put(&w, (uint64_t)count[k]);
-    put_ascending(&w, &m->gone);
-    put_ascending(&w, &m->gone_subs);
-    put_vertices(&w, m, n_attributes);
-    put_triangles(&w, m, talk);
-    put_sides(&w, m, talk);
-    put_entries(&w, m);
-    uint64_t hash = w.lost ? 0 : hash_of(to->at + begin, to->n - begin);
-    put_bytes(&w, &hash, sizeof hash);
-    return !w.lost;
-}
-
-/* --- reading */
-
-struct reader {
-    const unsigned char *at, *end;
-    bool bad;
-};
-
-static uint64_t get(struct reader *r)
-{
-    uint64_t n = 0;
-    for (int shift = 0; shift < 64 && r->at < r->end; shift += 7) {
-        unsigned char byte = *r->at++;
-        n |= (uint64_t)(byte & 127) << shift;
-        if (byte < 128)
-            return n;
-    }
-    r->bad = true;
-    return 0;
-}
-
-/* A number from 0 to end - 1. */
-static int32_t get_below(struct reader *r, int64_t end)
-{
-    uint64_t n = get(r);
-    r->bad = r->bad || end <= 0 || n >= (uint64_t)end;
-    return r->bad ? 0 : (int32_t)n;
-}
-
-static int64_t get_signed(struct reader *r)
-{
-    uint64_t n = get(r);
-    return n % 2 ? ~(int64_t)(n / 2) : (int64_t)(n / 2);
-}
-
-/* A number from 0 to end - 1, told as its difference from another. */
-static int32_t get_near(struct reader *r, int32_t from, int32_t end)
-{
-    int64_t n = get_signed(r);
-    r->bad = r->bad || n < -(int64_t)from || n >= (int64_t)end - from;
-    return r->bad ? 0 : (int32_t)(from + n);
-}
-
-static int32_t get_int(struct reader *r) { return (int32_t)get_signed(r); }
-
-static void get_bytes(struct reader *r, void *item, size_t n)
-{
-    r->bad = r->bad || (size_t)(r->end - r->at) < n;
-    if (r->bad || n == 0)
-        return;
-    memcpy(item, r->at, n);
-    r->at += n;
-}
-
-static void get_ascending(struct reader *r, struct par_ids *list, int32_t n, int32_t end)
-{
-    for (int32_t last = -1; !r->bad && list->n < n; last = list->item[list->n++])
-        list->item[list->n] = last + 1 + get_below(r, (int64_t)end - last - 1);
-}
-
-/* Eight bytes lie behind whatever may be read (the hash), so that a word can be, of which the n lowest count. */
-static uint64_t get_lowest(struct reader *r, unsigned n)
-{
-    uint64_t word = 0;
-    r->bad = r->bad || (size_t)(r->end - r->at) < n;
-    if (r->bad || n == 0)
-        return 0;
-    for (unsigned k = 0; k < sizeof word; k++)
-        word |= (uint64_t)r->at[k] << 8 * k;
-    r->at += n;
-    return word & UINT64_MAX >> 8 * (sizeof word - n);
-}
-
-static void get_place(struct reader *r, struct par_told_vertex *v, struct reals *last, unsigned header)
-{
-    double real[REALS];
-    for (int k = 0; k < REALS; k++, header /= LENGTHS)
-        last->bits[k] ^= get_lowest(r, header % LENGTHS);
-    memcpy(real, last, sizeof real);
-    v->xy = (struct tri_point){real[0], real[1]};
-    v->feature = real[2];
-}
-
-static void get_vertex(struct reader *r, struct par_told_vertex *v, struct reals *last, double *attribute, int32_t n,
-                       int32_t n_common)
-{
-    const unsigned header = (unsigned)get_below(r, KINDS * LENGTHS * LENGTHS * LENGTHS), kind = header % KINDS;
-    *v = (struct par_told_vertex){.common = TRI_NONE, .on = TRI_VERTEX_FREE};
-    if (kind == COMMON) {
-        v->common = get_below(r, n_common);
-        r->bad = r->bad || header != COMMON;
-        return;
-    }
-    get_place(r, v, last, header / KINDS);
-    if (kind == OTHER) {
-        v->on = get_int(r);
-        v->marker = get_int(r);
-    }
-    get_bytes(r, attribute, (size_t)n * sizeof *attribute);
-}
-
-static void get_vertices(struct reader *r, struct par_message *m, int32_t n_attributes, int32_t n_common)
-{
-    struct reals last = {{0}};
-    for (int32_t i = 0; !r->bad && i < m->n_vertices; i++)
-        get_vertex(r, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)n_attributes, n_attributes, n_common);
-}
-
-static void get_links(struct reader *r, struct par_told_triangle *t, int32_t number, int flags)
+static void code_links(struct coder *c, struct par_told_triangle *t, int32_t number, int flags)
 {
     bool last_is_parent = flags & LAST_IS_PARENT;
     for (int e = 0; e < 3; e++) {
-        t->next[e] = TRI_NONE;
         if (!(flags >> e & 1))
-            continue;
-        t->next[e] = last_is_parent ? number - 1 : number - 1 - get_below(r, number);
-        last_is_parent = false;
+            t->next[e] = TRI_NONE;
+        else if (last_is_parent)
+            t->next[e] = number - 1;
+        else
+            code_back(c, &t->next[e], number - 1);
+        last_is_parent = last_is_parent && !(flags >> e & 1);
     }
 }
 
-static void get_triangle(struct reader *r, struct par_message *m, int32_t first, int32_t i, int32_t *top,
-                         int32_t n_regions)
+static void code_corners(struct coder *c, struct par_message *m, struct par_told_triangle *t, int flags, int32_t *top)
 {
-    struct par_told_triangle *t = &m->triangle[i];
-    int flags = (int)get_lowest(r, 1);
-    r->bad = r->bad || (i == 0 && flags & LAST_IS_PARENT);
-    if (r->bad)
-        return;
-    get_links(r, t, first + i, flags);
-    int parent = parent_of(t, first), edge = flags / PARENT_EDGE % 4;
-    r->bad = r->bad || edge == 3;
-    if (r->bad)
+    int parent = parent_of(t, c->triangles), edge = flags / PARENT_EDGE % 4;
+    c->failed = c->failed || edge == 3;
+    if (c->failed)
         return;
     if (parent < 3) {
-        const struct par_told_triangle *other = &m->triangle[t->next[parent] - first];
+        const struct par_told_triangle *other = &m->triangle[t->next[parent] - c->triangles];
         t->v[tri_prev[parent]] = other->v[tri_next[edge]];
         t->v[tri_next[parent]] = other->v[tri_prev[edge]];
     }
     for (int k = 0; k < 3; k++) {
         if (parent == 3 || (k == parent && !(flags & NEW_APEX)))
-            t->v[k] = *top - get_below(r, (int64_t)*top + 1);
+            code_back(c, &t->v[k], *top);
         else if (k == parent)
             t->v[k] = *top;
         *top += t->v[k] == *top;
     }
-    t->region = flags & OTHER_REGION ? get_below(r, n_regions) : i > 0 ? m->triangle[i - 1].region : 0;
 }
 
-static void get_triangles(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_regions)
+static void code_triangles(struct coder *c, struct par_message *m)
 {
-    int32_t top = talk->vertex.n;
-    for (int32_t i = 0; !r->bad && i < m->n_triangles; i++)
-        get_triangle(r, m, talk->triangle.n, i, &top, n_regions);
-    r->bad = r->bad || top != talk->vertex.n + m->n_vertices;
+    int32_t top = c->vertices, region = 0;
+    for (int32_t i = 0; !c->failed && i < m->n_triangles; i++) {
+        struct par_told_triangle *t = &m->triangle[i];
+        uint64_t flags = c->to ? flags_of(m, c->triangles, i, top, region) : 0;
+        code_lowest(c, &flags, 1);
+        c->failed = c->failed || (i == 0 && flags & LAST_IS_PARENT);
+        if (c->failed)
+            return;
+        code_links(c, t, c->triangles + i, (int)flags);
+        code_corners(c, m, t, (int)flags, &top);
+        if (flags & OTHER_REGION)
+            code_below(c, &t->region, c->mesh->n_regions);
+        else
+            t->region = region;
+        region = t->region;
+    }
+    c->failed = c->failed || top != c->vertices + m->n_vertices;
 }
 
-static void get_sides(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_parents)
+/* --- the rest */
+
+static void code_sides(struct coder *c, struct par_message *m)
 {
-    int32_t top = talk->sub.n, end = talk->sub.n + m->n_new_subs, triangles = talk->triangle.n + m->n_triangles;
-    int32_t last = 0;
-    for (int32_t i = 0; i < m->n_sides; i++) {
+    int32_t top = c->subs, end = c->subs + m->n_new_subs, last = 0;
+    for (int32_t i = 0; !c->failed && i < m->n_sides; i++) {
         struct par_told_side *s = &m->side[i];
-        s->triangle = last = get_near(r, last, triangles);
-        int32_t flags = get_below(r, 3 << 2);
+        int32_t flags = c->to ? s->edge << 2 | s->side << 1 | s->is_boundary : 0;
+        code_near(c, &s->triangle, last, c->triangles + m->n_triangles);
+        code_below(c, &flags, 3 << 2);
+        code_back(c, &s->sub, top);
+        last = s->triangle;
         s->edge = flags >> 2;
         s->side = flags >> 1 & 1;
         s->is_boundary = flags & 1;
-        s->sub = top - get_below(r, (int64_t)top + 1);
-        s->marker = s->parent = 0;
-        if (s->sub < top)
+        if (s->sub < top) {
+            s->marker = s->parent = 0;
             continue;
-        s->marker = get_int(r);
-        s->parent = get_below(r, n_parents);
-        r->bad = r->bad || top++ >= end;
+        }
+        code_int(c, &s->marker);
+        code_below(c, &s->parent, c->mesh->n_parents);
+        c->failed = c->failed || top++ >= end;
     }
-    r->bad = r->bad || top != end;
+    c->failed = c->failed || top != end;
 }
 
-static void get_entries(struct reader *r, struct par_message *m, int32_t triangles)
+static void code_entries(struct coder *c, struct par_message *m)
 {
     uint64_t key = 0;
     int32_t last = 0;
-    for (int32_t i = 0; i < m->n_entries; i++) {
-        key += get(r);
-        m->entry[i] = (struct par_told_entry){key, last = get_near(r, last, triangles)};
+    for (int32_t i = 0; !c->failed && i < m->n_entries; i++) {
+        struct par_told_entry *entry = &m->entry[i];
+        uint64_t ahead = c->to ? entry->key - key : 0;
+        assert(!c->to || entry->key >= key);
+        code(c, &ahead);
+        entry->key = key += ahead;
+        code_near(c, &entry->triangle, last, c->triangles + m->n_triangles);
+        last = entry->triangle;
     }
 }
 
-static bool reserve(struct par_message *m, const int32_t count[7], int32_t n_attributes)
+/* Each of what is counted takes a byte at least. */
+static void code_counts(struct coder *c, struct par_message *m)
 {
-    m->n_vertices = count[2];
-    m->n_triangles = count[3];
-    m->n_sides = count[4];
-    m->n_new_subs = count[5];
-    m->n_entries = count[6];
-    int32_t values = par_values_of(count[2], n_attributes);
-    return values >= 0 && tri_grow(&m->gone.item, &m->gone.capacity, count[0], sizeof *m->gone.item) &&
-           tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, count[1], sizeof *m->gone_subs.item) &&
-           tri_grow(&m->vertex, &m->vertex_capacity, count[2], sizeof *m->vertex) &&
+    int32_t *count[] = {&m->gone.n, &m->gone_subs.n, &m->n_vertices, &m->n_triangles, &m->n_sides, &m->n_new_subs,
+                        &m->n_entries};
+    const int64_t left = c->end - c->at, most = c->to || left > TRI_MAX_TRIANGLES ? TRI_MAX_TRIANGLES : left;
+    for (size_t k = 0; k < sizeof count / sizeof *count; k++)
+        code_below(c, count[k], most);
+}
+
+static void code_all(struct coder *c, struct par_message *m)
+{
+    code_ascending(c, &m->gone, c->triangles);
+    code_ascending(c, &m->gone_subs, c->subs);
+    code_vertices(c, m);
+    code_triangles(c, m);
+    code_sides(c, m);
+    code_entries(c, m);
+}
+
+/* Of what stands before it at the end of a message. */
+static uint64_t hash_of(const char *bytes, size_t n) { return par_hash(n, bytes, n); }
+
+bool par_message_write(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
+                       int32_t n_common, struct par_bytes *to)
+{
+    struct coder c = {.to = to, .mesh = mesh, .n_common = n_common, .vertices = talk->vertex.n - m->n_vertices,
+                      .triangles = talk->triangle.n - m->n_triangles, .subs = talk->sub.n - m->n_new_subs};
+    size_t begin = to->n;
+    code_counts(&c, m);
+    code_all(&c, m);
+    uint64_t hash = c.failed ? 0 : hash_of(to->at + begin, to->n - begin);
+    code_bytes(&c, &hash, sizeof hash);
+    return !c.failed;
+}
+
+static bool reserve(struct par_message *m, int32_t n_attributes)
+{
+    int32_t values = par_values_of(m->n_vertices, n_attributes);
+    return values >= 0 && tri_grow(&m->gone.item, &m->gone.capacity, m->gone.n, sizeof *m->gone.item) &&
+           tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, m->gone_subs.n, sizeof *m->gone_subs.item) &&
+           tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices, sizeof *m->vertex) &&
            tri_grow(&m->attribute, &m->attribute_capacity, values, sizeof *m->attribute) &&
-           tri_grow(&m->triangle, &m->triangle_capacity, count[3], sizeof *m->triangle) &&
-           tri_grow(&m->side, &m->side_capacity, count[4], sizeof *m->side) &&
-           tri_grow(&m->entry, &m->entry_capacity, count[6], sizeof *m->entry);
+           tri_grow(&m->triangle, &m->triangle_capacity, m->n_triangles, sizeof *m->triangle) &&
+           tri_grow(&m->side, &m->side_capacity, m->n_sides, sizeof *m->side) &&
+           tri_grow(&m->entry, &m->entry_capacity, m->n_entries, sizeof *m->entry);
 }
 
 /* Are all old triangles and subsegments that are named still there? */
@@ -463,38 +400,30 @@ static bool are_there(const struct par_message *m, const struct par_talk *talk)
     return good;
 }
 
-static void begin(struct reader *r, const struct par_bytes *from)
+static void begin_reading(struct coder *c, const struct par_bytes *from)
 {
     uint64_t hash;
     size_t n = from->n < sizeof hash ? 0 : from->n - sizeof hash;
-    r->at = (const unsigned char *)from->at;
-    r->end = r->at + n;
+    c->at = (const unsigned char *)from->at;
+    c->end = c->at + n;
     if (n > 0)
         memcpy(&hash, from->at + n, sizeof hash);
-    r->bad = n == 0 || hash != hash_of(from->at, n);
+    c->failed = n == 0 || hash != hash_of(from->at, n);
 }
 
 enum tri_status par_message_read(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
                                  int32_t n_common, const struct par_bytes *from, struct tri_error *error)
 {
-    struct reader r = {0};
-    int32_t count[7] = {0}, n = mesh->n_attributes;
-    const int64_t most = from->n < TRI_MAX_TRIANGLES ? (int64_t)from->n : TRI_MAX_TRIANGLES;
+    struct coder c = {.mesh = mesh, .n_common = n_common, .vertices = talk->vertex.n, .triangles = talk->triangle.n,
+                      .subs = talk->sub.n};
     *m = (struct par_message){0};
-    begin(&r, from);
-    for (int k = 0; !r.bad && k < 7; k++)
-        count[k] = get_below(&r, most); /* each takes a byte at least */
-    if (!r.bad && !reserve(m, count, n))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
-    if (!r.bad) {
-        get_ascending(&r, &m->gone, count[0], talk->triangle.n);
-        get_ascending(&r, &m->gone_subs, count[1], talk->sub.n);
-        get_vertices(&r, m, n, n_common);
-        get_triangles(&r, m, talk, mesh->n_regions);
-        get_sides(&r, m, talk, mesh->n_parents);
-        get_entries(&r, m, talk->triangle.n + m->n_triangles);
-    }
-    if (r.bad || r.at != r.end || !are_there(m, talk))
+    begin_reading(&c, from);
+    code_counts(&c, m);
+    if (!c.failed && !reserve(m, mesh->n_attributes))
+        return par_ranks_no_memory(error);
+    if (!c.failed)
+        code_all(&c, m);
+    if (c.failed || c.at != c.end || !are_there(m, talk))
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no part of a mesh");
     return TRI_OK;
 }

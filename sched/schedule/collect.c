@@ -84,26 +84,26 @@ static uint64_t key_of(const struct par_run *state, int32_t i)
 bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n)
 {
     struct par_ids *list = &state->worklist;
-    int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
-    uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
+    int32_t most = list->n + n, at = 0, *items = malloc(((size_t)most + 1) * sizeof *items);
+    uint64_t *keys = malloc(((size_t)most + 1) * sizeof *keys);
     if (!items || !keys) {
         free(items);
         free(keys);
         return false;
     }
     assert(state->key.n == 0 || state->key.n == list->n);
-    for (int32_t i = 0, at = 0; at < sum; at++) {
-        bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
+    for (int32_t i = 0, k = 0; i < list->n || k < n; at++) {
+        bool old = k == n || (i < list->n && key_of(state, i) <= key[k]);
         items[at] = old ? list->item[i] : item[k];
         keys[at] = old ? key_of(state, i) : key[k];
         assert(at == 0 || keys[at - 1] < keys[at]);
         i += old;
-        k += !old;
+        k += k < n && keys[at] == key[k];
     }
     free(state->worklist.item);
     free(state->key.item);
-    state->worklist = (struct par_ids){items, sum, sum};
-    state->key = (struct par_keys){keys, sum, sum};
+    state->worklist = (struct par_ids){items, at, most};
+    state->key = (struct par_keys){keys, at, most};
     return true;
 }
 

@@ -117,8 +117,8 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
 enum tri_status par_phase(struct par_run *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 
-/* Adds triangles to the worklist, by their keys, which ascend and are not there yet. False: no memory, and the worklist
- * is as before. */
+/* Adds triangles to the worklist, by their keys, which ascend; whose key is there already is there. False: no memory,
+ * and the worklist is as before. */
 bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n);
 
 #endif

@@ -37,6 +37,11 @@ struct par_triangle_set {
 /* The triangles of a list, out of n_triangles; false: no memory. To be freed by free(set->word). O(n_triangles). */
 bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *triangles, int32_t n_triangles);
 
+static inline bool par_is_in(const struct par_triangle_set *set, tri_triangle_id t)
+{
+    return set->word[t / 64] >> t % 64 & 1;
+}
+
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
  * triangles born since are judged. All begin a new life, see struct tri_triangle.life. TRI_NO_MEMORY: the worklist is

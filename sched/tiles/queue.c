@@ -4,47 +4,27 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "sched/schedule/threads.h"
+#include "sched/tiles/tile_arrays.h"
 #include "triangle/base/status.h"
 
 struct par_queued {
     struct par_queued *next;
     int64_t bytes;
-    struct tri_tile tile; /* its arrays lie behind this struct */
+    struct tri_tile tile; /* which lies packed behind this struct */
 };
 
-/* --- copies */
-
-static void *put(char **at, const void *data, size_t size)
-{
-    void *copy = *at;
-    if (size > 0)
-        memcpy(copy, data, size);
-    *at += size;
-    return copy;
-}
-
-/* Wide numbers first, so that all are aligned. NULL: no memory. */
+/* NULL: no memory. */
 static struct par_queued *copy_of(const struct tri_tile *tile, int32_t n_attributes)
 {
-    const size_t n = (size_t)tile->n_vertices, m = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
-    const size_t attributes = n * (size_t)n_attributes * sizeof *tile->attributes;
-    const size_t size = sizeof(struct par_queued) + n * 20 + attributes + m * 28 + s * 20;
-    struct par_queued *copy = malloc(size);
+    const size_t n = par_tile_bytes(tile, n_attributes);
+    struct par_queued *copy = malloc(sizeof *copy + n);
     if (!copy)
         return NULL;
-    *copy = (struct par_queued){.bytes = (int64_t)size, .tile = *tile};
-    char *at = (char *)(copy + 1);
-    copy->tile.points = put(&at, tile->points, n * sizeof *tile->points);
-    copy->tile.attributes = put(&at, tile->attributes, attributes);
-    copy->tile.corners = put(&at, tile->corners, m * sizeof *tile->corners);
-    copy->tile.ends = put(&at, tile->ends, s * sizeof *tile->ends);
-    copy->tile.point_markers = put(&at, tile->point_markers, n * sizeof *tile->point_markers);
-    copy->tile.regions = put(&at, tile->regions, m * sizeof *tile->regions);
-    copy->tile.segment_markers = put(&at, tile->segment_markers, s * sizeof *tile->segment_markers);
-    assert(at == (char *)copy + size);
+    *copy = (struct par_queued){.bytes = (int64_t)(sizeof *copy + n)};
+    par_tile_pack((char *)(copy + 1), tile, n_attributes);
+    par_tile_unpack((const char *)(copy + 1), n, n_attributes, &copy->tile);
     return copy;
 }
 
