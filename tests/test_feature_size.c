@@ -1,6 +1,5 @@
-/* Nothing runs away: what vertices know of the features around them, and how many triangles that leaves, over all
- * inputs and bounds. */
-#include "full.h"
+/* Nothing runs away: what vertices know of the features around them. tests/corpus/ tells how many triangles that
+ * leaves. */
 #include "support.h"
 
 #include "triangle/mesh/parents.h"
@@ -90,56 +89,6 @@ static void test_no_vertex_forgets_its_sources(void **state)
         }
 }
 
-static int32_t triangles_at(const struct tri_pslg *pslg, double angle, bool conforming)
-{
-    struct tri_options options = support_quality(angle, 0);
-    options.quality.conforming = conforming;
-    struct tri_mesh mesh = support_generate(pslg, &options, NULL);
-    struct tri_check_options check = {.max_bad = INT64_MAX, .min_angle = angle, .ignore_lost = true};
-    support_judge(&mesh, pslg, &check, false, NULL);
-    int32_t n = mesh.n_triangles;
-    tri_mesh_free(&mesh);
-    return n;
-}
-
-/* Up to 34 degrees at most so many times the triangles at 28 degrees, a bound that is reached by theory; up to 36
- * at most so many times those at 34; beyond, where most figures keep no bound, what is given up alone ends it. */
-static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t most)
-{
-    static const double angles[] = {33, 34, 35, 36, 60};
-    for (int conforming = 0; conforming < 2; conforming++) {
-        int32_t usual = triangles_at(pslg, 28, conforming);
-        double limit = 8.0 * usual + 150;
-        for (int i = 0; i < 5 && usual <= most; i++) {
-            int32_t n = triangles_at(pslg, angles[i], conforming);
-            if (n > limit)
-                fail_msg("%s: %d triangles at %g degrees, %d at 28", name, (int)n, angles[i], (int)usual);
-            if (angles[i] == 34)
-                limit = 3.0 * n + 150;
-            if (angles[i] == 36)
-                limit = 40.0 * usual + 150;
-        }
-    }
-}
-
-static void test_no_bound_runs_away(void **state)
-{
-    (void)state;
-    static const char *const folders[] = {"", "nasty", "regress"};
-    for (int i = 0, tried = 0; i < 3; i++) {
-        char **names = support_names(folders[i]);
-        for (char **name = names; *name; name++) {
-            struct tri_pslg pslg;
-            if (tried++ % every(16) || !support_read(*name, &pslg))
-                continue;
-            if (pslg.n_segments > 0 && pslg.n_segments < 200)
-                check_bounds(*name, &pslg, 800);
-            tri_pslg_free(&pslg);
-        }
-        support_free_names(names);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -147,7 +96,6 @@ int main(void)
         cmocka_unit_test(test_what_coordinates_do_not_resolve_is_no_feature),
         cmocka_unit_test(test_sizes_are_inherited_and_grow),
         cmocka_unit_test(test_no_vertex_forgets_its_sources),
-        cmocka_unit_test(test_no_bound_runs_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

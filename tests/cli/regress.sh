@@ -257,7 +257,7 @@ for angle in 35 36 40 45 59 60 61 90; do
     judge letter.1 --poly letter.poly
 done
 
-# --- points for angles that ran away: right meshes, in time. (test_feature_size tries all inputs and bounds.)
+# --- points for angles that ran away: right meshes, in time. (test_refine tries all inputs.)
 fresh regress/endless_q36_small.poly regress/endless_q36_fan.poly regress/endless_q35_graded.poly \
     regress/slow_q41D_2369.poly regress/ranaway30.poly regress/thin_comb.poly \
     regress/ranaway_fan.poly regress/ranaway_zigzag.poly regress/hidden_gap.poly \

@@ -2,10 +2,11 @@
  *
  * What the judges hold to is what README promises:
  *   - a right mesh, by the checker, and the same on 1 and 3 threads;
- *   - no area above its bound, but of triangles thinner than coordinates resolve, and with -Y;
+ *   - no area above its bound, but of triangles thinner than coordinates resolve;
  *   - angles below the bound are counted, and few but beside small angles of the input, in narrow spaces, at the
- *     resolution of coordinates; -D: vertices in circles are counted, and lie on subsegments up to rounding;
- *   - no run-away: 36 times the triangles at 28 degrees, 8 times those of one call in a schedule, 8 times as many when
+ *     resolution of coordinates, and with -Y; -D: vertices in circles are counted, and lie on subsegments up to
+ *     rounding;
+ *   - no run-away: 36 times the triangles at 28 degrees, 4 times those of one call in a schedule, 4 times as many when
  *     a mesh is refined again, and some.
  * Meshes of more than 300,000 points that their figures do ask for are made with that limit.
  * A case that inserts more than its figure can ask for is endless, however long that takes; the limit on time is for
@@ -30,7 +31,9 @@ void judge_case(const struct torture_case *c, struct verdict *verdict);
 /* Is the kind of fault one of these names, which have commas between them? NULL: no. */
 bool judge_names(const char *names, const char *fault);
 
-/* --- for the files judge_*.c */
+/* --- for the files judge*.c */
+
+enum { PROMISED = 28 }; /* in degrees: up to here theory promises an end, where no segments meet at small angles */
 
 /* A mesh and all that is known of it. */
 struct outcome {

@@ -7,19 +7,12 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/place.h"
 
-/* Heights below this share of the largest coordinate are at the resolution of coordinates. */
-static const double RESOLUTION = 1e-12;
+/* Triangles lower than so many units in the last place of the largest coordinate may be too large (with -YY twice as
+ * high ones), and leave no room to split a subsegment. */
+static const double FLAT = 100 * 0x1p-52;
 
 /* Nearer than this share of it rounding may keep a vertex in a subsegment's circle. */
-static const double LEVEL = 1e-7;
-
-struct bounds {
-    const struct outcome *outcome;
-    double least_height; /* in the mesh's units */
-    int64_t too_large, too_flat;
-    double worst; /* area over bound */
-    int32_t worst_at;
-};
+static const double LEVEL = 1e-8;
 
 static double area_bound(const struct outcome *o, int32_t t)
 {
@@ -29,52 +22,37 @@ static double area_bound(const struct outcome *o, int32_t t)
     return (q->region_areas && own > 0 ? fmin(bound, own) : bound) / o->mesh.unit / o->mesh.unit;
 }
 
-static void measure(struct bounds *b, int32_t t)
-{
-    const struct tri_mesh *mesh = &b->outcome->mesh;
-    struct tri_shape s = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    double height = s.area2 / sqrt(fmax(s.l[0], fmax(s.l[1], s.l[2])));
-    bool flat = height < b->least_height;
-    double over = s.area2 / 2 / area_bound(b->outcome, t);
-    b->too_flat += flat;
-    if (flat || over <= 1 + 1e-9)
-        return;
-    b->too_large++;
-    if (over > b->worst)
-        b->worst = over, b->worst_at = t;
-}
-
-static void judge_areas(const struct outcome *o, struct bounds *b, struct verdict *verdict)
+static void judge_areas(const struct outcome *o, struct verdict *verdict)
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
-    *b = (struct bounds){.outcome = o, .least_height = RESOLUTION * box.largest / o->mesh.unit};
-    for (int32_t t = 0; t < o->mesh.n_triangles; t++)
-        measure(b, t);
-    if (b->too_large > 0 && o->switches.protect == 0)
-        judge_fault(verdict, "area", "%lld triangles too large, the worst %d by a factor of %.3g",
-                    (long long)b->too_large, (int)b->worst_at, b->worst);
+    const double flat = (o->switches.protect > 1 ? 2 : 1) * FLAT * box.largest / o->mesh.unit;
+    for (int32_t t = 0; t < o->mesh.n_triangles; t++) {
+        struct tri_shape s = tri_shape_of(o->mesh.xy, o->mesh.tri[t].v);
+        double over = s.area2 / 2 / area_bound(o, t), height = s.area2 / sqrt(tri_longest2(&s));
+        if (over > 1 + 1e-9 && height >= flat)
+            judge_fault(verdict, "area", "triangle %d is too large by a factor of %.3g", (int)t, over);
+    }
 }
 
 /* Beside small angles of the input, which the checker finds itself, narrow spaces and what coordinates do not resolve,
- * few angles are below a bound up to the largest: where vertices ran away, and around flat triangles. */
-static void judge_unexplained(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
+ * few angles are below a bound up to the largest: where vertices ran away, which is seldom as far as theory goes. */
+static void judge_unexplained(const struct outcome *o, const struct tri_check_report *report,
                               const int64_t count[TRI_EXCUSES], struct verdict *verdict)
 {
-    const double SHARE = 0.05;
-    enum { FEW = 30, AROUND = 10 };
+    enum { FEW = 30 };
+    const double share = o->options.quality.min_angle > PROMISED ? 0.05 : 0;
     const int64_t excused = report->n_small_explained + count[TRI_EXCUSE_NARROW_GAP] + count[TRI_EXCUSE_PRECISION];
     const int64_t unexplained = report->n_small - excused;
     if (o->switches.protect > 0 || o->options.quality.min_angle > TRI_USUAL_ANGLE)
         return;
-    if (unexplained > FEW + SHARE * o->mesh.n_triangles + AROUND * (double)b->too_flat)
+    if (unexplained > FEW + share * o->mesh.n_triangles)
         judge_fault(verdict, "angle", "%lld of %d angles are small without a reason (input angle %lld, gap %lld)",
                     (long long)unexplained, (int)o->mesh.n_triangles, (long long)count[TRI_EXCUSE_INPUT_ANGLE],
                     (long long)count[TRI_EXCUSE_NARROW_GAP]);
 }
 
 /* The counts that the programs print. */
-static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
-                         struct verdict *verdict)
+static void judge_angles(const struct outcome *o, const struct tri_check_report *report, struct verdict *verdict)
 {
     struct tri_quality angles = o->options.quality;
     int64_t count[TRI_EXCUSES], sum = 0;
@@ -91,7 +69,7 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
         judge_fault(verdict, "angle deferred", "%lld triangles", (long long)count[TRI_EXCUSE_DEFERRED]);
     if (count[TRI_EXCUSE_PROTECTED] > 0 && o->switches.protect == 0)
         judge_fault(verdict, "angle protected", "%lld without Y", (long long)count[TRI_EXCUSE_PROTECTED]);
-    judge_unexplained(o, b, report, count, verdict);
+    judge_unexplained(o, report, count, verdict);
 }
 
 /* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
@@ -112,7 +90,7 @@ static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, doub
 {
     const struct tri_subsegment *s = &mesh->sub[i];
     if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]) ||
-        is_beside_flat(mesh, s, RESOLUTION * largest))
+        is_beside_flat(mesh, s, FLAT * largest))
         return false;
     return tri_line_distance(mesh->xy[s->v[0]], mesh->xy[s->v[1]], mesh->xy[tri_apex(mesh, s->side[side])]) >
            LEVEL * largest;
@@ -163,14 +141,13 @@ static void judge_limit(const struct outcome *o, struct verdict *verdict)
 
 void judge_bounds(const struct outcome *o, const struct tri_check_report *report, struct verdict *verdict)
 {
-    struct bounds b;
     if (!o->options.refine)
         return;
     judge_protection(o, verdict);
     judge_limit(o, verdict);
     if (o->report.quality.hit_limit)
         return;
-    judge_areas(o, &b, verdict);
+    judge_areas(o, verdict);
     if (o->options.quality.min_angle > 0)
-        judge_angles(o, &b, report, verdict);
+        judge_angles(o, report, verdict);
 }
