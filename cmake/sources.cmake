@@ -79,7 +79,6 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/store.c
     triangle/check/match.c
     triangle/check/subsegments.c
-    triangle/check/stars.c
     triangle/check/order.c
     triangle/check/missing.c
     triangle/check/winding.c

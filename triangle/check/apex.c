@@ -9,7 +9,6 @@
 #include <stdlib.h>
 
 enum {
-    SLICE = 1 << 14, /* triangles */
     MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
     NO_APEX = -1,
     UNKNOWN = -2,
@@ -153,10 +152,12 @@ static void find_apexes(struct apexes *q)
         q->apex_of[i] = UNKNOWN;
 }
 
-static void mark_near(struct checker *c, const int64_t *corners, int64_t n)
+static void mark_near(void *checker, int64_t first, int64_t n, const void *corners)
 {
+    struct checker *c = checker;
+    (void)first;
     for (int64_t t = 0; t < n; t++) {
-        const int64_t *v = corners + 3 * t;
+        const int64_t *v = (const int64_t *)corners + 3 * t;
         for (int k = 0; k < 3 && has_state(c, v, CHECK_APEX); k++)
             c->state[v[k]] |= CHECK_NEAR;
     }
@@ -165,16 +166,8 @@ static void mark_near(struct checker *c, const int64_t *corners, int64_t n)
 enum tri_status tri_check_mark_near(struct apexes *q)
 {
     struct checker *c = q->c;
-    int64_t *corners = tri_check_array(SLICE, 3 * sizeof *corners);
-    enum tri_status status = corners == NULL ? TRI_NO_MEMORY : TRI_OK;
-    for (int64_t t = 0; t < c->n_triangles && c->report->n_apexes > 0 && status == TRI_OK; t += SLICE) {
-        int64_t n = c->n_triangles - t < SLICE ? c->n_triangles - t : SLICE;
-        status = tri_check_read(c, TRI_CHECK_CORNERS, t, n, corners);
-        if (status == TRI_OK)
-            mark_near(c, corners, n);
-    }
-    free(corners);
-    return status;
+    int64_t n = c->report->n_apexes > 0 ? c->n_triangles : 0;
+    return tri_check_each_slice(c, TRI_CHECK_CORNERS, n, 3 * sizeof(int64_t), mark_near, c);
 }
 
 enum tri_status tri_check_find_apexes(struct apexes *q, struct checker *c)

@@ -7,12 +7,15 @@
 
 #include "triangle/check/internal.h"
 
-enum { SLICE = 1 << 12 }; /* vertices */
-
 static const double TOLERANCE = 1e-6; /* of the range of an attribute in the input */
 
 struct range {
     double low, high;
+};
+
+struct judging {
+    struct checker *c;
+    struct range *range; /* [attributes] */
 };
 
 static void find_ranges(const struct tri_pslg *input, struct range *range)
@@ -49,18 +52,11 @@ static void judge_vertex(struct checker *c, int64_t v, const double *value, cons
     }
 }
 
-static enum tri_status judge_all(struct checker *c, double *values, struct range *range)
+static void judge_vertices(void *judging, int64_t first, int64_t n, const void *values)
 {
-    const int64_t n = c->input->n_attributes;
-    enum tri_status status = TRI_OK;
-    find_ranges(c->input, range);
-    for (int64_t first = 0; first < c->n_points && status == TRI_OK; first += SLICE) {
-        const int64_t end = c->n_points - first < SLICE ? c->n_points : first + SLICE;
-        status = tri_check_read(c, TRI_CHECK_POINT_ATTRIBUTES, first, end - first, values);
-        for (int64_t v = first; v < end && status == TRI_OK; v++)
-            judge_vertex(c, v, values + n * (v - first), range);
-    }
-    return status;
+    const struct judging *j = judging;
+    for (int64_t i = 0; i < n; i++)
+        judge_vertex(j->c, first + i, (const double *)values + i * j->c->input->n_attributes, j->range);
 }
 
 enum tri_status tri_check_attributes(struct checker *c)
@@ -74,10 +70,12 @@ enum tri_status tri_check_attributes(struct checker *c)
         return TRI_OK;
     }
     const int64_t n = c->input->n_attributes;
-    double *values = tri_check_array(SLICE, (size_t)n * sizeof *values);
-    struct range *range = tri_check_array(n, sizeof *range);
-    enum tri_status status = values != NULL && range != NULL ? judge_all(c, values, range) : TRI_NO_MEMORY;
-    free(values);
-    free(range);
+    struct judging j = {c, tri_check_array(n, sizeof *j.range)};
+    if (j.range == NULL)
+        return TRI_NO_MEMORY;
+    find_ranges(c->input, j.range);
+    enum tri_status status = tri_check_each_slice(c, TRI_CHECK_POINT_ATTRIBUTES, c->n_points,
+                                                  (size_t)n * sizeof(double), judge_vertices, &j);
+    free(j.range);
     return status;
 }

@@ -12,16 +12,13 @@ enum { NEIGHBORS = 2 };
 
 struct border {
     struct checker *c;
-    struct tri_point *hull[2]; /* the lower and the upper chain, in order */
-    int32_t n[2];
+    struct check_hull hull;
 };
 
-static int compare_points(const void *a, const void *b)
+int tri_check_compare_points(const void *left, const void *right)
 {
-    const struct tri_point *p = a, *q = b;
-    if (p->x != q->x)
-        return p->x < q->x ? -1 : 1;
-    return (p->y > q->y) - (p->y < q->y);
+    const struct tri_point *p = left, *q = right;
+    return tri_compare_places(*p, *q);
 }
 
 /* Keeps of n sorted points those of the lower (+1) or upper (-1) chain. */
@@ -37,26 +34,37 @@ static int32_t scan(struct tri_point *out, const struct tri_point *sorted, int32
     return k;
 }
 
+enum tri_status tri_check_hull_of(struct tri_point *points, int64_t n, struct check_hull *hull)
+{
+    for (int i = 0; i < 2; i++)
+        hull->chain[i] = tri_check_array(n, sizeof *points);
+    if (hull->chain[0] == NULL || hull->chain[1] == NULL)
+        return TRI_NO_MEMORY;
+    qsort(points, (size_t)n, sizeof *points, tri_check_compare_points);
+    for (int i = 0; i < 2; i++)
+        hull->n[i] = scan(hull->chain[i], points, (int32_t)n, i == 0 ? 1 : -1);
+    return TRI_OK;
+}
+
+void tri_check_hull_free(struct check_hull *hull)
+{
+    free(hull->chain[0]);
+    free(hull->chain[1]);
+}
+
 static enum tri_status find_hull(struct border *b)
 {
     const struct tri_pslg *input = b->c->input;
-    struct tri_point *sorted = tri_check_array(input->n_points, sizeof *sorted);
-    for (int i = 0; i < 2; i++)
-        b->hull[i] = tri_check_array(input->n_points, sizeof *b->hull[i]);
-    bool room = sorted != NULL && b->hull[0] != NULL && b->hull[1] != NULL;
+    struct tri_point *points = tri_check_array(input->n_points, sizeof *points);
     int32_t n = 0;
-    for (int32_t i = 0; room && i < input->n_points; i++) {
+    for (int32_t i = 0; points != NULL && i < input->n_points; i++) {
         struct tri_point p = {input->points[2 * (size_t)i], input->points[2 * (size_t)i + 1]};
         if (tri_is_exact_point(p))
-            sorted[n++] = p;
+            points[n++] = p;
     }
-    if (room) {
-        qsort(sorted, (size_t)n, sizeof *sorted, compare_points);
-        for (int i = 0; i < 2; i++)
-            b->n[i] = scan(b->hull[i], sorted, n, i == 0 ? 1 : -1);
-    }
-    free(sorted);
-    return room ? TRI_OK : TRI_NO_MEMORY;
+    enum tri_status status = points != NULL ? tri_check_hull_of(points, n, &b->hull) : TRI_NO_MEMORY;
+    free(points);
+    return status;
 }
 
 static bool is_near(struct tri_point a, struct tri_point b, struct tri_point p, double tolerance)
@@ -68,15 +76,14 @@ static bool is_near(struct tri_point a, struct tri_point b, struct tri_point p, 
 /* Do both points lie along one edge of the chain? */
 static bool is_along_chain(const struct border *b, int chain, struct tri_point p, struct tri_point q)
 {
-    const struct tri_point *hull = b->hull[chain];
-    int32_t low = 0, high = b->n[chain] - 1, first = compare_points(&p, &q) < 0;
-    struct tri_point at = first ? p : q;
+    const struct tri_point *hull = b->hull.chain[chain], at = tri_compare_places(p, q) < 0 ? p : q;
+    int32_t low = 0, high = b->hull.n[chain] - 1;
     while (high - low > 1) {
         int32_t middle = low + (high - low) / 2;
-        *(compare_points(&hull[middle], &at) <= 0 ? &low : &high) = middle;
+        *(tri_compare_places(hull[middle], at) <= 0 ? &low : &high) = middle;
     }
     for (int32_t i = low - NEIGHBORS; i <= low + NEIGHBORS; i++) {
-        if (i >= 0 && i + 1 < b->n[chain] && is_near(hull[i], hull[i + 1], p, b->c->tolerance) &&
+        if (i >= 0 && i + 1 < b->hull.n[chain] && is_near(hull[i], hull[i + 1], p, b->c->tolerance) &&
             is_near(hull[i], hull[i + 1], q, b->c->tolerance))
             return true;
     }
@@ -93,7 +100,7 @@ static bool is_along_hull(const struct border *b, int32_t s)
 /* Did whoever asks forget to say that the mesh may end there? */
 static bool may_be_meant(struct border *b, int32_t s)
 {
-    return (b->hull[0] || find_hull(b) == TRI_OK) && is_along_hull(b, s);
+    return (b->hull.chain[0] || find_hull(b) == TRI_OK) && is_along_hull(b, s);
 }
 
 static void check_border(struct border *b, bool hull)
@@ -127,7 +134,6 @@ enum tri_status tri_check_border(struct checker *c)
         tri_check_begin(c, TRI_CHECK_BORDER);
         check_border(&b, hull);
     }
-    free(b.hull[0]);
-    free(b.hull[1]);
+    tri_check_hull_free(&b.hull);
     return status;
 }

@@ -4,16 +4,13 @@
  * rounded, and the cross product of a triangle with a smallest angle of x radians cancels by a factor of 1/x at most).
  * A bound counts as missed from a relative 1e-12 on.
  *
- * Triangles are looked at in blocks of a fixed size, what is found put together in their order: so sums are rounded in
- * the same way whatever the number of threads, and wherever the mesh is cut into parts: a block that a part ends in
- * goes on in the next. */
+ * What shares of the triangles and parts of the mesh say is put together in their order. The sum of areas carries the
+ * rounding of each addition along: into how many parts the mesh is cut makes no difference that a double would show. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "triangle/check/apex.h"
 #include "triangle/check/internal.h"
-
-enum { BLOCK = 1 << 14 };
 
 struct shape {
     double area;    /* signed */
@@ -53,7 +50,8 @@ struct sum { /* Neumaier 1974 */
     double total, rest;
 };
 
-struct block {
+/* Of some triangles. */
+struct findings {
     struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the least, of the largest angle */
     struct sum area;
     int64_t n_small; /* below the bound of angles */
@@ -62,13 +60,11 @@ struct block {
 
 struct check_quality {
     double sine2; /* squared sine of the bound */
-    int32_t n_blocks, room;
-    struct block *block; /* of the part */
-    struct block all;    /* of the parts before, but for .. */
-    struct block begun;  /* .. the block that the last of them ended in */
+    struct findings all; /* of the parts so far */
+    struct findings share[CHECK_MOST_SHARES];
 };
 
-static const struct block empty = {.sine2 = {0, -1}, .cosine2 = {0, -1}, .smallest = {0, -1}, .largest = {0, -1}};
+static const struct findings empty = {.sine2 = {0, -1}, .cosine2 = {0, -1}, .smallest = {0, -1}, .largest = {0, -1}};
 
 static void note(struct extreme *e, double value, int64_t t, bool larger)
 {
@@ -105,7 +101,7 @@ static bool is_large(const struct checker *c, int32_t t, double area)
     return !(given_area(c, area) <= area_bound(c, c->part.first + t) * (1 + TRI_CHECK_SLACK));
 }
 
-static void note_shape(const struct checker *c, struct block *b, int32_t t)
+static void note_shape(const struct checker *c, struct findings *b, int32_t t)
 {
     struct shape s = shape_of(c, t);
     int64_t number = c->part.first + t;
@@ -118,24 +114,16 @@ static void note_shape(const struct checker *c, struct block *b, int32_t t)
     b->n_large += is_large(c, t, s.area);
 }
 
-/* First triangle of a block of the part, or the end of the part. */
-static int32_t begin_of_block(const struct checker *c, int32_t i)
-{
-    int64_t begin = i == 0 ? 0 : (c->part.first / BLOCK + i) * BLOCK - c->part.first;
-    return begin < c->part.n_triangles ? (int32_t)begin : c->part.n_triangles;
-}
-
-static void look(void *checker, size_t block)
+static void look(void *checker, const struct check_share *share)
 {
     const struct checker *c = checker;
-    struct check_quality *q = c->quality;
-    int32_t i = (int32_t)block;
-    q->block[i] = i == 0 ? q->begun : empty;
-    for (int32_t t = begin_of_block(c, i); t < begin_of_block(c, i + 1); t++)
-        note_shape(c, &q->block[i], t);
+    struct findings found = empty;
+    for (int64_t t = share->first; t < share->end; t++)
+        note_shape(c, &found, (int32_t)t);
+    c->quality->share[share->number] = found;
 }
 
-static void join(struct block *all, const struct block *b)
+static void join(struct findings *all, const struct findings *b)
 {
     if (b->sine2.at < 0)
         return;
@@ -147,16 +135,6 @@ static void join(struct block *all, const struct block *b)
     all->area.rest += b->area.rest;
     all->n_large += b->n_large;
     all->n_small += b->n_small;
-}
-
-static void put_together(struct checker *c)
-{
-    struct check_quality *q = c->quality;
-    int64_t end = c->part.first + c->part.n_triangles;
-    bool goes_on = end % BLOCK != 0 && end < c->n_triangles;
-    q->begun = goes_on ? q->block[q->n_blocks - 1] : empty;
-    for (int32_t i = 0; i < q->n_blocks - goes_on; i++)
-        join(&q->all, &q->block[i]);
 }
 
 static double squared_sine(double degrees)
@@ -172,7 +150,7 @@ static double degrees_of_sine2(double sine2)
     return asin(fmin(1, sqrt(sine2))) / TRI_CHECK_RADIANS;
 }
 
-static void summarize(struct checker *c, const struct block *all)
+static void summarize(struct checker *c, const struct findings *all)
 {
     struct tri_check_report *r = c->report;
     r->smallest_angle_at = all->sine2.at;
@@ -211,37 +189,26 @@ static void judge_areas(struct checker *c, int64_t n_large)
         tri_check_each(c, TRI_CHECK_AREAS, c->part.first, c->part.n_triangles, is_too_large, tell_large);
 }
 
-enum tri_status tri_check_shapes(struct checker *c)
+void tri_check_shapes(struct checker *c)
 {
     struct check_quality *q = c->quality;
-    if (q == NULL) {
-        c->quality = q = calloc(1, sizeof *q);
-        if (q == NULL)
-            return TRI_NO_MEMORY;
-        q->sine2 = squared_sine(c->options->min_angle);
-        q->all = q->begun = empty;
-    }
-    int64_t first = c->part.first / BLOCK, end = (c->part.first + c->part.n_triangles + BLOCK - 1) / BLOCK;
-    q->n_blocks = (int32_t)(end - first);
-    if (q->n_blocks > q->room) {
-        free(q->block);
-        q->room = q->n_blocks;
-        q->block = tri_check_array(q->room, sizeof *q->block);
-        if (q->block == NULL)
-            return TRI_NO_MEMORY;
-    }
-    int64_t before = q->all.n_large + q->begun.n_large;
-    tri_execute(c->options->executor, (size_t)q->n_blocks, look, c);
-    put_together(c);
-    judge_areas(c, q->all.n_large + q->begun.n_large - before);
-    return TRI_OK;
+    int64_t before = q->all.n_large;
+    for (int i = 0; i < CHECK_MOST_SHARES; i++)
+        q->share[i] = empty;
+    tri_check_in_shares(c, c->part.n_triangles, look, c);
+    for (int i = 0; i < CHECK_MOST_SHARES; i++)
+        join(&q->all, &q->share[i]);
+    judge_areas(c, q->all.n_large - before);
 }
 
-void tri_check_release_quality(struct checker *c)
+enum tri_status tri_check_begin_quality(struct checker *c)
 {
-    if (c->quality != NULL)
-        free(c->quality->block);
-    free(c->quality);
+    c->quality = malloc(sizeof *c->quality);
+    if (c->quality == NULL)
+        return TRI_NO_MEMORY;
+    c->quality->sine2 = squared_sine(c->options->min_angle);
+    c->quality->all = empty;
+    return TRI_OK;
 }
 
 static void judge_small(struct checker *c, struct apexes *apexes, int32_t t, const struct shape *s)
@@ -277,13 +244,12 @@ static enum tri_status judge_angles(struct checker *c, struct apexes *apexes)
 enum tri_status tri_check_quality(struct checker *c)
 {
     struct apexes apexes;
-    struct block all = c->quality->all;
-    join(&all, &c->quality->begun);
-    summarize(c, &all);
+    const struct findings *all = &c->quality->all;
+    summarize(c, all);
     enum tri_status status = tri_check_find_apexes(&apexes, c);
     if (c->options->min_angle > 0)
         tri_check_begin(c, TRI_CHECK_ANGLES);
-    if (status == TRI_OK && all.n_small > 0)
+    if (status == TRI_OK && all->n_small > 0)
         status = judge_angles(c, &apexes);
     tri_check_free_apexes(&apexes);
     return status;

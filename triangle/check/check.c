@@ -18,7 +18,6 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ORIENTATION] = "orientation",
     [TRI_CHECK_EDGES] = "edges in pairs",
     [TRI_CHECK_NEIGHBORS] = "neighbors",
-    [TRI_CHECK_STARS] = "vertex stars",
     [TRI_CHECK_OVERLAP] = "no overlap",
     [TRI_CHECK_HULL] = "convex hull",
     [TRI_CHECK_SUBSEGMENTS] = "subsegments are edges",
@@ -158,6 +157,58 @@ enum tri_status tri_check_read(struct checker *c, enum tri_check_array array, in
     return status;
 }
 
+enum tri_status tri_check_each_slice(struct checker *c, enum tri_check_array array, int64_t end, size_t bytes,
+                                     check_take *take, void *user)
+{
+    enum { SLICE = 1 << 19 }; /* bytes */
+    int64_t most = bytes < SLICE ? (int64_t)(SLICE / bytes) : 1;
+    void *elements = tri_check_array(most, bytes);
+    enum tri_status status = elements == NULL ? TRI_NO_MEMORY : TRI_OK;
+    for (int64_t i = 0; i < end && status == TRI_OK; i += most) {
+        int64_t n = end - i < most ? end - i : most;
+        status = tri_check_read(c, array, i, n, elements);
+        if (status == TRI_OK)
+            take(user, i, n, elements);
+    }
+    free(elements);
+    return status;
+}
+
+enum tri_status tri_check_gather(struct checker *c, enum tri_check_array array, const int64_t *numbers, int64_t n,
+                                 size_t bytes, void *out)
+{
+    enum { NEAR_ENOUGH = 1 << 11, WINDOW = 1 << 14 }; /* elements */
+    char *window = tri_check_array(WINDOW, bytes);
+    enum tri_status status = window == NULL ? TRI_NO_MEMORY : TRI_OK;
+    for (int64_t i = 0, j; i < n && status == TRI_OK; i = j) {
+        int64_t first = numbers[i];
+        for (j = i + 1; j < n && numbers[j] - numbers[j - 1] < NEAR_ENOUGH && numbers[j] - first < WINDOW; j++) {
+        }
+        status = tri_check_read(c, array, first, numbers[j - 1] + 1 - first, window);
+        for (int64_t k = i; k < j; k++)
+            memcpy((char *)out + bytes * (size_t)k, window + bytes * (size_t)(numbers[k] - first), bytes);
+    }
+    free(window);
+    return status;
+}
+
+int tri_check_compare_numbers(const void *left, const void *right)
+{
+    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
+    return (a > b) - (a < b);
+}
+
+int64_t tri_check_distinct(int64_t *numbers, int64_t n)
+{
+    int64_t kept = 0;
+    qsort(numbers, (size_t)n, sizeof *numbers, tri_check_compare_numbers);
+    for (int64_t i = 0; i < n; i++) {
+        if (i == 0 || numbers[i] != numbers[kept - 1])
+            numbers[kept++] = numbers[i];
+    }
+    return kept;
+}
+
 void *tri_check_array(int64_t n, size_t size)
 {
     assert(n >= 0 && size > 0);
@@ -254,7 +305,7 @@ struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
  * vertices, and what else is given. */
 static double bytes_of_triangle(const struct tri_check_source *source, double vertices)
 {
-    return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4 + 4 + 1) +
+    return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4) +
            (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
@@ -337,12 +388,11 @@ static enum tri_status look_at_parts(struct checker *c, bool *good)
             continue;
         tri_check_orientation(c);
         status = tri_check_pair(c);
-        if (status == TRI_OK)
-            tri_check_note_vertices(c);
         status = status == TRI_OK ? tri_check_keep_open(c) : status;
-        status = status == TRI_OK ? tri_check_shapes(c) : status;
-        if (status == TRI_OK)
-            tri_check_pairs(c);
+        if (status != TRI_OK)
+            continue;
+        tri_check_shapes(c);
+        tri_check_pairs(c);
     }
     return status;
 }
@@ -374,7 +424,6 @@ static enum tri_status judge_frame(struct checker *c)
         status = tri_check_quality(c);
     if (status != TRI_OK || !pairs_are_good(c))
         return status;
-    tri_check_stars(c);
     tri_check_release_part(c); /* the sweep takes its place */
     status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
@@ -421,7 +470,7 @@ static void release(struct checker *c)
         free(arrays[i]);
     tri_check_release_part(c);
     tri_check_store_free(c->store);
-    tri_check_release_quality(c);
+    free(c->quality);
 }
 
 static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width,
@@ -461,6 +510,8 @@ enum tri_status tri_check_from(const struct tri_check_source *source, const stru
     enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : choose_part(&c, tri_check_least_bytes(source, input));
     if (status == TRI_OK)
         status = tri_check_store_new(&c);
+    if (status == TRI_OK)
+        status = tri_check_begin_quality(&c);
     if (status == TRI_OK)
         status = run(&c);
     release(&c);

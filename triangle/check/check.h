@@ -125,7 +125,6 @@ enum tri_check_kind {
     TRI_CHECK_ORIENTATION, /* (1) */
     TRI_CHECK_EDGES,       /* (2) */
     TRI_CHECK_NEIGHBORS,   /* the neighbours given are those that the edges say */
-    TRI_CHECK_STARS,       /* triangles around a vertex wind around it at most once, around an inner one exactly once */
     TRI_CHECK_OVERLAP,     /* (3); the sweep stops at the first fault, so the count is 0 or 1 */
     TRI_CHECK_HULL,        /* options.convex */
     TRI_CHECK_SUBSEGMENTS, /* each listed subsegment is an edge of the mesh, and listed once */

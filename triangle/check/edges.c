@@ -23,13 +23,6 @@ static uint64_t key_of(int32_t a, int32_t b)
     return other << 33 | (uint64_t)(a > b) << 32;
 }
 
-/* Triangle v a b, counter-clockwise, sweeps over the direction +x from v (stars.c). */
-static bool covers(const struct checker *c, int32_t v, int32_t a, int32_t b)
-{
-    double y = check_place(c, v).y;
-    return check_place(c, a).y <= y && y < check_place(c, b).y;
-}
-
 /* Vertices that one thread counts for: it looks at all half-edges, but needs no atomic operations, which would cost
  * more than looking. */
 struct range {
@@ -45,13 +38,9 @@ static void count(const struct checker *c, struct range r)
 {
     const struct check_part *p = &c->part;
     for (int32_t h = 0; h < p->n_half_edges; h++) {
-        int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h);
-        if (holds(r, lesser(a, b)))
-            p->entry_of[lesser(a, b) + 1]++;
-        if (holds(r, v)) {
-            p->turns[v] += covers(c, v, a, b);
-            p->used[v] = 1;
-        }
+        int32_t v = lesser(check_org(c, h), check_dest(c, h));
+        if (holds(r, v))
+            p->entry_of[v + 1]++;
     }
 }
 
@@ -203,37 +192,13 @@ static void constrain(struct checker *c)
     }
 }
 
-static void note_vertices(void *checker, const struct check_share *share)
-{
-    const struct checker *c = checker;
-    const struct check_part *p = &c->part;
-    for (int32_t v = (int32_t)share->first; v < share->end; v++) {
-        uint8_t *state = &c->state[check_global(c, v)];
-        int32_t turns = (*state & CHECK_TURNS) + p->turns[v];
-        if (p->used[v])
-            *state = (uint8_t)((*state & ~CHECK_TURNS) | CHECK_USED | (turns < CHECK_TURNS ? turns : CHECK_TURNS));
-    }
-}
-
-void tri_check_note_vertices(struct checker *c) { tri_check_in_shares(c, c->part.n_points, note_vertices, c); }
-
-static enum tri_status make_room(struct check_part *p)
-{
-    free(p->entry_of);
-    free(p->turns);
-    free(p->used);
-    p->entry_of = tri_check_zeros((int64_t)p->n_points + 1, sizeof *p->entry_of);
-    p->turns = tri_check_zeros(p->n_points, sizeof *p->turns);
-    p->used = tri_check_zeros(p->n_points, 1);
-    return p->entry_of && p->turns && p->used ? TRI_OK : TRI_NO_MEMORY;
-}
-
 enum tri_status tri_check_pair(struct checker *c)
 {
     struct check_part *p = &c->part;
-    enum tri_status status = make_room(p);
-    if (status != TRI_OK)
-        return status;
+    free(p->entry_of);
+    p->entry_of = tri_check_zeros((int64_t)p->n_points + 1, sizeof *p->entry_of);
+    if (p->entry_of == NULL)
+        return TRI_NO_MEMORY;
     group(c);
     tri_check_in_shares(c, p->n_points, link_groups, p);
     constrain(c);
@@ -262,42 +227,4 @@ enum tri_status tri_check_keep_open(struct checker *c)
             status = tri_check_store_add(c, tri_check_open(c, h));
     }
     return status;
-}
-
-/* --- neighbours as they are given */
-
-static bool is_other_neighbor(const struct checker *c, int64_t i)
-{
-    int32_t h = (int32_t)i;
-    return c->part.link[h] >= 0 && given_neighbor(c, h) != c->part.first + c->part.link[h] / 3;
-}
-
-static void tell(struct checker *c, const struct check_open *e, int64_t expected)
-{
-    c->at = e->half_edge;
-    tri_check_fault(c, TRI_CHECK_NEIGHBORS, "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
-                    check_number(c, e->half_edge / 3), check_number(c, e->from), check_number(c, e->to),
-                    e->neighbor < 0 ? -1L : check_number(c, e->neighbor),
-                    expected < 0 ? -1L : check_number(c, expected));
-    c->at = 0;
-}
-
-static void tell_neighbor(struct checker *c, int64_t h)
-{
-    struct check_open e = tri_check_open(c, (int32_t)h);
-    tell(c, &e, c->part.first + c->part.link[h] / 3);
-}
-
-void tri_check_neighbors(struct checker *c)
-{
-    if (check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN))
-        tri_check_each(c, TRI_CHECK_NEIGHBORS, 3 * c->part.first, c->part.n_half_edges, is_other_neighbor,
-                       tell_neighbor);
-}
-
-void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b)
-{
-    int64_t expected = b != NULL ? b->half_edge / 3 : -1;
-    if (check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN) && a->neighbor != expected)
-        tell(c, a, expected);
 }

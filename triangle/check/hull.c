@@ -7,20 +7,13 @@
 
 enum { SEVERAL = -2 };
 
-struct corner {
-    struct tri_point at;
-    int32_t place; /* in the loop */
-};
-
 /* The boundary as a loop of vertices. */
 struct loop {
     struct checker *c;
     int32_t n;
     int32_t *from;         /* [n_frame] the boundary edge that leaves the vertex, -1: none, SEVERAL */
     int32_t *vertex;       /* [n] counter-clockwise */
-    struct corner *sorted; /* [n] in order of x, then y */
-    int32_t *chain;        /* [n] of these, corners of the hull */
-    uint8_t *is_corner;    /* [n] by place */
+    struct check_hull hull; /* of these */
 };
 
 static void list_boundary(struct loop *l)
@@ -60,44 +53,37 @@ static bool walk(struct loop *l)
     return false;
 }
 
-static int compare_corners(const void *a, const void *b)
+static enum tri_status find_hull(struct loop *l)
 {
-    const struct corner *p = a, *q = b;
-    if (p->at.x != q->at.x)
-        return p->at.x < q->at.x ? -1 : 1;
-    return (p->at.y > q->at.y) - (p->at.y < q->at.y);
+    struct tri_point *points = tri_check_array(l->n, sizeof *points);
+    for (int32_t i = 0; points != NULL && i < l->n; i++)
+        points[i] = check_point(l->c, l->vertex[i]);
+    enum tri_status status = points != NULL ? tri_check_hull_of(points, l->n, &l->hull) : TRI_NO_MEMORY;
+    free(points);
+    return status;
 }
 
-/* Marks the corners of the lower (+1) or upper (-1) chain (Andrew 1979). */
-static void mark_chain(struct loop *l, int sign)
+static bool is_corner(const struct loop *l, int32_t place)
 {
-    const struct corner *s = l->sorted;
-    int32_t k = 0;
-    for (int32_t i = 0; i < l->n; i++) {
-        while (k > 1 && sign * tri_orient2d(s[l->chain[k - 2]].at, s[l->chain[k - 1]].at, s[i].at) <= 0)
-            k--;
-        l->chain[k++] = i;
-    }
-    for (int32_t i = 0; i < k; i++)
-        l->is_corner[s[l->chain[i]].place] = 1;
+    const struct tri_point p = check_point(l->c, l->vertex[place]);
+    const struct check_hull *h = &l->hull;
+    return bsearch(&p, h->chain[0], (size_t)h->n[0], sizeof p, tri_check_compare_points) != NULL ||
+           bsearch(&p, h->chain[1], (size_t)h->n[1], sizeof p, tri_check_compare_points) != NULL;
 }
 
-static void mark_corners(struct loop *l)
+static int32_t next_corner(const struct loop *l, int32_t place)
 {
-    for (int32_t i = 0; i < l->n; i++)
-        l->sorted[i] = (struct corner){check_point(l->c, l->vertex[i]), i};
-    qsort(l->sorted, (size_t)l->n, sizeof *l->sorted, compare_corners);
-    mark_chain(l, 1);
-    mark_chain(l, -1);
+    do
+        place = (place + 1) % l->n;
+    while (!is_corner(l, place));
+    return place;
 }
 
 /* Are the vertices behind `place` up to the next corner of the hull near the edge to it? Returns that corner's place;
  * -1: no. */
 static int32_t follow_edge(struct loop *l, int32_t place)
 {
-    int32_t next = (place + 1) % l->n;
-    while (!l->is_corner[next])
-        next = (next + 1) % l->n;
+    int32_t next = next_corner(l, place);
     struct tri_point a = check_point(l->c, l->vertex[place]), b = check_point(l->c, l->vertex[next]);
     double x = b.x - a.x, y = b.y - a.y, most = 2 * l->c->tolerance * sqrt(x * x + y * y);
     for (int32_t i = (place + 1) % l->n; i != next; i = (i + 1) % l->n) {
@@ -110,35 +96,26 @@ static int32_t follow_edge(struct loop *l, int32_t place)
     return next;
 }
 
-static void judge(struct loop *l)
+static enum tri_status judge(struct loop *l)
 {
+    tri_check_begin(l->c, TRI_CHECK_HULL);
     list_boundary(l);
     if (l->c->boundary.n == 0 || !walk(l))
-        return;
-    mark_corners(l);
-    int32_t first = l->sorted[0].place, place = first;
-    do
-        place = follow_edge(l, place);
-    while (place >= 0 && place != first);
+        return TRI_OK;
+    enum tri_status status = find_hull(l);
+    int32_t first = status == TRI_OK ? next_corner(l, 0) : -1, place = first;
+    while (place >= 0 && (place = follow_edge(l, place)) != first) {
+    }
+    return status;
 }
 
 enum tri_status tri_check_hull(struct checker *c)
 {
     struct loop l = {.c = c, .from = tri_check_array(c->n_frame, sizeof *l.from),
-                     .vertex = tri_check_array(c->boundary.n, sizeof *l.vertex),
-                     .sorted = tri_check_array(c->boundary.n, sizeof *l.sorted),
-                     .chain = tri_check_array(c->boundary.n, sizeof *l.chain),
-                     .is_corner = calloc((size_t)c->boundary.n + 1, 1)};
-    enum tri_status status = TRI_NO_MEMORY;
-    if (l.from && l.vertex && l.sorted && l.chain && l.is_corner) {
-        tri_check_begin(c, TRI_CHECK_HULL);
-        judge(&l);
-        status = TRI_OK;
-    }
+                     .vertex = tri_check_array(c->boundary.n, sizeof *l.vertex)};
+    enum tri_status status = l.from != NULL && l.vertex != NULL ? judge(&l) : TRI_NO_MEMORY;
+    tri_check_hull_free(&l.hull);
     free(l.from);
     free(l.vertex);
-    free(l.sorted);
-    free(l.chain);
-    free(l.is_corner);
     return status;
 }

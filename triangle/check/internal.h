@@ -92,18 +92,15 @@ struct check_part {
     };
     int32_t *link;        /* [n_half_edges] the same edge in the neighbour; -1: open */
     uint8_t *constrained; /* [n_half_edges] bits */
-    int32_t *turns;       /* [n_points] see stars.c */
-    uint8_t *used;        /* [n_points] is it a corner? */
 
     struct check_room *room; /* shares.c */
 };
 
-enum { /* of each vertex of the mesh; the lower four bits count turns */
-    CHECK_TURNS = 15,
-    CHECK_USED = 16,     /* it is a corner */
-    CHECK_BOUNDARY = 32, /* of a boundary edge, an end */
-    CHECK_APEX = 64,     /* see apex.c */
-    CHECK_NEAR = 128     /* in a triangle with an apex */
+enum { /* of each vertex of the mesh */
+    CHECK_USED = 1,     /* it is a corner */
+    CHECK_BOUNDARY = 2, /* of a boundary edge, an end */
+    CHECK_APEX = 4,     /* see apex.c */
+    CHECK_NEAR = 8      /* in a triangle with an apex */
 };
 
 struct checker {
@@ -116,6 +113,8 @@ struct checker {
 
     /* check.c: the fault told of each kind is that with the least key; `at` is the key of what is looked at now */
     int64_t at, key[TRI_N_CHECKS];
+
+    const struct check_rule *rule; /* pairs.c: asked now of the part */
 
     /* survey.c */
     int exponent;      /* the coordinates seen are the given ones times 2^exponent */
@@ -175,7 +174,8 @@ enum tri_status tri_check_list_segments(struct checker *c); /* reads c->listed a
 /* Vertices for each triangle, of some triangles in a row: about 0.5 where numbers are local, up to 3 if not. */
 enum tri_status tri_check_sample(struct checker *c, double *vertices);
 
-/* A part from triangle `first` on. Corners that are no vertices are faults of ARRAYS; then there is no part. */
+/* A part from triangle `first` on; its vertices are CHECK_USED. Corners that are no vertices are faults of ARRAYS; then
+ * there is no part. */
 enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good);
 void tri_check_release_part(struct checker *c);
 int32_t tri_check_local(const struct checker *c, int64_t v); /* number of vertex v in the part, -1: not there. O(1) */
@@ -183,12 +183,8 @@ int32_t tri_check_local(const struct checker *c, int64_t v); /* number of vertex
 void tri_check_orientation(struct checker *c);      /* of the part */
 /* Pairs the half-edges of the part, and constrains them. */
 enum tri_status tri_check_pair(struct checker *c);
-void tri_check_note_vertices(struct checker *c); /* what pairing has seen of them, into c->state */
 enum tri_status tri_check_keep_open(struct checker *c); /* puts half-edges without other side into the store */
 struct check_open tri_check_open(const struct checker *c, int32_t h); /* half-edge h of the part, in full */
-/* Are the neighbours those that are given: in the part, or of a half-edge matched across parts? */
-void tri_check_neighbors(struct checker *c);
-void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b);
 void tri_check_pairs(struct checker *c); /* neighbours given, Delaunay, circles of segments, attributes: in the part */
 /* The same of two half-edges that have been matched across parts, or of one that has no other side (b is NULL). */
 void tri_check_matched(struct checker *c, const struct check_open *a, const struct check_open *b);
@@ -206,19 +202,42 @@ enum tri_status tri_check_input(struct checker *c);       /* adds queries */
 enum tri_status tri_check_chains(struct checker *c);
 enum tri_status tri_check_border(struct checker *c);      /* needs chains */
 enum tri_status tri_check_vertex_markers(struct checker *c); /* needs subsegments, twins */
-void tri_check_stars(struct checker *c);                  /* needs EDGES, ORIENTATION */
-enum tri_status tri_check_overlap(struct checker *c);     /* needs the same; answers the queries */
+enum tri_status tri_check_overlap(struct checker *c);     /* needs EDGES, ORIENTATION; answers the queries */
 void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
 enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
 
-enum tri_status tri_check_shapes(struct checker *c);  /* of the part */
+/* The convex hull of points: the lower and the upper chain, in order of x, then y. To be freed. */
+struct check_hull {
+    struct tri_point *chain[2];
+    int32_t n[2];
+};
+
+/* Sorts the points. */
+enum tri_status tri_check_hull_of(struct tri_point *points, int64_t n, struct check_hull *hull);
+void tri_check_hull_free(struct check_hull *hull);
+int tri_check_compare_points(const void *left, const void *right); /* struct tri_point */
+
+enum tri_status tri_check_begin_quality(struct checker *c);
+void tri_check_shapes(struct checker *c); /* of the part */
 enum tri_status tri_check_quality(struct checker *c); /* needs subsegments; looks at parts again */
-void tri_check_release_quality(struct checker *c);
 
 /* --- tools */
 
 /* Elements first .. first + n - 1 of an array of the mesh, points as they are to be seen. */
 enum tri_status tri_check_read(struct checker *c, enum tri_check_array array, int64_t first, int64_t n, void *out);
+
+/* All elements of such an array before `end`, of so many bytes each, in order, some at a time. */
+typedef void check_take(void *user, int64_t first, int64_t n, const void *elements);
+enum tri_status tri_check_each_slice(struct checker *c, enum tri_check_array array, int64_t end, size_t bytes,
+                                     check_take *take, void *user);
+
+/* Those elements alone whose numbers are given, ascending. */
+enum tri_status tri_check_gather(struct checker *c, enum tri_check_array array, const int64_t *numbers, int64_t n,
+                                 size_t bytes, void *out);
+
+/* Sorts numbers and drops repetitions; returns how many remain. */
+int64_t tri_check_distinct(int64_t *numbers, int64_t n);
+int tri_check_compare_numbers(const void *left, const void *right); /* of qsort and bsearch */
 
 /* Notes that the kind has been looked at; it stays good until a fault is reported. */
 void tri_check_begin(struct checker *c, enum tri_check_kind kind);

@@ -7,11 +7,10 @@
 
 #include "triangle/check/internal.h"
 
-enum { SLICE = 1 << 14 };
-
 /* The points that the mesh must do justice to: those of the input, or where it is unknown, those of the mesh that no
  * triangle uses. */
 struct reference {
+    struct checker *c;
     int32_t n;
     const double *points;
     int64_t *found; /* [n] used vertex of the mesh at the place of each, -1: none */
@@ -55,39 +54,32 @@ static enum tri_status make_table(struct reference *r, int32_t n)
     return TRI_OK;
 }
 
-/* Calls look for all points of the mesh before `end`, slice by slice. */
-static enum tri_status each_slice(struct checker *c, struct reference *r, int64_t end,
-                                  void (*look)(struct checker *c, struct reference *r, int64_t first,
-                                               const double *points, int64_t n))
+/* The points of the mesh before `end`. */
+static enum tri_status each_point(struct reference *r, int64_t end, check_take *look)
 {
-    double *points = tri_check_array(SLICE, 2 * sizeof *points);
-    enum tri_status status = points == NULL ? TRI_NO_MEMORY : TRI_OK;
-    for (int64_t i = 0; i < end && status == TRI_OK; i += SLICE) {
-        int64_t n = end - i < SLICE ? end - i : SLICE;
-        status = tri_check_read(c, TRI_CHECK_POINTS, i, n, points);
-        if (status == TRI_OK)
-            look(c, r, i, points, n);
-    }
-    free(points);
-    return status;
+    return tri_check_each_slice(r->c, TRI_CHECK_POINTS, end, 2 * sizeof(double), look, r);
 }
 
 /* Input points that are used themselves, under their number. */
-static void find_same(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+static void find_same(void *reference, int64_t first, int64_t n, const void *elements)
 {
+    struct reference *r = reference;
+    const double *points = elements;
     for (int64_t i = 0; i < n; i++) {
         int32_t v = (int32_t)(first + i);
         struct tri_point p = {points[2 * i], points[2 * i + 1]};
-        if (check_is_used(c, v) && check_same_place(p, point_of(r, v)))
+        if (check_is_used(r->c, v) && check_same_place(p, point_of(r, v)))
             r->found[v] = v;
     }
 }
 
 /* Used vertices at the places of points in the table; the first of each counts. */
-static void find_elsewhere(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+static void find_elsewhere(void *reference, int64_t first, int64_t n, const void *elements)
 {
+    struct reference *r = reference;
+    const double *points = elements;
     for (int64_t i = 0; i < n; i++) {
-        if (!check_is_used(c, first + i))
+        if (!check_is_used(r->c, first + i))
             continue;
         int32_t v = r->table[slot_of(r, (struct tri_point){points[2 * i], points[2 * i + 1]})];
         if (v >= 0 && r->found[v] < 0)
@@ -96,7 +88,7 @@ static void find_elsewhere(struct checker *c, struct reference *r, int64_t first
 }
 
 /* The others: only they need a search. */
-static enum tri_status search(struct checker *c, struct reference *r)
+static enum tri_status search(struct reference *r)
 {
     int32_t n_searched = 0;
     for (int32_t v = 0; v < r->n; v++)
@@ -109,7 +101,7 @@ static enum tri_status search(struct checker *c, struct reference *r)
         if (r->found[v] < 0 && r->table[i] < 0)
             r->table[i] = v;
     }
-    status = each_slice(c, r, c->n_points, find_elsewhere);
+    status = each_point(r, r->c->n_points, find_elsewhere);
     for (int32_t v = 0; v < r->n; v++) {
         if (r->found[v] < 0)
             r->found[v] = r->found[r->table[slot_of(r, point_of(r, v))]];
@@ -119,13 +111,15 @@ static enum tri_status search(struct checker *c, struct reference *r)
 }
 
 /* Where the input is unknown. */
-static void take_unused(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+static void take_unused(void *reference, int64_t first, int64_t n, const void *elements)
 {
+    struct reference *r = reference;
+    const double *points = elements;
     for (int64_t i = 0; i < n; i++) {
-        if (check_is_used(c, first + i))
+        if (check_is_used(r->c, first + i))
             continue;
-        c->unused[r->n] = first + i;
-        memcpy(c->unused_points + 2 * (size_t)r->n++, points + 2 * i, 2 * sizeof *points);
+        r->c->unused[r->n] = first + i;
+        memcpy(r->c->unused_points + 2 * (size_t)r->n++, points + 2 * i, 2 * sizeof *points);
     }
 }
 
@@ -138,7 +132,7 @@ static enum tri_status list_unused(struct checker *c, struct reference *r)
     c->unused_points = tri_check_array(n, 2 * sizeof *c->unused_points);
     if (c->unused == NULL || c->unused_points == NULL)
         return TRI_NO_MEMORY;
-    enum tri_status status = n > 0 ? each_slice(c, r, c->n_points, take_unused) : TRI_OK;
+    enum tri_status status = n > 0 ? each_point(r, c->n_points, take_unused) : TRI_OK;
     c->n_unused = r->n;
     r->points = c->unused_points;
     return status;
@@ -146,23 +140,26 @@ static enum tri_status list_unused(struct checker *c, struct reference *r)
 
 enum tri_status tri_check_find_twins(struct checker *c)
 {
-    struct reference r = {0};
+    struct reference r = {.c = c};
     enum tri_status status = TRI_OK;
     if (c->input == NULL)
         status = list_unused(c, &r);
     else
-        r = (struct reference){.n = c->input->n_points, .points = c->input->points};
+        r = (struct reference){.c = c, .n = c->input->n_points, .points = c->input->points};
     c->found = r.found = tri_check_array(r.n, sizeof *r.found);
     if (r.found == NULL)
         return TRI_NO_MEMORY;
     memset(r.found, -1, (size_t)r.n * sizeof *r.found);
     if (status == TRI_OK && c->input != NULL)
-        status = each_slice(c, &r, r.n < c->n_points ? r.n : c->n_points, find_same);
-    return status == TRI_OK ? search(c, &r) : status;
+        status = each_point(&r, r.n < c->n_points ? r.n : c->n_points, find_same);
+    return status == TRI_OK ? search(&r) : status;
 }
 
-static void compare(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+static void compare(void *reference, int64_t first, int64_t n, const void *elements)
 {
+    struct reference *r = reference;
+    struct checker *c = r->c;
+    const double *points = elements;
     for (int64_t i = 0; i < n; i++) {
         struct tri_point p = point_of(r, (int32_t)(first + i)), q = {points[2 * i], points[2 * i + 1]};
         if (check_same_place(p, q))
@@ -177,13 +174,13 @@ static enum tri_status check_vertices(struct checker *c)
 {
     if (c->input == NULL || c->options->renumbered)
         return TRI_OK;
-    struct reference r = {.n = c->input->n_points, .points = c->input->points};
+    struct reference r = {.c = c, .n = c->input->n_points, .points = c->input->points};
     tri_check_begin(c, TRI_CHECK_INPUT_VERTICES);
     if (c->n_points < r.n) {
         tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "the mesh has %ld vertices, the input %ld", (long)c->n_points,
                         (long)r.n);
     }
-    return each_slice(c, &r, r.n < c->n_points ? r.n : c->n_points, compare);
+    return each_point(&r, r.n < c->n_points ? r.n : c->n_points, compare);
 }
 
 static int64_t number_of(const struct checker *c, int32_t i)

@@ -4,13 +4,12 @@
  * its subsegment, on other edges 0, and attributes half the way between those of the ends. Two triangles beside an edge
  * have one node there: nodes of different edges lie at different places, so that is so if there are as many as edges.
  *
- * Triangles are read again, some in a row, and what is known of the points that they name, in windows of the mesh. */
+ * Triangles are read again, some in a row, and what is known of the points that they name. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "triangle/check/internal.h"
 
-enum { SLICE = 1 << 12, NEAR_ENOUGH = 1 << 10, WINDOW = 1 << 13 }; /* triangles; points */
+enum { SLICE = 1 << 12 }; /* triangles */
 
 struct subsegment {
     int64_t ends[2]; /* ascending */
@@ -25,7 +24,6 @@ struct slice {
     double *places;             /* [n_named][2] */
     int32_t *markers;           /* [n_named], if they count */
     double *attributes;         /* [n_named][n_attributes] */
-    char *window;
 };
 
 struct trial {
@@ -39,17 +37,11 @@ struct trial {
     struct slice slice;
 };
 
-static int compare_numbers(const void *left, const void *right)
-{
-    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-    return (a > b) - (a < b);
-}
-
 static int compare_subsegments(const void *left, const void *right)
 {
     const struct subsegment *a = left, *b = right;
-    int order = compare_numbers(&a->ends[0], &b->ends[0]);
-    return order != 0 ? order : compare_numbers(&a->ends[1], &b->ends[1]);
+    int order = tri_check_compare_numbers(&a->ends[0], &b->ends[0]);
+    return order != 0 ? order : tri_check_compare_numbers(&a->ends[1], &b->ends[1]);
 }
 
 static struct subsegment subsegment_of(int64_t a, int64_t b, int32_t marker)
@@ -80,34 +72,18 @@ static bool is_node(const struct trial *t, int64_t m) { return m >= t->c->n_poin
 static void list_named(struct trial *t)
 {
     struct slice *s = &t->slice;
-    int64_t n = 0, k = 0;
+    int64_t n = 0;
     for (int64_t i = 0; i < 3 * s->n_triangles; i++) {
         s->named[n++] = s->corners[i];
         if (is_node(t, s->middles[i]))
             s->named[n++] = s->middles[i];
     }
-    qsort(s->named, (size_t)n, sizeof *s->named, compare_numbers);
-    for (int64_t i = 0; i < n; i++)
-        if (i == 0 || s->named[i] != s->named[i - 1])
-            s->named[k++] = s->named[i];
-    s->n_named = k;
+    s->n_named = tri_check_distinct(s->named, n);
 }
 
-/* What an array has of the named points, so many bytes each. */
 static enum tri_status read_named(struct trial *t, enum tri_check_array array, size_t bytes, void *out)
 {
-    const struct slice *s = &t->slice;
-    enum tri_status status = TRI_OK;
-    for (int64_t i = 0, j; i < s->n_named && status == TRI_OK; i = j) {
-        int64_t first = s->named[i];
-        for (j = i + 1; j < s->n_named && s->named[j] - s->named[j - 1] < NEAR_ENOUGH && s->named[j] - first < WINDOW;
-             j++) {
-        }
-        status = tri_check_read(t->c, array, first, s->named[j - 1] + 1 - first, s->window);
-        for (int64_t k = i; k < j; k++)
-            memcpy((char *)out + bytes * (size_t)k, s->window + bytes * (size_t)(s->named[k] - first), bytes);
-    }
-    return status;
+    return tri_check_gather(t->c, array, t->slice.named, t->slice.n_named, bytes, out);
 }
 
 static enum tri_status read_slice(struct trial *t)
@@ -131,7 +107,7 @@ static enum tri_status read_slice(struct trial *t)
 /* Its place in the arrays of the slice. */
 static size_t find(const struct slice *s, int64_t v)
 {
-    const int64_t *at = bsearch(&v, s->named, (size_t)s->n_named, sizeof v, compare_numbers);
+    const int64_t *at = bsearch(&v, s->named, (size_t)s->n_named, sizeof v, tri_check_compare_numbers);
     return (size_t)(at - s->named);
 }
 
@@ -217,16 +193,14 @@ static bool get_room(struct trial *t)
     s->places = tri_check_array(6 * SLICE, 2 * sizeof *s->places);
     s->markers = tri_check_array(6 * SLICE, sizeof *s->markers);
     s->attributes = tri_check_array(6 * SLICE, row > 0 ? row : 1);
-    s->window = tri_check_array(WINDOW, row > 16 ? row : 16);
     return t->is_named != NULL && t->subsegments != NULL && s->corners != NULL && s->middles != NULL &&
-           s->named != NULL && s->places != NULL && s->markers != NULL && s->attributes != NULL &&
-           s->window != NULL;
+           s->named != NULL && s->places != NULL && s->markers != NULL && s->attributes != NULL;
 }
 
 static void release(struct trial *t)
 {
     void *arrays[] = {t->is_named, t->subsegments, t->slice.corners, t->slice.middles, t->slice.named,
-                      t->slice.places, t->slice.markers, t->slice.attributes, t->slice.window};
+                      t->slice.places, t->slice.markers, t->slice.attributes};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);
 }

@@ -78,8 +78,6 @@ void tri_check_release_part(struct checker *c)
     free(p->entry);
     free(p->link);
     free(p->constrained);
-    free(p->turns);
-    free(p->used);
     if (p->room == NULL) {
         *p = (struct check_part){0};
         return;
@@ -112,24 +110,14 @@ static bool judge_corners(struct checker *c)
     return false;
 }
 
-static int compare_numbers(const void *left, const void *right)
-{
-    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-    return (a > b) - (a < b);
-}
-
 enum tri_status tri_check_sample(struct checker *c, double *vertices)
 {
-    int64_t n = c->n_triangles < SAMPLE ? c->n_triangles : SAMPLE, distinct = 0;
+    int64_t n = c->n_triangles < SAMPLE ? c->n_triangles : SAMPLE;
     int64_t *corners = tri_check_array(3 * n, sizeof *corners);
     if (corners == NULL)
         return TRI_NO_MEMORY;
     enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, (c->n_triangles - n) / 2, n, corners);
-    if (status == TRI_OK)
-        qsort(corners, (size_t)(3 * n), sizeof *corners, compare_numbers);
-    for (int64_t i = 0; i < 3 * n && status == TRI_OK; i++)
-        distinct += i == 0 || corners[i] != corners[i - 1];
-    *vertices = n > 0 ? (double)distinct / (double)n : 1;
+    *vertices = status == TRI_OK && n > 0 ? (double)tri_check_distinct(corners, 3 * n) / (double)n : 1;
     free(corners);
     return status;
 }
@@ -195,6 +183,7 @@ static enum tri_status read_window(struct checker *c, int64_t w, int64_t end)
         for (int64_t v = 64 * word; bits != 0; v++, bits >>= 1) {
             if ((bits & 1) == 0)
                 continue;
+            c->state[v] |= CHECK_USED;
             r->vertex[at] = v;
             memcpy(r->points + 2 * (size_t)at++, r->window + 2 * (v - 64 * w), 2 * sizeof *r->points);
         }

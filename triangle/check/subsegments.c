@@ -7,8 +7,6 @@
 #include "triangle/base/grow.h"
 #include "triangle/check/internal.h"
 
-enum { NEAR_ENOUGH = 1 << 12, WINDOW = 1 << 14 }; /* vertices */
-
 enum tri_status tri_check_list_segments(struct checker *c)
 {
     int64_t n = c->source->n_segments;
@@ -34,12 +32,6 @@ enum tri_status tri_check_list_segments(struct checker *c)
 
 /* --- vertices of the frame */
 
-static int compare_numbers(const void *left, const void *right)
-{
-    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
-    return (a > b) - (a < b);
-}
-
 static int64_t take_ends(int64_t *out, const int64_t *ends, int64_t n)
 {
     int64_t k = 0;
@@ -64,54 +56,26 @@ static enum tri_status list_vertices(struct checker *c)
         v[n++] = c->boundary.at[i].from;
         v[n++] = c->boundary.at[i].to;
     }
-    qsort(v, (size_t)n, sizeof *v, compare_numbers);
-    int64_t k = 0;
-    for (int64_t i = 0; i < n; i++) {
-        if (i == 0 || v[i] != v[i - 1])
-            v[k++] = v[i];
-    }
-    if (k > INT32_MAX / 2)
+    n = tri_check_distinct(v, n);
+    if (n > INT32_MAX / 2)
         return TRI_TOO_LARGE;
-    (void)tri_resize(&c->vertex, (size_t)k + 1, sizeof *v); /* those that are left */
-    c->n_frame = (int32_t)k;
-    return TRI_OK;
+    c->n_frame = (int32_t)n;
+    return tri_resize(&c->vertex, (size_t)n + 1, sizeof *v) ? TRI_OK : TRI_NO_MEMORY; /* those that are left */
 }
 
-/* Their places, in slices of the mesh's points that hold some. */
 static enum tri_status read_places(struct checker *c)
 {
-    enum tri_status status = TRI_OK;
-    double *window = tri_check_array(WINDOW, 2 * sizeof *window);
-    c->points = tri_check_array(c->n_frame, 2 * sizeof *c->points);
-    if (window == NULL || c->points == NULL)
-        status = TRI_NO_MEMORY;
-    for (int32_t i = 0, j; i < c->n_frame && status == TRI_OK; i = j) {
-        int64_t first = c->vertex[i];
-        for (j = i + 1; j < c->n_frame && c->vertex[j] - c->vertex[j - 1] < NEAR_ENOUGH &&
-                        c->vertex[j] - first < WINDOW; j++) {
-        }
-        status = tri_check_read(c, TRI_CHECK_POINTS, first, c->vertex[j - 1] + 1 - first, window);
-        for (int32_t k = i; k < j; k++)
-            memcpy(c->points + 2 * (size_t)k, window + 2 * (c->vertex[k] - first), 2 * sizeof *window);
-    }
-    free(window);
-    return status;
+    const size_t bytes = 2 * sizeof *c->points;
+    c->points = tri_check_array(c->n_frame, bytes);
+    return c->points == NULL ? TRI_NO_MEMORY
+                             : tri_check_gather(c, TRI_CHECK_POINTS, c->vertex, c->n_frame, bytes, c->points);
 }
 
 /* Number in the frame of a vertex that is there, or -1. */
 int32_t tri_check_in_frame(const struct checker *c, int64_t v)
 {
-    if (v < 0)
-        return -1;
-    int32_t low = 0, high = c->n_frame;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (c->vertex[middle] < v)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < c->n_frame && c->vertex[low] == v ? low : -1;
+    const int64_t *found = bsearch(&v, c->vertex, (size_t)c->n_frame, sizeof v, tri_check_compare_numbers);
+    return found != NULL ? (int32_t)(found - c->vertex) : -1;
 }
 
 /* Subsegments and boundary edges by vertices of the frame. */

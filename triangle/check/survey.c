@@ -5,8 +5,6 @@
 
 #include "triangle/check/internal.h"
 
-enum { SLICE = 1 << 16 };
-
 struct survey {
     bool exact, finite;
     double largest;
@@ -21,16 +19,20 @@ static bool are_exact(const double *values, int64_t n)
     return true;
 }
 
-/* Values in hand, and what each share finds. */
+/* What has been found, the values in hand, and what each share finds of them. */
 struct looking {
+    const struct checker *c;
+    struct survey all;
     const double *values;
     struct survey share[CHECK_MOST_SHARES];
 };
 
+static const struct survey nothing = {true, true, 0};
+
 static void look_at_share(void *user, const struct check_share *share)
 {
     struct looking *l = user;
-    struct survey s = {true, true, 0};
+    struct survey s = nothing;
     for (int64_t i = share->first; i < share->end; i++) {
         s.exact = s.exact && tri_is_exact_coordinate(l->values[i]);
         s.finite = s.finite && isfinite(l->values[i]);
@@ -39,16 +41,18 @@ static void look_at_share(void *user, const struct check_share *share)
     l->share[share->number] = s;
 }
 
-static void look(const struct checker *c, struct survey *s, const double *values, int64_t n)
+static void look(void *looking, int64_t first, int64_t n, const void *points)
 {
-    struct looking l = {.values = values};
+    struct looking *l = looking;
+    (void)first;
+    l->values = points;
     for (int i = 0; i < CHECK_MOST_SHARES; i++)
-        l.share[i] = (struct survey){true, true, 0};
-    tri_check_in_shares(c, n, look_at_share, &l);
+        l->share[i] = nothing;
+    tri_check_in_shares(l->c, 2 * n, look_at_share, l);
     for (int i = 0; i < CHECK_MOST_SHARES; i++) {
-        s->exact = s->exact && l.share[i].exact;
-        s->finite = s->finite && l.share[i].finite;
-        s->largest = fmax(s->largest, l.share[i].largest);
+        l->all.exact = l->all.exact && l->share[i].exact;
+        l->all.finite = l->all.finite && l->share[i].finite;
+        l->all.largest = fmax(l->all.largest, l->share[i].largest);
     }
 }
 
@@ -57,10 +61,11 @@ static bool is_out_of_range(const double *p)
     return !tri_is_exact_point((struct tri_point){p[0], p[1]});
 }
 
-static void judge(struct checker *c, int64_t first, const double *points, int64_t n)
+static void judge(void *checker, int64_t first, int64_t n, const void *points)
 {
+    struct checker *c = checker;
     for (int64_t i = 0; i < n; i++) {
-        const double *p = points + 2 * i;
+        const double *p = (const double *)points + 2 * i;
         if (!is_out_of_range(p))
             continue;
         c->at = 3 * c->n_triangles + first + i; /* corners come first */
@@ -68,23 +73,6 @@ static void judge(struct checker *c, int64_t first, const double *points, int64_
                         check_number(c, first + i), check_given(c, p[0]), check_given(c, p[1]));
     }
     c->at = 0;
-}
-
-/* All points, slice by slice: looked at, or judged (s is NULL). */
-static enum tri_status pass(struct checker *c, struct survey *s)
-{
-    double *points = tri_check_array(SLICE, 2 * sizeof *points);
-    enum tri_status status = points == NULL ? TRI_NO_MEMORY : TRI_OK;
-    for (int64_t i = 0; i < c->n_points && status == TRI_OK; i += SLICE) {
-        int64_t n = c->n_points - i < SLICE ? c->n_points - i : SLICE;
-        status = tri_check_read(c, TRI_CHECK_POINTS, i, n, points);
-        if (status == TRI_OK && s != NULL)
-            look(c, s, points, 2 * n);
-        else if (status == TRI_OK)
-            judge(c, i, points, n);
-    }
-    free(points);
-    return status;
 }
 
 /* More, and multiples of the least double would be no coordinates any longer (triangle/geometry/point.h). */
@@ -138,18 +126,19 @@ static enum tri_status scale_input(struct checker *c)
 
 enum tri_status tri_check_survey(struct checker *c)
 {
-    struct survey s = {true, true, 0};
+    const size_t bytes = 2 * sizeof(double);
+    struct looking l = {.c = c, .all = nothing};
     tri_check_begin(c, TRI_CHECK_ARRAYS);
-    enum tri_status status = pass(c, &s);
+    enum tri_status status = tri_check_each_slice(c, TRI_CHECK_POINTS, c->n_points, bytes, look, &l);
     if (status != TRI_OK)
         return status;
-    if (!s.exact || (c->input != NULL && !are_exact(c->input->points, 2 * (int64_t)c->input->n_points))) {
-        c->exponent = choose_exponent(&s);
+    if (!l.all.exact || (c->input != NULL && !are_exact(c->input->points, 2 * (int64_t)c->input->n_points))) {
+        c->exponent = choose_exponent(&l.all);
         c->rounded = true;
         status = scale_input(c); /* the mesh is scaled on reading */
         if (status == TRI_OK)
-            status = pass(c, NULL);
+            status = tri_check_each_slice(c, TRI_CHECK_POINTS, c->n_points, bytes, judge, c);
     }
-    c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * ldexp(s.largest, c->exponent);
+    c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * ldexp(l.all.largest, c->exponent);
     return status;
 }

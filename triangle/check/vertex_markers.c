@@ -18,9 +18,8 @@ struct markers {
     uint8_t *from_input; /* [n_frame] is there an input point? */
     int32_t n_trials;
     int32_t at;          /* vertices of the frame before this one have been passed */
+    enum tri_status status; /* of reading */
 };
-
-enum { SLICE = 1 << 14 };
 
 static void list_own(struct markers *m)
 {
@@ -87,43 +86,40 @@ static bool is_right(struct markers *m, int32_t v, int32_t marker)
 
 /* A vertex of the mesh; they come in order, as those of the frame do. A vertex that is not in the frame is on no
  * subsegment, none of the boundary and not of the input. */
-static enum tri_status check_one(struct markers *m, int64_t v, int32_t marker)
+static void check_one(struct markers *m, int64_t v, int32_t marker)
 {
     struct checker *c = m->c;
     double place[2];
-    enum tri_status status = TRI_OK;
     while (m->at < c->n_frame && check_vertex(c, m->at) < v)
         m->at++;
     bool right = marker == 0;
     if (m->at < c->n_frame && check_vertex(c, m->at) == v) {
         right = is_right(m, m->at, marker);
     } else if (!right) {
-        status = tri_check_read(c, TRI_CHECK_POINTS, v, 1, place);
-        right = status == TRI_OK && is_on_any(m, (struct tri_point){place[0], place[1]}, marker);
+        m->status = tri_check_read(c, TRI_CHECK_POINTS, v, 1, place);
+        right = m->status != TRI_OK || is_on_any(m, (struct tri_point){place[0], place[1]}, marker);
     }
     if (!right)
         tri_check_fault(c, TRI_CHECK_VERTEX_MARKERS, "vertex %ld has marker %ld, which no segment there has",
                         check_number(c, v), (long)marker);
-    return status;
+}
+
+static void check_some(void *markers, int64_t first, int64_t n, const void *given)
+{
+    struct markers *m = markers;
+    for (int64_t i = 0; i < n && m->status == TRI_OK; i++) {
+        if (check_is_used(m->c, first + i))
+            check_one(m, first + i, ((const int32_t *)given)[i]);
+    }
 }
 
 static enum tri_status check_all(struct markers *m)
 {
-    struct checker *c = m->c;
-    int32_t *slice = tri_check_array(SLICE, sizeof *slice);
-    enum tri_status status = slice == NULL ? TRI_NO_MEMORY : TRI_OK;
     list_own(m);
-    tri_check_begin(c, TRI_CHECK_VERTEX_MARKERS);
-    for (int64_t i = 0; i < c->n_points && status == TRI_OK; i += SLICE) {
-        int64_t n = c->n_points - i < SLICE ? c->n_points - i : SLICE;
-        status = tri_check_read(c, TRI_CHECK_POINT_MARKERS, i, n, slice);
-        for (int64_t v = i; v < i + n && status == TRI_OK; v++) {
-            if (check_is_used(c, v))
-                status = check_one(m, v, slice[v - i]);
-        }
-    }
-    free(slice);
-    return status;
+    tri_check_begin(m->c, TRI_CHECK_VERTEX_MARKERS);
+    enum tri_status status = tri_check_each_slice(m->c, TRI_CHECK_POINT_MARKERS, m->c->n_points, sizeof(int32_t),
+                                                  check_some, m);
+    return status != TRI_OK ? status : m->status;
 }
 
 enum tri_status tri_check_vertex_markers(struct checker *c)
