@@ -29,40 +29,48 @@ double tri_area2_in_region(const struct tri_asked *a, tri_region_id region)
     return own > 0 ? tri_lesser(to_area2(a, own), a->area2) : a->area2;
 }
 
-static void shrink(double at[2], const double centroid[2], double factor)
+/* A length that is not above 0 wants nothing: no mesh could have it. In the mesh's units: squares of the caller's may be
+ * beyond the range of doubles. */
+static bool is_above_length(const struct tri_asked *asked, const struct tri_point p[4], double area)
 {
-    at[0] = centroid[0] + factor * (at[0] - centroid[0]);
-    at[1] = centroid[1] + factor * (at[1] - centroid[1]);
-}
-
-/* A length that is not above 0 wants nothing: no mesh could have it. */
-static bool is_above_length(const struct tri_quality *q, const double *const place[4], double area)
-{
+    const struct tri_quality *q = asked->quality;
+    const double unit = asked->mesh->unit;
     for (int k = 0; k < 4; k++) {
-        double length = q->edge_length(q->edge_length_user, place[k]);
+        const double at[2] = {p[k].x * unit, p[k].y * unit}, length = q->edge_length(q->edge_length_user, at) / unit;
         if (length > 0 && area > EQUILATERAL * length * length)
             return true;
     }
     return false;
 }
 
-bool tri_is_refused(const struct tri_asked *asked, struct tri_point p, struct tri_point q, struct tri_point r,
+/* The answer of the size test about a triangle shrunk about a place. */
+static bool test_refuses(const struct tri_asked *asked, const struct tri_point corner[3], struct tri_point about,
+                         double factor)
+{
+    const double unit = asked->mesh->unit;
+    double p[3][2];
+    for (int k = 0; k < 3; k++) {
+        p[k][0] = (factor == 1 ? corner[k].x : about.x + factor * (corner[k].x - about.x)) * unit;
+        p[k][1] = (factor == 1 ? corner[k].y : about.y + factor * (corner[k].y - about.y)) * unit;
+    }
+    const double area = 0.5 * ((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+    return asked->quality->unsuitable(asked->quality->unsuitable_user, p[0], p[1], p[2], area) != 0;
+}
+
+static double area_of(const struct tri_point p[3])
+{
+    double bx = p[1].x - p[0].x, by = p[1].y - p[0].y, cx = p[2].x - p[0].x, cy = p[2].y - p[0].y;
+    return 0.5 * (bx * cy - by * cx);
+}
+
+bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c,
                     double scale)
 {
-    const struct tri_quality *quality = asked->quality;
-    const double unit = asked->mesh->unit;
-    double a[2] = {p.x * unit, p.y * unit}, b[2] = {q.x * unit, q.y * unit}, c[2] = {r.x * unit, r.y * unit};
-    const double centroid[2] = {(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3}, factor = 1 / sqrt(scale);
-    const double *const place[4] = {centroid, a, b, c};
-    const double area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / scale;
-    assert(scale > 0 && tri_asks_caller(quality));
-    if (quality->edge_length && is_above_length(quality, place, area))
+    const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}};
+    assert(scale > 0 && tri_asks_caller(asked->quality));
+    if (asked->quality->edge_length && is_above_length(asked, place, area_of(place) / scale))
         return true;
-    if (!quality->unsuitable)
-        return false;
-    for (int k = 1; k < 4 && scale != 1; k++)
-        shrink(k == 1 ? a : k == 2 ? b : c, centroid, factor);
-    return quality->unsuitable(quality->unsuitable_user, a, b, c, area) != 0;
+    return asked->quality->unsuitable && test_refuses(asked, place, place[3], scale == 1 ? 1 : 1 / sqrt(scale));
 }
 
 bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3])
@@ -77,34 +85,27 @@ bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *
            (tri_asks_caller(asked->quality) && tri_is_unsuitable(asked, t->v));
 }
 
-/* Does the test refuse the equilateral triangle with this edge about a place? */
-static bool refuses_edge(const struct tri_asked *asked, struct tri_point p, double edge)
-{
-    const struct tri_quality *quality = asked->quality;
-    const double half = 0.5 * edge, low = edge / 3.4641016151377546, high = 2 * low, unit = asked->mesh->unit;
-    const double a[2] = {(p.x - half) * unit, (p.y - low) * unit}, b[2] = {(p.x + half) * unit, (p.y - low) * unit};
-    const double c[2] = {p.x * unit, (p.y + high) * unit}, area = EQUILATERAL * (edge * unit) * (edge * unit);
-    return quality->unsuitable(quality->unsuitable_user, a, b, c, area) != 0;
-}
-
-static double probe(const struct tri_asked *asked, struct tri_point p, double longest)
+static double probe(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at,
+                    double coarser)
 {
     enum { DEEPEST = 16 };
-    double edge = longest;
-    for (int k = 0; k <= DEEPEST; k++, edge *= 0.5)
-        if (!refuses_edge(asked, p, edge))
-            return k > 0 ? 1.4142135623730951 * edge : ANY_LENGTH;
+    double factor = 1 / coarser;
+    for (int k = 0; k <= DEEPEST; k++, factor *= 0.5)
+        if (!test_refuses(asked, triangle, at, factor))
+            return k > 0 ? factor * sqrt(2 * area_of(triangle) / EQUILATERAL) : ANY_LENGTH;
     return ANY_LENGTH;
 }
 
-double tri_asked_length(const struct tri_asked *asked, struct tri_point p, double longest)
+double tri_asked_length(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at)
 {
     const struct tri_quality *quality = asked->quality;
     const double coarser = sqrt(tri_area_scale(quality)), unit = asked->mesh->unit;
     double length = ANY_LENGTH;
     if (quality->edge_length) {
-        const double at[2] = {p.x * unit, p.y * unit}, here = quality->edge_length(quality->edge_length_user, at);
-        length = here > 0 ? tri_lesser(length, coarser * here / unit) : length;
+        const double p[2] = {at.x * unit, at.y * unit}, here = quality->edge_length(quality->edge_length_user, p);
+        length = here > 0 ? tri_lesser(length, here / unit) : length;
     }
-    return quality->unsuitable ? tri_lesser(length, coarser * probe(asked, p, longest / coarser)) : length;
+    if (quality->unsuitable)
+        length = tri_lesser(length, probe(asked, triangle, at, coarser));
+    return length < ANY_LENGTH ? coarser * length : length;
 }

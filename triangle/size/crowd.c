@@ -91,9 +91,10 @@ static void find_strips(struct field *f, const struct tri_mesh *mesh, tri_triang
 static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, double most)
 {
     const double LEAST = 0.05, FEW = 0.3;
+    const int DEEPEST = 128; /* h is smooth, and bounded from below */
     const tri_vertex_id *v = mesh->tri[triangle].v;
     struct field f = {.least = HUGE_VAL};
-    const struct tri_size_field field = {size_at, &f, 1 / (most * most), HUGE_VAL, FEW};
+    const struct tri_size_field field = {size_at, &f, 1 / (most * most), HUGE_VAL, FEW, DEEPEST};
     for (int k = 0; k < 3; k++) {
         f.corner[k] = mesh->xy[v[k]];
         f.size[k] = tri_larger(mesh->feature[v[k]], sqrt(mesh->limits.shortest2)); /* shorter edges stay */

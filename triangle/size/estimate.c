@@ -1,6 +1,6 @@
 /* The work of a triangle has two parts: triangles that sizes ask for inside it, and the rest, which angles ask for and
- * itself. Samples of the first part are taken from small pieces of large triangles, so that the work lies where it will
- * be; the rest lies at the shortest edge. */
+ * itself. Samples of the first part are taken from small pieces of large triangles, so that each lies where its
+ * triangles will be; the rest lies at the shortest edge. */
 #include "triangle/size/estimate.h"
 
 #include <assert.h>
@@ -23,6 +23,7 @@ struct estimator {
     struct tri_asked asked;
     struct tri_crowd crowd;
     double large; /* the caller's functions are asked in pieces no larger than this */
+    double *known; /* [n_triangles] what sizes ask for in each; NULL: to be asked for */
 };
 
 static double area_of(const struct tri_point p[3])
@@ -49,27 +50,26 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
         p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* The caller's functions, as a size h of which 1 / h^2 is the number of triangles on a unit of area. */
+/* The caller's functions in a piece of a triangle, as a size h of which 1 / h^2 is the number of triangles on a unit of
+ * area. */
 struct wish {
     const struct tri_asked *asked;
-    double longest;
+    const struct tri_point *piece; /* [3] */
 };
 
 static double wished_at(const void *user, struct tri_point q)
 {
     const double MEAN_SQUARE = 0.43301270189221932 * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
     const struct wish *wish = user;
-    return sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, q, wish->longest);
+    return sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
 }
 
 /* Triangles that the caller's functions ask for in a piece. */
 static double wished_in(const struct estimator *e, const struct tri_point p[3])
 {
     enum { FEW = 256 };
-    const double longest2 = tri_larger(tri_distance2(p[0], p[1]),
-                                       tri_larger(tri_distance2(p[1], p[2]), tri_distance2(p[2], p[0])));
-    const struct wish wish = {&e->asked, sqrt(longest2)};
-    const struct tri_size_field field = {wished_at, &wish, 0, e->large, FEW};
+    const struct wish wish = {&e->asked, p};
+    const struct tri_size_field field = {wished_at, &wish, 0, e->large, FEW, 2 * DEEPEST_CUT};
     return tri_integral(&field, p);
 }
 
@@ -86,6 +86,8 @@ static double asked_in(const struct estimator *e, tri_region_id region, const st
 static double asked_work(const struct estimator *e, tri_triangle_id t)
 {
     struct tri_point p[3];
+    if (e->known)
+        return e->known[t];
     if (!tri_has_sizes(e->asked.quality) || !tri_is_live(&e->mesh->tri[t]))
         return 0;
     corners_of(e->mesh, t, p);
@@ -106,8 +108,8 @@ static double angle_work(const struct estimator *e, tri_triangle_id t)
 
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    enum { PIECES = 1 << 14 }; /* of the whole mesh */
-    struct estimator e = {mesh, tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL};
+    enum { PIECES = 1 << 12 }; /* of the whole mesh */
+    struct estimator e = {mesh, tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL, NULL};
     double all = 0;
     for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
         all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
@@ -133,7 +135,7 @@ struct works {
     int32_t step, n; /* triangle step * i, i < n */
     double *known;   /* [n] each, looked up by all threads; NULL: to be asked for */
     double sum[TRI_MOST_SHARES];    /* of each share .. */
-    double urgent[TRI_MOST_SHARES]; /* .. and of what is more than a triangle that keeps its bounds can ask for */
+    double urgent[TRI_MOST_SHARES]; /* .. and of triangles that break their bounds */
 };
 
 static struct works asked_works(const struct estimator *e)
@@ -141,8 +143,7 @@ static struct works asked_works(const struct estimator *e)
     return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->mesh->n_triangles};
 }
 
-/* Triangles lie along a curve, so that every n-th is a fair sample: at most MOST of a large mesh, and a quarter of a
- * small one. */
+/* Triangles lie along a curve, so that every n-th is a fair sample: all of FEWEST, then fewer, at most MOST. */
 static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
     const int32_t n = e->mesh->n_triangles, step = n < 4 * FEWEST ? 1 + n / FEWEST : 4 + n / MOST;
@@ -197,22 +198,35 @@ static void know_share(void *context, size_t share)
 /* Where there is no memory each is asked for when it is needed. */
 static void know_all(struct works *w, const struct tri_executor *executor)
 {
-    w->known = tri_shares(w->n) > 1 ? malloc((size_t)w->n * sizeof *w->known) : NULL;
+    w->known = malloc(((size_t)w->n + 1) * sizeof *w->known);
     if (w->known)
         tri_execute(executor_for(w, executor), tri_shares(w->n), know_share, w);
+}
+
+/* What sizes ask for: the caller's functions are asked once for all. To be freed: known. */
+static struct works know_asked(struct estimator *e, const struct tri_executor *executor)
+{
+    struct works asked = asked_works(e);
+    if (tri_has_sizes(e->asked.quality))
+        know_all(&asked, executor);
+    e->known = asked.known;
+    return asked;
 }
 
 /* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
-    const struct estimator e = estimator_for(mesh, quality);
+    struct estimator e = estimator_for(mesh, quality);
+    struct works known = tri_asks_caller(quality) ? know_asked(&e, executor) : asked_works(&e);
     const bool twice = tri_sizes_come_first(mesh, quality, executor);
     const double again = twice ? TRI_AGAIN / (TRI_NEVER_AGAIN - fmin(quality->min_angle, TRI_USUAL_ANGLE)) : 0;
     double urgent = 0, ignored = 0;
-    double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
+    double asked = tri_has_sizes(quality) ? sum_of(known, executor, &urgent) : 0;
     *sure = mesh->n_triangles + urgent;
-    return (1 + again * again) * (asked + sum_of(sampled_works(&e, rest_work), executor, &ignored));
+    asked += sum_of(sampled_works(&e, rest_work), executor, &ignored);
+    free(known.known);
+    return (1 + again * again) * asked;
 }
 
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
@@ -302,7 +316,7 @@ static bool sample_asked(const struct receiver *to, const struct works *asked, d
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         double work = work_at(asked, t);
         waiting += work < grain ? work : 0;
-        if (work < grain && waiting < grain)
+        if (work == 0 || (work < grain && waiting < grain))
             continue;
         struct tri_point p[3];
         corners_of(mesh, t, p);
@@ -318,16 +332,14 @@ bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *qual
                      const struct tri_executor *executor, tri_take_work *take, void *user)
 {
     const struct receiver to = {take, user};
-    const struct estimator e = estimator_for(mesh, quality);
+    struct estimator e = estimator_for(mesh, quality);
     assert(take && grain >= 0);
-    struct works rest = sampled_works(&e, rest_work), asked = asked_works(&e);
+    struct works asked = know_asked(&e, executor), rest = sampled_works(&e, rest_work);
     know_all(&rest, executor);
     bool taken = sample_rest(&to, &rest, grain);
+    if (taken && tri_has_sizes(quality))
+        taken = sample_asked(&to, &asked, grain);
     free(rest.known);
-    if (!taken || !tri_has_sizes(quality))
-        return taken;
-    know_all(&asked, executor);
-    taken = sample_asked(&to, &asked, grain);
     free(asked.known);
     return taken;
 }

@@ -1,4 +1,6 @@
-/* How many triangles refinement will make: in a mesh, in a triangle, and where. */
+/* How many triangles refinement will make: in a mesh, in a triangle, and where. tri_estimate is read by --dry-run, by
+ * progress, and by the schedule, for the number and size of its cells; tri_sample_work says where cells are cut;
+ * tri_area_demand, the certain part, is what refusals read. */
 #ifndef TRIANGLE_SIZE_ESTIMATE_H
 #define TRIANGLE_SIZE_ESTIMATE_H
 
@@ -7,9 +9,9 @@
 
 /* Estimates the number of triangles that refinement will end with: those that sizes ask for, by integrals of 1 / h^2
  * where sizes are the caller's functions, and those that angles ask for beside them (crowd.h). It may be more than any
- * mesh can hold. *sure: the part of it that is no guess: the triangles that there are, and those that sizes ask for
- * where they are not met yet. The mesh has been made ready for refinement (groundwork.h).
- * O(triangles), and a call for each hundred triangles or so that the caller's functions ask for. */
+ * mesh can hold. *sure: the certain part: the triangles that there are, and those that sizes ask for where they are not
+ * met yet. The mesh has been made ready for refinement (groundwork.h).
+ * O(triangles), some 8,000 calls of the caller's functions, and one for each hundred triangles or so to come. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure);
 

@@ -6,8 +6,6 @@
 
 #include "triangle/geometry/shape.h"
 
-enum { DEEPEST = 128 };
-
 struct place {
     struct tri_point at;
     double h;
@@ -62,5 +60,5 @@ double tri_integral(const struct tri_size_field *field, const struct tri_point c
     struct place p[3];
     for (int k = 0; k < 3; k++)
         p[k] = (struct place){corner[k], field->at(field->user, corner[k])};
-    return count_in(field, p, DEEPEST);
+    return count_in(field, p, field->deepest);
 }

@@ -9,11 +9,12 @@ struct tri_size_field {
     double (*at)(const void *user, struct tri_point q); /* h, above 0 and below 1e100 */
     const void *user;
     double over;  /* what counts is 1 / h^2 beyond this */
-    double large; /* parts of a larger area are divided in any case: what h does amid them cannot be seen from afar */
+    double large; /* parts of a larger area are divided in any case: h may vary inside them unseen */
     double few;   /* parts that hold no more squares than this are not divided */
+    int deepest;  /* so many times a part is halved at most, whatever h does */
 };
 
-/* O(log of the ratios of sizes) places are looked at, where h is smooth. */
+/* Where h is smooth, O(log of the ratios of sizes) places are looked at. */
 double tri_integral(const struct tri_size_field *field, const struct tri_point corner[3]);
 
 #endif
