@@ -1,40 +1,44 @@
 /* Floods over triangles that stop at segments.
  *
  * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever
- * meet at a subsegment; removing the dead ones needs to tell subsegments alone. */
+ * meet at a subsegment; removing the dead ones needs to tell subsegments alone. What is dead has the region DEAD. */
 #include "triangle/cdt/carve.h"
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/locate.h"
 
+enum { DEAD = -1 };
+
 struct flood {
     struct tri_mesh *mesh;
     int32_t *stack;    /* [n_triangles]: each triangle is pushed at most once a flood */
-    uint8_t *dead;     /* [n_triangles] 0: live */
     struct tri_carve_report report;
     struct tri_emptied holes;
 };
 
-static void kill_from(struct flood *f, tri_triangle_id start)
+static bool is_dead(const struct flood *f, tri_triangle_id t) { return f->mesh->tri[t].region == DEAD; }
+
+/* Gives the region to what no flood has reached yet. */
+static void flood_from(const struct flood *f, tri_triangle_id start, tri_region_id region)
 {
+    struct tri_triangle *tri = f->mesh->tri;
     int32_t n = 0;
     assert(start >= 0 && start < f->mesh->n_triangles);
-    if (f->dead[start])
+    if (tri[start].region != 0)
         return;
-    f->dead[start] = 1;
+    tri[start].region = region;
     f->stack[n++] = start;
     while (n > 0) {
         tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            tri_link link = f->mesh->tri[t].n[e];
-            if (link >= 0 && !f->dead[tri_of(link)]) {
+            tri_link link = tri[t].n[e];
+            if (link >= 0 && tri[tri_of(link)].region == 0) {
                 assert(n < f->mesh->n_triangles);
-                f->dead[tri_of(link)] = 1;
+                tri[tri_of(link)].region = region;
                 f->stack[n++] = tri_of(link);
             }
         }
@@ -53,7 +57,7 @@ static void kill_concavities(struct flood *f)
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
             if (is_bare_hull(mesh, mesh->tri[t].n[e]))
-                kill_from(f, t);
+                flood_from(f, t, DEAD);
 }
 
 /* --- depth (carve.h, even_odd) */
@@ -122,11 +126,12 @@ static void enter(struct dive *d, bool keep_hull)
 static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
 {
     enter(d, keep_hull);
-    for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
+    for (bool even = true; d->n + d->n_next > 0; even = !even) {
         while (d->n > 0) {
             tri_triangle_id t = d->stack[--d->n];
             assert(d->state[t] == SEEN);
-            f->dead[t] |= even;
+            if (even)
+                f->mesh->tri[t].region = DEAD;
             for (int e = 0; e < 3; e++)
                 cross(d, tri_code(t, e));
         }
@@ -219,34 +224,13 @@ static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, 
             continue;
         if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1]))) {
             f->report.between++;
-        } else if (!f->dead[faces[k]]) {
+        } else if (!is_dead(f, faces[k])) {
             f->holes.first = f->holes.n++ == 0 ? k : f->holes.first;
-            kill_from(f, faces[k]);
+            flood_from(f, faces[k], DEAD);
         }
     }
     free(faces);
     return status;
-}
-
-/* Gives the region to what no region has reached yet. */
-static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
-{
-    struct tri_triangle *tri = f->mesh->tri;
-    int32_t n = 0;
-    assert(!f->dead[start] && tri[start].region == 0);
-    f->stack[n++] = start;
-    tri[start].region = region;
-    while (n > 0) {
-        tri_triangle_id t = f->stack[--n];
-        for (int e = 0; e < 3; e++) {
-            tri_link link = tri[t].n[e];
-            if (link >= 0 && tri[tri_of(link)].region == 0) {
-                assert(n < f->mesh->n_triangles);
-                tri[tri_of(link)].region = region;
-                f->stack[n++] = tri_of(link);
-            }
-        }
-    }
 }
 
 static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
@@ -261,19 +245,24 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
     for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
         const double *r = &pslg->regions[4 * (size_t)k];
         mesh->regions[k + 1] = (struct tri_region){r[2], r[3]};
-        if (faces[k] != TRI_NONE && !f->dead[faces[k]] && mesh->tri[faces[k]].region == 0)
-            spread(f, faces[k], k + 1);
+        if (faces[k] != TRI_NONE)
+            flood_from(f, faces[k], k + 1);
     }
     free(faces);
     return status;
 }
 
+void tri_mark_ends(struct tri_mesh *mesh, const tri_vertex_id v[2], int32_t marker)
+{
+    for (int k = 0; k < 2; k++)
+        if (mesh->vertex_markers[v[k]] == 0)
+            mesh->vertex_markers[v[k]] = marker;
+}
+
 void tri_mark_vertices(struct tri_mesh *mesh)
 {
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
-        for (int k = 0; k < 2; k++)
-            if (mesh->sub[s].marker && !mesh->vertex_markers[mesh->sub[s].v[k]])
-                mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
+        tri_mark_ends(mesh, mesh->sub[s].v, mesh->sub[s].marker);
 }
 
 /* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
@@ -282,7 +271,7 @@ static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;
     const struct tri_triangle *at = &mesh->tri[t];
-    assert(f->dead[t] && tri_is_live(at));
+    assert(is_dead(f, t) && tri_is_live(at));
     struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
     struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
@@ -294,18 +283,18 @@ static void guard_boundary(const struct flood *f, tri_triangle_id t)
         }
 }
 
-static void remove_dead(struct flood *f)
+static void remove_dead(const struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        if (f->dead[t])
+        if (is_dead(f, t))
             guard_boundary(f, t);
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         struct tri_triangle *at = &mesh->tri[t];
-        if (!f->dead[t])
+        if (!is_dead(f, t))
             continue;
         for (int e = 0; e < 3; e++) {
-            assert(at->n[e] < 0 || f->dead[tri_of(at->n[e])]);
+            assert(at->n[e] < 0 || is_dead(f, tri_of(at->n[e])));
             if (at->n[e] < 0)
                 mesh->sub[~at->n[e]].side[tri_side(&mesh->sub[~at->n[e]], at->v[tri_next[e]])] = TRI_NONE;
         }
@@ -390,7 +379,10 @@ static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const 
         kill_concavities(f);
     if (!status && !options->ignore_holes)
         status = kill_holes(f, pslg, error);
-    if (!status && !memchr(f->dead, 0, (size_t)f->mesh->n_triangles))
+    tri_triangle_id t = 0;
+    while (!status && t < f->mesh->n_triangles && is_dead(f, t))
+        t++;
+    if (!status && t == f->mesh->n_triangles)
         status = tri_why_empty(&f->report.why, f->mesh, options->even_odd, options->keep_hull, &f->holes, error);
     return status;
 }
@@ -400,9 +392,9 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 {
     size_t n = (size_t)mesh->n_triangles + 1;
     assert(mesh->n_subs == mesh->n_parents); /* one each */
-    struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack), .dead = calloc(n, 1)};
+    struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack)};
     enum tri_status status = TRI_OK;
-    if (!f.stack || !f.dead)
+    if (!f.stack)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
     tri_mark_vertices(mesh);
     if (!status && mesh->n_triangles > 0) {
@@ -415,7 +407,6 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     if (options->report)
         *options->report = f.report;
     free(f.stack);
-    free(f.dead);
     return status ? status : order_subs(mesh, pslg->n_segments, error);
 }
 
@@ -427,8 +418,6 @@ void tri_mark_boundary(struct tri_mesh *mesh)
             continue;
         if (sub->marker == 0)
             sub->marker = 1;
-        for (int k = 0; k < 2; k++)
-            if (mesh->vertex_markers[sub->v[k]] == 0)
-                mesh->vertex_markers[sub->v[k]] = 1;
+        tri_mark_ends(mesh, sub->v, 1);
     }
 }

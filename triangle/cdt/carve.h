@@ -36,6 +36,9 @@ struct tri_carve_options {
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error);
 
+/* The marker for those of the two vertices that have marker 0. */
+void tri_mark_ends(struct tri_mesh *mesh, const tri_vertex_id v[2], int32_t marker);
+
 /* The marker of a subsegment for every vertex at it that has marker 0. */
 void tri_mark_vertices(struct tri_mesh *mesh);
 

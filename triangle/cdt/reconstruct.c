@@ -126,8 +126,7 @@ static enum tri_status take_triangles(struct matcher *m)
     if (status)
         return status;
     m->width = m->mesh->n_vertices / (int32_t)n_shares(m) + 1;
-    for (m->width_bits = 1; m->width >> m->width_bits;)
-        m->width_bits++;
+    m->width_bits = tri_bits_of(m->width);
     tri_execute(m->options->executor, n_shares(m), take_share, m);
     status = first_fault(m);
     m->mesh->n_triangles = status ? 0 : n;
@@ -319,13 +318,6 @@ static void add_sub(struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id from
     *tri_link_at(mesh, other) = ~s;
 }
 
-static void mark_ends(struct tri_mesh *mesh, const tri_vertex_id v[2], int32_t marker)
-{
-    for (int k = 0; k < 2; k++)
-        if (mesh->vertex_markers[v[k]] == 0)
-            mesh->vertex_markers[v[k]] = marker;
-}
-
 static void add_segments(const struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
@@ -339,7 +331,7 @@ static void add_segments(const struct matcher *m)
             add_sub(mesh, code, v[0], v[1], marker, k);
         else if (mesh->sub[~link].marker == 0)
             mesh->sub[~link].marker = marker;
-        mark_ends(mesh, v, marker);
+        tri_mark_ends(mesh, v, marker);
     }
 }
 
