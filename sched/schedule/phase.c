@@ -16,30 +16,25 @@ enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->left, triangle))
-        task->lost = true;
+    task->lost |= !par_ids_add(&task->left, triangle);
 }
 
 static void note_given_up(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->given_up, triangle))
-        task->lost = true;
+    task->lost |= !par_ids_add(&task->given_up, triangle);
 }
 
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct par_task *task = user;
-    for (int32_t i = 0; i < n; i++)
-        if (!par_ids_add(&task->changed, triangle[i]))
-            task->lost = true;
+    task->lost |= !par_ids_add_all(&task->changed, triangle, n);
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
-        task->lost = true;
+    task->lost |= !par_ids_add_all(&task->asked, edge, 2);
 }
 
 /* The block that has its turn now and owns triangle t. */
@@ -65,12 +60,6 @@ static void assign_share(void *context, size_t share)
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, &locator, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
-}
-
-/* In as many shares as there can be: each entry takes a while. */
-static void assign_blocks(struct par_phase_run *p)
-{
-    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p);
 }
 
 /* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
@@ -266,9 +255,7 @@ static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *err
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
-        memory = memory && !task->lost;
-        for (int32_t k = 0; memory && k < task->asked.n; k++)
-            memory = par_ids_add(&asked, task->asked.item[k]);
+        memory = memory && !task->lost && par_ids_add_all(&asked, task->asked.item, task->asked.n);
     }
     enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
     if (!status && asked.n > 0)
@@ -425,7 +412,7 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
 {
     struct par_report *report = p->state->report;
     double began = tri_seconds();
-    assign_blocks(p);
+    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); /* many: each entry takes a while */
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)

@@ -222,9 +222,8 @@ struct before {
 static enum tri_status remember(const struct par_run *state, struct before *before, struct tri_error *error)
 {
     *before = (struct before){.report = *state->report};
-    for (int32_t i = 0; i < state->worklist.n; i++)
-        if (!par_ids_add(&before->worklist, state->worklist.item[i]))
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
+    if (!par_ids_add_all(&before->worklist, state->worklist.item, state->worklist.n))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
     return tri_mesh_copy(&before->mesh, state->mesh, error);
 }
 
