@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    FEW = 24,   /* are sorted by insertion */
+    FEW = 24,   /* are sorted on the stack */
     AHEAD = 24, /* triangles that come so soon are fetched already */
     SOME = 64   /* fans */
 };
@@ -97,17 +97,6 @@ static struct final get(const struct par_tile_copy *copy, int32_t at)
     return final;
 }
 
-static void insert_few(struct final *item, int32_t n)
-{
-    for (int32_t i = 1; i < n; i++) {
-        const struct final moving = item[i];
-        int32_t at = i;
-        for (; at > 0 && compare_finals(&item[at - 1], &moving) > 0; at--)
-            item[at] = item[at - 1];
-        item[at] = moving;
-    }
-}
-
 /* Triangles of one fan, or of none. */
 static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n)
 {
@@ -116,10 +105,7 @@ static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n
         return false;
     for (int32_t i = 0; i < n; i++)
         item[i] = get(copy, first + i);
-    if (n > FEW)
-        qsort(item, (size_t)n, sizeof *item, compare_finals);
-    else
-        insert_few(item, n);
+    qsort(item, (size_t)n, sizeof *item, compare_finals);
     for (int32_t i = 0; i < n; i++)
         put(copy, first + i, &item[i]);
     if (n > FEW)
