@@ -7,6 +7,7 @@
 
 #include "sched/schedule/phase_tasks.h"
 #include "sched/tiles/deal.h"
+#include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
@@ -63,10 +64,10 @@ static void assign_share(void *context, size_t share)
 }
 
 /* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
- * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
+ * become, since a pause costs less than gaps do. */
 static int32_t expect(int phase, double work)
 {
-    static const double share[PAR_PHASES] = {0.9, 0.38, 0.42, 0.35};
+    static const double share[PAR_PHASES] = PAR_DONE_IN_PHASES;
     double expected = share[phase] * work + 128;
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }

@@ -16,7 +16,8 @@ static void *array(char **at, int32_t n, size_t item)
 bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
                            int32_t n_triangles, int32_t n_segments)
 {
-    const size_t a = (size_t)mesh->n_attributes * sizeof *copy->attributes, v = sizeof *copy->points + a + sizeof(int32_t);
+    const size_t a = (size_t)mesh->n_attributes * sizeof *copy->attributes;
+    const size_t v = sizeof *copy->points + a + sizeof(int32_t);
     const size_t t = sizeof *copy->corners + sizeof(int32_t), s = sizeof *copy->ends + sizeof(int32_t);
     const size_t size = (size_t)n_vertices * v + (size_t)n_triangles * t + (size_t)n_segments * s;
     if (!copy->block || size > copy->size) {
