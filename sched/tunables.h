@@ -1,8 +1,73 @@
-/* The numbers by which the schedule is fast or takes little memory. None changes a mesh; those that do are in
- * triangle/tunables.h. Each was measured, or guessed and not found wrong. docs/performance-history.md has the
- * measurements. */
+/* The numbers by which the schedule is fast or takes little memory. Only those of the first section decide where blocks
+ * are, and so what a mesh looks like; more of that kind are in triangle/tunables.h. Each was measured, or guessed and
+ * not found wrong. docs/performance-history.md has the measurements. */
 #ifndef SCHED_TUNABLES_H
 #define SCHED_TUNABLES_H
+
+/* --- cells, which decide on meshes */
+
+/* Final triangles of a cell: those of the mesh over the first, within the others. Measured: small cells keep many
+ * threads busy, large ones make fewer seams. */
+#define PAR_CELLS_WANTED 128.0
+#define PAR_SMALLEST_CELL 8192.0
+#define PAR_LARGEST_CELL 65536.0
+/* Cells that are worth a schedule; and one for a coarse mesh. Guess. */
+#define PAR_FEWEST_CELLS 8
+#define PAR_FEWEST_COARSE_CELLS 32
+/* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come.
+ * Guess. */
+#define PAR_A_LITTLE 0.25
+/* Coarse triangles that a cell has after pre-refinement. Measured: enough for seams to be narrow, few enough for
+ * pre-refinement to take a few thousandths of the time. */
+#define PAR_COARSE_PER_CELL 64.0
+/* Rounds of a schedule, each on blocks four times as large, before what is left is done by one call. Guess. */
+#define PAR_MOST_ROUNDS 24
+
+/* --- room for blocks */
+
+/* Triangles that a worklist becomes in each phase, over those that its work says. Measured: the rest is left at the
+ * seams. */
+#define PAR_DONE_IN_PHASES {0.9, 0.38, 0.42, 0.35}
+/* Items of a range at least. Guess. */
+#define PAR_LEAST_RANGE 64
+/* Share of the points to come that lie on segments, at least. Guess. */
+#define PAR_LEAST_ON_SEGMENTS 0.125
+/* Free ids in a column that has gone are forgotten in runs shorter than this: a run takes the room of two ids.
+ * Guess. */
+#define PAR_SHORTEST_RUN 8
+
+/* --- memory */
+
+/* Bytes a triangle at the peak, where all stay in memory and are numbered. Measured. */
+#define PAR_BYTES_IN_MEMORY 74.0
+/* Share of the triangles that one mesh may have up to which an estimate does not ask for more than it has. Guess. */
+#define PAR_SURELY_ONE_MESH 0.8
+/* Of a bound on memory, what grows between two growths of the arrays: a share, and bytes at least, since a library that
+ * writes files brings code and buffers with the first one. Guess. */
+#define PAR_TO_COME 0.1
+#define PAR_TO_COME_BYTES 8e6
+/* Share of what all else leaves of the bound for pages of parked arrays before they are unmapped. Guess. */
+#define PAR_TOUCHED 0.3
+/* Bytes by which a file of a parked array grows, and nanoseconds between two looks at the memory in use. Guess. */
+#define PAR_PARK_GROWTH (1 << 18)
+#define PAR_LOOK_NANOSECONDS 1000000
+
+/* --- tiles */
+
+/* Items of a mesh without tiles that are handed out at a time. Guess. */
+#define PAR_ITEMS_AT_ONCE (1 << 16)
+/* Triangles that move at once when a mesh is numbered: in a large one, so many that threads wait for each other seldom;
+ * one in so many of a small one. Guess. */
+#define PAR_MOST_MOVE (1 << 18)
+#define PAR_MOVES 16
+/* Triangles that start at one corner are sorted by insertion, or on the stack, up to so many. Guess. */
+#define PAR_FEW_IN_FAN 24
+/* Fans of a tile after which the triangles are let go that have been handed out: they are in the cache still. Guess. */
+#define PAR_FANS_AT_ONCE 64
+/* Triangles ahead of the one at hand that are fetched: when they move, are handed out, are found. Guess. */
+#define PAR_MOVED_AHEAD 32
+#define PAR_HANDED_AHEAD 24
+#define PAR_FOUND_AHEAD 16
 
 /* --- ranks */
 

@@ -2,9 +2,7 @@
 #include "sched/schedule/by_tile.h"
 
 #include <assert.h>
-#include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "sched/tiles/deal.h"
 #include "triangle/geometry/hilbert.h"
@@ -15,11 +13,15 @@ struct ordering {
     const struct par_partition *tiles;
     const struct par_ids *worklist;
     int32_t first, end; /* tiles */
-    int32_t *tile_of;   /* [worklist.n] TRI_NONE: it leaves */
     struct par_deal deal;
-    int32_t *item;      /* [worklist.n] tile by tile */
-    uint64_t *key;      /* [worklist.n] */
-    atomic_bool lost;   /* no memory */
+    union {
+        int32_t *tile_of;     /* [worklist.n] TRI_NONE: it leaves */
+        int32_t *item;        /* once all are dealt: places in their tiles, in order, then the triangles there */
+    };
+    int32_t *dealt;           /* [worklist.n] triangles, tile by tile */
+    struct tri_point *centre; /* [worklist.n] of these */
+    uint64_t *key;            /* [worklist.n] */
+    uint64_t *room;           /* [2 * worklist.n] */
 };
 
 static tri_vertex_id home_of(const struct tri_mesh *mesh, tri_triangle_id t)
@@ -44,14 +46,25 @@ static void find_tiles(void *context, size_t share)
     }
 }
 
+static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    const struct tri_point *xy = mesh->xy;
+    const tri_vertex_id *v = mesh->tri[t].v;
+    return (struct tri_point){(xy[v[0]].x + xy[v[1]].x + xy[v[2]].x) / 3, (xy[v[0]].y + xy[v[1]].y + xy[v[2]].y) / 3};
+}
+
 static void deal_share(void *context, size_t share)
 {
     const struct ordering *o = context;
     const struct tri_range range = par_deal_share(&o->deal, share);
     int32_t *at = par_deal_at(&o->deal, share);
-    for (int32_t i = range.first; i < range.last; i++)
-        if (o->tile_of[i] != TRI_NONE)
-            o->item[at[o->tile_of[i]]++] = o->worklist->item[i];
+    for (int32_t i = range.first; i < range.last; i++) {
+        if (o->tile_of[i] == TRI_NONE)
+            continue;
+        const int32_t to = at[o->tile_of[i]]++;
+        o->dealt[to] = o->worklist->item[i];
+        o->centre[to] = centre_of(o->mesh, o->dealt[to]);
+    }
 }
 
 static bool is_before(const struct tri_mesh *mesh, tri_triangle_id a, tri_triangle_id b)
@@ -61,90 +74,47 @@ static bool is_before(const struct tri_mesh *mesh, tri_triangle_id a, tri_triang
     return order != 0 ? order < 0 : tri_compare_places(mesh->xy[v[1]], mesh->xy[w[1]]) < 0;
 }
 
-static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t)
-{
-    const struct tri_point *xy = mesh->xy;
-    const tri_vertex_id *v = mesh->tri[t].v;
-    return (struct tri_point){(xy[v[0]].x + xy[v[1]].x + xy[v[2]].x) / 3, (xy[v[0]].y + xy[v[1]].y + xy[v[2]].y) / 3};
-}
-
-/* Room to sort n triangles in. */
-struct sorting {
-    struct tri_point *centre;
-    int32_t *order, *sorted;
-    uint64_t *scratch;
-};
-
-static bool make_room(struct sorting *s, size_t n)
-{
-    s->centre = malloc(n * sizeof *s->centre);
-    s->order = malloc(n * sizeof *s->order);
-    s->sorted = malloc(n * sizeof *s->sorted);
-    s->scratch = malloc(2 * n * sizeof *s->scratch);
-    return s->centre && s->order && s->sorted && s->scratch;
-}
-
-static void free_room(struct sorting *s)
-{
-    free(s->centre);
-    free(s->order);
-    free(s->sorted);
-    free(s->scratch);
-}
-
 /* Those of equal centres, which are neighbours, and seldom more than two, by insertion. */
-static void put_in_order(const struct sorting *s, const struct tri_mesh *mesh, const int32_t *item, int32_t n)
+static void order_equals(const struct tri_mesh *mesh, const struct tri_point *centre, const int32_t *triangle,
+                         int32_t *place, int32_t n)
 {
-    for (int32_t i = 0; i < n; i++) {
-        const tri_triangle_id t = item[s->order[i]];
-        const struct tri_point centre = s->centre[s->order[i]];
+    for (int32_t i = 1; i < n; i++) {
+        const int32_t moving = place[i];
         int32_t at = i;
-        for (; at > 0 && tri_compare_places(s->centre[s->order[at - 1]], centre) == 0 &&
-               is_before(mesh, t, s->sorted[at - 1]); at--)
-            s->sorted[at] = s->sorted[at - 1];
-        s->sorted[at] = t;
+        for (; at > 0 && tri_compare_places(centre[place[at - 1]], centre[moving]) == 0 &&
+               is_before(mesh, triangle[moving], triangle[place[at - 1]]); at--)
+            place[at] = place[at - 1];
+        place[at] = moving;
     }
 }
 
-/* The triangles of a tile. False: no memory. */
-static bool sort(const struct tri_mesh *mesh, int32_t *item, size_t n)
+static void sort_tile(const void *context, size_t index, uint64_t *room)
 {
-    struct sorting s;
-    bool memory = make_room(&s, n);
-    for (size_t i = 0; memory && i < n; i++) {
-        s.order[i] = (int32_t)i;
-        s.centre[i] = centre_of(mesh, item[i]);
-    }
-    if (memory) {
-        tri_hilbert_order_coarse(s.centre, s.order, (int32_t)n, s.scratch);
-        put_in_order(&s, mesh, item, (int32_t)n);
-        memcpy(item, s.sorted, n * sizeof *item);
-    }
-    free_room(&s);
-    return memory;
-}
-
-static void sort_tile(void *context, size_t index)
-{
-    struct ordering *o = context;
-    const int32_t begin = o->deal.start[index], end = o->deal.start[index + 1];
-    if (begin == end)
-        return;
-    if (!sort(o->mesh, o->item + begin, (size_t)(end - begin)))
-        atomic_store(&o->lost, true);
+    const struct ordering *o = context;
+    const int32_t begin = o->deal.start[index], n = o->deal.start[index + 1] - begin;
+    const int32_t *dealt = o->dealt + begin;
+    int32_t *item = o->item + begin;
     const uint64_t key = par_key_of(o->tiles, PAR_NO_ROUND, 0, o->first + (int32_t)index);
-    for (int32_t i = begin; i < end; i++)
-        o->key[i] = key | (uint32_t)(i - begin);
+    for (int32_t i = 0; i < n; i++)
+        item[i] = i;
+    tri_hilbert_order_coarse(o->centre + begin, item, n, room);
+    order_equals(o->mesh, o->centre + begin, dealt, item, n);
+    for (int32_t i = 0; i < n; i++) {
+        item[i] = dealt[item[i]];
+        o->key[begin + i] = key | (uint32_t)i;
+    }
 }
 
 static bool make_lists(struct ordering *o)
 {
     const size_t n = (size_t)o->worklist->n + 1;
-    bool room = par_deal_reserve(&o->deal, o->worklist->n, o->end - o->first);
+    bool deals = par_deal_reserve(&o->deal, o->worklist->n, o->end - o->first);
     o->tile_of = malloc(n * sizeof *o->tile_of);
-    o->item = malloc(n * sizeof *o->item);
+    o->dealt = malloc(n * sizeof *o->dealt);
+    o->centre = malloc(n * sizeof *o->centre);
     o->key = malloc(n * sizeof *o->key);
-    return room && o->tile_of && o->item && o->key;
+    o->room = malloc(2 * n * sizeof *o->room);
+    return deals && o->tile_of && o->dealt && o->centre && o->key && o->room;
 }
 
 /* Returns how many are in order now; TRI_NONE: no memory. */
@@ -155,8 +125,8 @@ static int32_t order(struct ordering *o, const struct tri_executor *executor)
     tri_execute(executor, o->deal.shares, find_tiles, o);
     int32_t n = par_deal_add_up(&o->deal);
     tri_execute(executor, o->deal.shares, deal_share, o);
-    tri_execute(executor, (size_t)(o->end - o->first), sort_tile, o);
-    return atomic_load(&o->lost) ? TRI_NONE : n;
+    par_deal_work(&o->deal, executor, o->room, sort_tile, o);
+    return n;
 }
 
 bool par_order_by_tile(struct par_run *state, const struct par_partition *tiles, int32_t first, int32_t end)
@@ -164,7 +134,9 @@ bool par_order_by_tile(struct par_run *state, const struct par_partition *tiles,
     struct ordering o = {.mesh = state->mesh, .tiles = tiles, .worklist = &state->worklist, .first = first, .end = end};
     assert(first >= 0 && first <= end);
     const int32_t n = order(&o, &state->executor), capacity = state->worklist.n + 1;
-    free(o.tile_of);
+    free(o.dealt);
+    free(o.centre);
+    free(o.room);
     par_deal_free(&o.deal);
     if (n == TRI_NONE) {
         free(o.item);

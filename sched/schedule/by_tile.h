@@ -16,7 +16,7 @@
  * of the first phase) from first to end - 1 leaves the list. False: no memory, and the worklist is as before. O(n). */
 bool par_order_by_tile(struct par_run *state, const struct par_partition *tiles, int32_t first, int32_t end);
 
-/* Bytes that the sort takes beside the worklist, about. */
-static inline size_t par_order_bytes(const struct par_ids *worklist) { return 16 * (size_t)worklist->n; }
+/* Bytes that the sort takes beside the worklist. */
+static inline size_t par_order_bytes(const struct par_ids *worklist) { return 48 * (size_t)worklist->n; }
 
 #endif

@@ -107,21 +107,13 @@ bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64
     return true;
 }
 
-static bool gather_changes(const struct par_phase_run *p)
+static bool gather_lists(const struct par_phase_run *p)
 {
+    struct par_run *state = p->state;
     bool memory = true;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
-            memory = par_ids_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
-    return memory;
-}
-
-static bool gather_given_up(const struct par_phase_run *p)
-{
-    bool memory = true;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
-            memory = par_ids_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
+    for (const struct par_task *task = p->tasks; memory && task < p->tasks + p->n_tasks; task++)
+        memory = (!state->share || par_ids_add_all(&state->share->changed, task->changed.item, task->changed.n)) &&
+                 par_ids_add_all(&state->remaining, task->given_up.item, task->given_up.n);
     return memory;
 }
 
@@ -129,8 +121,7 @@ static bool take_back(struct par_phase_run *p)
 {
     struct leftovers left = {.p = p};
     bool memory = gather_left(&left) &&
-                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
-                  gather_given_up(p);
+                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_lists(p);
     free(left.seen);
     free(left.before);
     free(left.item);

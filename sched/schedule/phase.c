@@ -7,6 +7,7 @@
 
 #include "sched/schedule/phase_tasks.h"
 #include "sched/tiles/deal.h"
+#include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
@@ -16,30 +17,25 @@ enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->left, triangle))
-        task->lost = true;
+    task->lost |= !par_ids_add(&task->left, triangle);
 }
 
 static void note_given_up(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->given_up, triangle))
-        task->lost = true;
+    task->lost |= !par_ids_add(&task->given_up, triangle);
 }
 
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct par_task *task = user;
-    for (int32_t i = 0; i < n; i++)
-        if (!par_ids_add(&task->changed, triangle[i]))
-            task->lost = true;
+    task->lost |= !par_ids_add_all(&task->changed, triangle, n);
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
     struct par_task *task = user;
-    if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
-        task->lost = true;
+    task->lost |= !par_ids_add_all(&task->asked, edge, 2);
 }
 
 /* The block that has its turn now and owns triangle t. */
@@ -67,17 +63,11 @@ static void assign_share(void *context, size_t share)
     }
 }
 
-/* In as many shares as there can be: each entry takes a while. */
-static void assign_blocks(struct par_phase_run *p)
-{
-    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p);
-}
-
 /* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
- * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
+ * become, since a pause costs less than gaps do. */
 static int32_t expect(int phase, double work)
 {
-    static const double share[PAR_PHASES] = {0.9, 0.38, 0.42, 0.35};
+    static const double share[PAR_PHASES] = PAR_DONE_IN_PHASES;
     double expected = share[phase] * work + 128;
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
@@ -266,9 +256,7 @@ static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *err
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
-        memory = memory && !task->lost;
-        for (int32_t k = 0; memory && k < task->asked.n; k++)
-            memory = par_ids_add(&asked, task->asked.item[k]);
+        memory = memory && !task->lost && par_ids_add_all(&asked, task->asked.item, task->asked.n);
     }
     enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
     if (!status && asked.n > 0)
@@ -425,7 +413,7 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
 {
     struct par_report *report = p->state->report;
     double began = tri_seconds();
-    assign_blocks(p);
+    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); /* many: each entry takes a while */
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)

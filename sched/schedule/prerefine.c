@@ -5,12 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/size/estimate.h"
-
-/* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
- * to take a few thousandths of the time. (docs/performance.md) */
-static const double COARSE_PER_CELL = 64;
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. */
 struct coarse_test {
@@ -58,7 +55,7 @@ static double smallest_cell(const struct par_partition *p)
 struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double cell)
 {
     struct tri_quality coarse = *quality;
-    coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
+    coarse.area_scale = tri_area_scale(quality) * (cell / PAR_COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
     return coarse;
 }
@@ -67,7 +64,7 @@ bool par_areas_decide(const struct par_run *state, const struct tri_quality *qua
                       double cell)
 {
     struct tri_quality coarse = par_coarse_bounds(quality, cell);
-    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    double sure, most = estimate * fmin(4 * PAR_COARSE_PER_CELL / cell, 0.25);
     return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 

@@ -5,11 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
-
-enum { LEAST_RANGE = 64 };
-
-static const double LEAST_ON_SEGMENTS = 0.125;
 
 /* What one insertion takes at most. */
 static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_TRIANGLES] = 2, [PAR_SUBS] = 1};
@@ -152,7 +149,7 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     }
     if (need <= 0)
         return TRI_OK;
-    need = need < LEAST_RANGE ? LEAST_RANGE : need;
+    need = need < PAR_LEAST_RANGE ? PAR_LEAST_RANGE : need;
     if (!reserve_deal(to, from))
         return no_memory(error);
     enum tri_status status = reserve(shared, kind, need, error);
@@ -185,7 +182,7 @@ static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segmen
 /* Of the points that are still to come: an eighth, or more where more have been put there. */
 static double on_segments(const struct par_room *room)
 {
-    return room->on_segments > LEAST_ON_SEGMENTS ? room->on_segments : LEAST_ON_SEGMENTS;
+    return room->on_segments > PAR_LEAST_ON_SEGMENTS ? room->on_segments : PAR_LEAST_ON_SEGMENTS;
 }
 
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
@@ -205,7 +202,7 @@ enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *
     if (shared->bound || shared->storage)
         return TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
-        int64_t need = wanted_of(kind, triangles, LEAST_ON_SEGMENTS);
+        int64_t need = wanted_of(kind, triangles, PAR_LEAST_ON_SEGMENTS);
         need -= par_ranges_unused(&spare->ranges[kind]);
         if (need > 0)
             status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, error);

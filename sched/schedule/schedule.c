@@ -19,15 +19,11 @@
 #include "sched/tiles/park.h"
 #include "sched/tiles/remain.h"
 #include "sched/tiles/sweep.h"
+#include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/size_text.h"
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
-
-/* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
-static const double A_LITTLE = 0.25;
-
-enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -169,7 +165,7 @@ static enum tri_status run_rounds(struct par_run *state, struct par_partition *p
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
-    for (; !status && state->round < MAX_ROUNDS; state->round++) {
+    for (; !status && state->round < PAR_MOST_ROUNDS; state->round++) {
         status = run_phases(state, partition, error);
         state->phase = 0;
         state->report->rounds++;
@@ -191,19 +187,13 @@ static enum tri_status refine_on_ranks(struct par_run *state, const struct par_p
     return status;
 }
 
-/* Measured: bytes a triangle at the peak, where all stay in memory and are numbered. */
-static const double BYTES_IN_MEMORY = 74;
-
-/* The share of the triangles that one mesh may have up to which an estimate does not ask for more than it has. */
-static const double SURELY_ONE_MESH = 0.8;
-
 /* Would the whole mesh be too large for memory, or for one mesh? */
 static bool is_too_much(const struct par_run *state, double triangles)
 {
     const struct par_options *options = state->options;
     return options->sink && !options->carrier &&
-           (options->sweep || triangles > SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
-            (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
+           (options->sweep || triangles > PAR_SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
+            (options->memory > 0 && triangles * PAR_BYTES_IN_MEMORY > (double)options->memory));
 }
 
 static void note_size(struct par_run *state)
@@ -222,9 +212,8 @@ struct before {
 static enum tri_status remember(const struct par_run *state, struct before *before, struct tri_error *error)
 {
     *before = (struct before){.report = *state->report};
-    for (int32_t i = 0; i < state->worklist.n; i++)
-        if (!par_ids_add(&before->worklist, state->worklist.item[i]))
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
+    if (!par_ids_add_all(&before->worklist, state->worklist.item, state->worklist.n))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
     return tri_mesh_copy(&before->mesh, state->mesh, error);
 }
 
@@ -269,7 +258,7 @@ static enum tri_status fail_without_scratch(const struct par_run *state, double 
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
-                    tri_size_text(BYTES_IN_MEMORY * triangles).text,
+                    tri_size_text(PAR_BYTES_IN_MEMORY * triangles).text,
                     tri_size_text((double)state->options->memory).text);
 }
 
@@ -448,16 +437,16 @@ static enum tri_status refine_level(struct par_run *state, const struct tri_qual
                                     struct tri_error *error)
 {
     double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
-    double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
+    double large = cell * (level == 0 ? PAR_FEWEST_CELLS : PAR_FEWEST_COARSE_CELLS);
     if (estimate >= large && sure < large) {
         bool done;
-        enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
+        enum tri_status status = refine_a_little(state, quality, large * PAR_A_LITTLE, &done, error);
         if (status || done)
             return status;
         estimate = estimate_of(state, quality, &sure);
         cell = cell_size(state, estimate);
     }
-    if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
+    if (estimate >= cell * (level == 0 ? PAR_FEWEST_CELLS : PAR_FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
     double began = tri_seconds();
     enum tri_status status = refine_rest(state, quality, true, error);

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "sched/schedule/theory.h"
 
@@ -14,6 +15,16 @@ bool par_ids_grow(struct par_ids *ids)
 {
     assert(ids->n >= 0 && ids->n <= ids->capacity);
     return tri_grow(&ids->item, &ids->capacity, ids->n + 1, sizeof *ids->item);
+}
+
+bool par_ids_add_all(struct par_ids *ids, const int32_t *more, int32_t n)
+{
+    if (!tri_grow(&ids->item, &ids->capacity, ids->n + n, sizeof *ids->item))
+        return false;
+    if (n > 0)
+        memcpy(ids->item + ids->n, more, (size_t)n * sizeof *more);
+    ids->n += n;
+    return true;
 }
 
 static int ascending(const void *left, const void *right)

@@ -23,6 +23,9 @@ static inline bool par_ids_add(struct par_ids *ids, int32_t id)
     return true;
 }
 
+/* So many more. False: no memory. */
+bool par_ids_add_all(struct par_ids *ids, const int32_t *more, int32_t n);
+
 /* Brings ids in ascending order, each once; returns how many are left. */
 int32_t par_sort_unique(int32_t *item, int32_t n);
 

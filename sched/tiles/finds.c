@@ -6,9 +6,7 @@
 #include <string.h>
 
 #include "sched/tiles/deal.h"
-
-/* Free ids in runs shorter than this are forgotten; a run takes the room of two ids. */
-enum { SHORTEST_RUN = 8 };
+#include "sched/tunables.h"
 
 bool par_finds_begin(struct par_finds *finds, int32_t n_rows)
 {
@@ -78,7 +76,7 @@ void par_finds_to_runs(struct par_ids *list)
     for (int32_t i = 0, first = 0; i < list->n; i++) {
         if (i + 1 < list->n && list->item[i + 1] == list->item[i] + 1)
             continue;
-        if (i + 1 - first >= SHORTEST_RUN) {
+        if (i + 1 - first >= PAR_SHORTEST_RUN) {
             int32_t begin = list->item[first], end = list->item[i] + 1;
             assert(n + 2 <= i + 1);
             list->item[n++] = begin;

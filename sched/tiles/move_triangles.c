@@ -6,11 +6,9 @@
 
 #include <string.h>
 
-enum {
-    BATCH = 1 << 18, /* triangles that move at once, in a large mesh: so many that threads wait for each other seldom */
-    BATCHES = 16,    /* in a small one */
-    BATCH_SHARES = 32
-};
+#include "sched/tunables.h"
+
+enum { BATCH_SHARES = 32 };
 
 struct move {
     const struct par_numbering *n;
@@ -62,7 +60,6 @@ static bool stands_here(const struct move *m, tri_triangle_id t)
 /* Those that come soon are fetched already, so that the memory works on many at once. */
 static void gather_batch(void *context, size_t share)
 {
-    enum { AHEAD = 32 };
     struct move *m = context;
     const struct par_numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
@@ -71,8 +68,8 @@ static void gather_batch(void *context, size_t share)
     int32_t aside = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         aside += stands_here(m, t);
-        if (t + AHEAD < range.last)
-            __builtin_prefetch(source_of(n, turned[t + AHEAD]));
+        if (t + PAR_MOVED_AHEAD < range.last)
+            __builtin_prefetch(source_of(n, turned[t + PAR_MOVED_AHEAD]));
         to[t] = renamed(n, source_of(n, turned[t]), corner_in(turned[t]));
     }
     m->aside[share] = aside;
@@ -122,5 +119,5 @@ void par_move_triangles(const struct par_numbering *n)
 
 int32_t par_move_batch(int32_t n_triangles)
 {
-    return n_triangles / BATCHES < BATCH ? n_triangles / BATCHES + 1 : BATCH;
+    return n_triangles / PAR_MOVES < PAR_MOST_MOVE ? n_triangles / PAR_MOVES + 1 : PAR_MOST_MOVE;
 }

@@ -25,16 +25,12 @@
 #endif
 
 #include "sched/schedule/threads.h"
+#include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 #include "triangle/base/scratch_file.h"
 #include "triangle/base/size_text.h"
 
-enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
-
-/* Shares of the bound: for what grows between two growths of the arrays, which is at least so many bytes, since a
- * library that writes files brings code and buffers with the first one; and, where the arrays are in files, of what all
- * else leaves of it, for pages of theirs before they are unmapped. */
-static const double TO_COME = 0.1, TO_COME_BYTES = 8e6, TOUCHED = 0.3;
+enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS };
 
 /* One array in its file. */
 struct sheet {
@@ -93,7 +89,7 @@ static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
     look_at_others(park, mesh);
-    return (double)bytes + park->others + fmax(TO_COME * park->memory, TO_COME_BYTES) <= park->memory;
+    return (double)bytes + park->others + fmax(PAR_TO_COME * park->memory, PAR_TO_COME_BYTES) <= park->memory;
 }
 
 /* --- files */
@@ -148,7 +144,7 @@ static int extend(struct sheet *sheet, const char *folder, size_t size)
 
 static void *reserve_sheet(struct par_park *park, struct sheet *sheet, size_t bytes)
 {
-    const size_t wanted = (bytes + GRAIN - 1) / GRAIN * GRAIN;
+    const size_t wanted = (bytes + PAR_PARK_GROWTH - 1) / PAR_PARK_GROWTH * PAR_PARK_GROWTH;
     pthread_mutex_lock(&park->lock);
     const int fault = wanted > sheet->size ? extend(sheet, park->folder, wanted) : 0;
     const size_t now = (size_t)bytes_now(park);
@@ -242,7 +238,7 @@ static void look(struct par_park *park)
         return;
     const struct resident now = resident();
     const double ours = now.files - park->files, left = park->memory - (now.all - ours);
-    if (ours > TOUCHED * (left > 0 ? left : 0))
+    if (ours > PAR_TOUCHED * (left > 0 ? left : 0))
         unmap_pages(park);
 }
 
@@ -284,7 +280,7 @@ struct tri_executor par_park_executor(struct par_park *park, struct tri_executor
 static void *watch(void *user)
 {
     struct par_park *park = user;
-    const struct timespec pause = {0, LOOK_NANOSECONDS};
+    const struct timespec pause = {0, PAR_LOOK_NANOSECONDS};
     while (!atomic_load(&park->over)) {
         look(park);
         nanosleep(&pause, NULL);

@@ -19,10 +19,8 @@ bool par_remain_begin(struct par_run *state)
     struct par_ids *list = &state->remaining;
     tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
     const int32_t n = found ? tri_find_hopeless(state->mesh, state->quality, found) : 0;
-    bool memory = found;
     list->n = 0;
-    for (int32_t i = 0; memory && i < n; i++)
-        memory = par_ids_add(list, found[i]);
+    bool memory = found && par_ids_add_all(list, found, n);
     free(found);
     memset(state->remained, 0, sizeof state->remained);
     return memory;

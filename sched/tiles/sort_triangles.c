@@ -7,13 +7,12 @@
 
 #include <string.h>
 
+#include "sched/tunables.h"
 #include "triangle/base/radix.h"
 
 enum { FREE_KEY = TRI_NONE, STRAY_KEY = 1 << 30 };
 
 _Static_assert((int64_t)TRI_MAX_VERTICES << CORNER_BITS <= STRAY_KEY, "a key has a bit left");
-
-enum { FEW = 24 /* are sorted by insertion */ };
 
 static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
 static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
@@ -219,7 +218,7 @@ static void take_values(struct sorting *s, int32_t begin, int32_t end)
 /* By the next corner, those that start at one. */
 static void sort_fan(struct sorting *s, int32_t begin, int32_t end)
 {
-    if (end - begin <= FEW)
+    if (end - begin <= PAR_FEW_IN_FAN)
         insert_items(s->item + begin, end - begin);
     else
         sort_items(s->item + begin, s->spare, end - begin);

@@ -4,47 +4,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void *array(int32_t n, size_t item) { return malloc((size_t)n * item + 1); }
-
-static bool has_room(const struct par_tile_copy *copy, const int32_t n[3])
+/* The next array of so many items in the block. */
+static void *array(char **at, int32_t n, size_t item)
 {
-    return copy->points && n[0] <= copy->room[0] && n[1] <= copy->room[1] && n[2] <= copy->room[2];
+    void *here = *at;
+    *at += (size_t)n * item;
+    return here;
 }
 
-/* A little more than is asked for, since the next tile is about as large. */
-static int32_t more(int32_t n, int32_t room) { return n > room ? n + n / 16 : room; }
-
+/* Wide numbers first, so that all are aligned. */
 bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
                            int32_t n_triangles, int32_t n_segments)
 {
-    const int32_t n[3] = {n_vertices, n_triangles, n_segments};
-    if (has_room(copy, n))
-        return true;
-    const int32_t v = more(n[0], copy->room[0]), t = more(n[1], copy->room[1]), s = more(n[2], copy->room[2]);
-    par_tile_copy_free(copy);
-    *copy = (struct par_tile_copy){
-        .points = array(v, sizeof *copy->points),
-        .attributes = array(v, (size_t)mesh->n_attributes * sizeof *copy->attributes),
-        .point_markers = array(v, sizeof *copy->point_markers),
-        .corners = array(t, sizeof *copy->corners),
-        .regions = array(t, sizeof *copy->regions),
-        .ends = array(s, sizeof *copy->ends),
-        .segment_markers = array(s, sizeof *copy->segment_markers),
-        .room = {v, t, s},
-    };
-    return copy->points && copy->attributes && copy->point_markers && copy->corners && copy->regions && copy->ends &&
-           copy->segment_markers;
+    const size_t a = (size_t)mesh->n_attributes * sizeof *copy->attributes;
+    const size_t v = sizeof *copy->points + a + sizeof(int32_t);
+    const size_t t = sizeof *copy->corners + sizeof(int32_t), s = sizeof *copy->ends + sizeof(int32_t);
+    const size_t size = (size_t)n_vertices * v + (size_t)n_triangles * t + (size_t)n_segments * s;
+    if (!copy->block || size > copy->size) {
+        free(copy->block);
+        copy->size = size + size / 16; /* the next tile is about as large */
+        copy->block = malloc(copy->size + 1);
+    }
+    if (!copy->block)
+        return false;
+    char *at = copy->block;
+    copy->points = array(&at, n_vertices, sizeof *copy->points);
+    copy->attributes = array(&at, n_vertices, a);
+    copy->corners = array(&at, n_triangles, sizeof *copy->corners);
+    copy->ends = array(&at, n_segments, sizeof *copy->ends);
+    copy->point_markers = array(&at, n_vertices, sizeof *copy->point_markers);
+    copy->regions = array(&at, n_triangles, sizeof *copy->regions);
+    copy->segment_markers = array(&at, n_segments, sizeof *copy->segment_markers);
+    return true;
 }
 
 void par_tile_copy_free(struct par_tile_copy *copy)
 {
-    free(copy->points);
-    free(copy->attributes);
-    free(copy->point_markers);
-    free(copy->corners);
-    free(copy->regions);
-    free(copy->ends);
-    free(copy->segment_markers);
+    free(copy->block);
     *copy = (struct par_tile_copy){0};
 }
 

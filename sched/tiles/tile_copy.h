@@ -9,7 +9,8 @@ struct par_tile_copy {
     double (*points)[2], *attributes;
     int32_t *point_markers, *regions, *segment_markers;
     int64_t (*corners)[3], (*ends)[2];
-    int32_t room[3]; /* for so many vertices, triangles, subsegments */
+    void *block; /* [size] bytes, all of these one behind the other */
+    size_t size;
 };
 
 /* Room for so many; what was there goes. The first time all is 0. To be freed in any case. False: no memory. */

@@ -7,11 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    FEW = 24,   /* are sorted by insertion */
-    AHEAD = 24, /* triangles that come so soon are fetched already */
-    SOME = 64   /* fans */
-};
+#include "sched/tunables.h"
 
 /* --- final triangles */
 
@@ -97,32 +93,18 @@ static struct final get(const struct par_tile_copy *copy, int32_t at)
     return final;
 }
 
-static void insert_few(struct final *item, int32_t n)
-{
-    for (int32_t i = 1; i < n; i++) {
-        const struct final moving = item[i];
-        int32_t at = i;
-        for (; at > 0 && compare_finals(&item[at - 1], &moving) > 0; at--)
-            item[at] = item[at - 1];
-        item[at] = moving;
-    }
-}
-
 /* Triangles of one fan, or of none. */
 static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n)
 {
-    struct final few[FEW], *item = n > FEW ? malloc((size_t)n * sizeof *item) : few;
+    struct final few[PAR_FEW_IN_FAN], *item = n > PAR_FEW_IN_FAN ? malloc((size_t)n * sizeof *item) : few;
     if (!item)
         return false;
     for (int32_t i = 0; i < n; i++)
         item[i] = get(copy, first + i);
-    if (n > FEW)
-        qsort(item, (size_t)n, sizeof *item, compare_finals);
-    else
-        insert_few(item, n);
+    qsort(item, (size_t)n, sizeof *item, compare_finals);
     for (int32_t i = 0; i < n; i++)
         put(copy, first + i, &item[i]);
-    if (n > FEW)
+    if (n > PAR_FEW_IN_FAN)
         free(item);
     return true;
 }
@@ -224,8 +206,8 @@ static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, con
     bool memory = true;
     for (int32_t v = first, begin = begin_of(f, v); memory && v < end; begin = f->end[v++]) {
         const int32_t count = f->end[v] - begin;
-        for (int k = 0; begin + AHEAD < n && k < 3; k++)
-            __builtin_prefetch(&f->tri[f->slot[begin + AHEAD - k]]);
+        for (int k = 0; begin + PAR_HANDED_AHEAD < n && k < 3; k++)
+            __builtin_prefetch(&f->tri[f->slot[begin + PAR_HANDED_AHEAD - k]]);
         if (count <= 4 && begin + 4 <= n)
             put_four(f, copy, begin, count);
         else
@@ -250,7 +232,7 @@ static bool put_all(const struct fans *f, const struct par_tile_copy *copy, cons
     show_numbers(copy->corners[0], 3 * (size_t)f->others, mesh);
     free_triangles(f, 0, f->others);
     for (int32_t first = 0, end; memory && first < n; first = end) {
-        end = n - first > SOME ? first + SOME : n;
+        end = n - first > PAR_FANS_AT_ONCE ? first + PAR_FANS_AT_ONCE : n;
         memory = put_fans(f, copy, mesh, first, end);
         free_triangles(f, begin_of(f, first), begin_of(f, end));
     }
@@ -318,9 +300,9 @@ bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const 
         return false;
     par_tile_copy_show(&job->copy, tile);
     for (int32_t i = 0; i < tile->n_vertices; i++) {
-        if (i + AHEAD < tile->n_vertices) {
-            __builtin_prefetch(&mesh->xy[vertices[i + AHEAD]]);
-            __builtin_prefetch(&mesh->vertex_markers[vertices[i + AHEAD]]);
+        if (i + PAR_HANDED_AHEAD < tile->n_vertices) {
+            __builtin_prefetch(&mesh->xy[vertices[i + PAR_HANDED_AHEAD]]);
+            __builtin_prefetch(&mesh->vertex_markers[vertices[i + PAR_HANDED_AHEAD]]);
         }
         par_tile_copy_vertex(&job->copy, mesh, vertices[i], i);
     }

@@ -9,8 +9,7 @@
 #include <string.h>
 
 #include "sched/tiles/tile_copy.h"
-
-enum { PIECE = 1 << 16 }; /* items of a mesh without tiles that are handed out at a time */
+#include "sched/tunables.h"
 
 static enum tri_status no_memory(struct tri_error *error)
 {
@@ -165,21 +164,24 @@ static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, 
     return status;
 }
 
-static int32_t piece_end(int64_t first, int32_t n) { return n - first > PIECE ? (int32_t)first + PIECE : n; }
+static int32_t next_end(int64_t first, int32_t n)
+{
+    return n - first > PAR_ITEMS_AT_ONCE ? (int32_t)first + PAR_ITEMS_AT_ONCE : n;
+}
 
-/* What has no tiles, piece by piece: all vertices before triangles, so that corners may be any of them. */
-static enum tri_status hand_out_pieces(struct par_tiles *tiles, struct tri_error *error)
+/* What has no tiles, bit by bit: all vertices before triangles, so that corners may be any of them. */
+static enum tri_status hand_out_without_tiles(struct par_tiles *tiles, struct tri_error *error)
 {
     const struct tri_mesh *m = tiles->mesh;
     enum tri_status status = TRI_OK;
     while (!status && tiles->n_vertices < m->n_vertices)
-        status = hand_out_up_to(tiles, 0, piece_end(tiles->n_vertices, m->n_vertices), (int32_t)tiles->n_triangles,
+        status = hand_out_up_to(tiles, 0, next_end(tiles->n_vertices, m->n_vertices), (int32_t)tiles->n_triangles,
                                 (int32_t)tiles->n_segments, error);
     while (!status && tiles->n_triangles < m->n_triangles)
-        status = hand_out_up_to(tiles, 0, m->n_vertices, piece_end(tiles->n_triangles, m->n_triangles),
+        status = hand_out_up_to(tiles, 0, m->n_vertices, next_end(tiles->n_triangles, m->n_triangles),
                                 (int32_t)tiles->n_segments, error);
     while (!status && tiles->n_segments < m->n_subs)
-        status = hand_out_up_to(tiles, 0, m->n_vertices, m->n_triangles, piece_end(tiles->n_segments, m->n_subs),
+        status = hand_out_up_to(tiles, 0, m->n_vertices, m->n_triangles, next_end(tiles->n_segments, m->n_subs),
                                 error);
     return status;
 }
@@ -203,6 +205,6 @@ enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error
         status = hand_out_up_to(tiles, tile, v, t, s, error);
     }
     if (!status)
-        status = hand_out_pieces(tiles, error);
+        status = hand_out_without_tiles(tiles, error);
     return status ? status : par_tiles_end(tiles, error);
 }

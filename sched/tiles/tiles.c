@@ -12,6 +12,7 @@
 #include "sched/tiles/finds.h"
 #include "sched/tiles/pipeline.h"
 #include "sched/tiles/tile_fill.h"
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 #include "triangle/geometry/hilbert.h"
 
@@ -135,7 +136,6 @@ static inline void fetch_numbers(const int64_t *numbers, const tri_vertex_id v[3
 
 static void find_triangles(void *context, size_t share)
 {
-    enum { AHEAD = 16 };
     struct par_column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
     const int64_t *numbers = c->tiles->number;
@@ -145,9 +145,9 @@ static void find_triangles(void *context, size_t share)
     bool memory = true;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         const tri_vertex_id *v = mesh->tri[t].v;
-        __builtin_prefetch(&mesh->tri[t + 4 * AHEAD < range.last ? t + 4 * AHEAD : t]);
-        if (t + AHEAD < range.last)
-            fetch_numbers(numbers, mesh->tri[t + AHEAD].v);
+        __builtin_prefetch(&mesh->tri[t + 4 * PAR_FOUND_AHEAD < range.last ? t + 4 * PAR_FOUND_AHEAD : t]);
+        if (t + PAR_FOUND_AHEAD < range.last)
+            fetch_numbers(numbers, mesh->tri[t + PAR_FOUND_AHEAD].v);
         if (v[0] == TRI_NONE)
             continue;
         const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
