@@ -59,7 +59,7 @@
 /* Triangles that move at once when a mesh is numbered: in a large one, so many that threads wait for each other seldom;
  * one in so many of a small one. Guess. */
 #define PAR_MOST_MOVE (1 << 18)
-#define PAR_MOVES 16
+#define PAR_FEWEST_BATCHES 16
 /* Triangles that start at one corner are sorted by insertion, or on the stack, up to so many. Guess. */
 #define PAR_FEW_IN_FAN 24
 /* Fans of a tile after which the triangles are let go that have been handed out: they are in the cache still. Guess. */

@@ -95,7 +95,8 @@ static void test_integral(void **state)
     (void)state;
     enum { N = 1000 };
     const struct tri_point corner[3] = {{0, 0}, {1, 0}, {1, 1}};
-    const struct tri_size_field field = {size_about, NULL, 0, 1e-3, 0.3}, over = {size_about, NULL, 1e3, 1e-3, 0.3};
+    const struct tri_size_field field = {size_about, NULL, 0, 1e-3, 0.3, 60},
+                                over = {size_about, NULL, 1e3, 1e-3, 0.3, 60};
     double sum = 0, sum_over = 0;
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++) {

@@ -92,11 +92,11 @@ static const char *parse_element(void *user, size_t i, struct tri_fields *fields
             return "has a corner that is not the number of a vertex";
     }
     for (int64_t k = 3; k < r->fields[1]; k++) {
-        const bool good = tri_fields_integer(fields, &extra) == TRI_FIELD_GOOD;
+        const bool good = parse_number(fields, r->text->base, &extra) == TRI_FIELD_GOOD;
         if (!good)
             tri_fields_skip(fields);
         if (k < 6)
-            middle[k - 3] = good ? extra - r->text->base : -1;
+            middle[k - 3] = good ? extra : -1;
     }
     for (int64_t k = r->fields[1]; k < 6; k++)
         middle[k - 3] = -1;
@@ -120,10 +120,15 @@ static const char *parse_segment(void *user, size_t i, struct tri_fields *fields
 static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
+    int64_t value;
     tri_fields_skip(fields); /* its number */
-    for (size_t k = 0; k < 3; k++)
-        if (parse_number(fields, r->text->base, &r->numbers[3 * i + k]) != TRI_FIELD_GOOD)
+    for (size_t k = 0; k < 3; k++) {
+        if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
             return "lacks a neighbor";
+        if (value < -1)
+            return "has a neighbor that is no triangle";
+        r->numbers[3 * i + k] = value < 0 ? -1 : value - r->text->base;
+    }
     return NULL;
 }
 

@@ -23,9 +23,9 @@ enum tri_status scratch_append(struct scratch *s, const void *rows, int64_t n, s
     const int64_t at = s->n * (int64_t)s->width, size = n * (int64_t)s->width;
     if (s->file < 0 && !tri_grow_far(&s->bytes, &s->room, at + size, 1))
         return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    if (s->file < 0)
+    if (s->file < 0 && size > 0)
         memcpy(s->bytes + at, rows, (size_t)size);
-    else if (!tri_write_at(s->file, rows, (size_t)size, (uint64_t)at))
+    if (s->file >= 0 && !tri_write_at(s->file, rows, (size_t)size, (uint64_t)at))
         return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "cannot write a scratch file: %s", strerror(errno));
     s->n += n;
     return TRI_OK;

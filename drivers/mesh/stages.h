@@ -77,7 +77,7 @@ struct run_hooks {
      * files. NULL: nothing moves. */
     enum tri_status (*make_room)(void *user, struct run *run, double bytes);
     /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
-    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_quality *options);
+    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_quality *quality);
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */
     int n_ranks;                    /* that share the mesh; 0: it is all here */

@@ -127,8 +127,9 @@ struct tri_settings {
     double (*edge_length)(void *user, const double at[2]);
     void *edge_length_user;
     /* Must the triangle a, b, c (counter-clockwise) be refined? Asked about triangles that keep all bounds of size;
-     * by par_mesh_new and par_mesh_refine, and with `protect`, also about others that never are made: edges of segments
-     * that must not be split stay, whatever it says, and so do flat triangles beside them. 0: no. */
+     * by par_mesh_new and par_mesh_refine, with `progress`, and with `protect`, also about smaller ones inside these
+     * that never are made: edges of segments that must not be split stay, whatever it says, and so do flat triangles
+     * beside them. 0: no. */
     int (*unsuitable)(void *user, const double a[2], const double b[2], const double c[2], double area);
     void *unsuitable_user;
 

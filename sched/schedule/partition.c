@@ -325,7 +325,7 @@ static bool cut_anew(struct par_partition *p, struct samples *s, const struct tr
 }
 
 enum tri_status par_partition_make(struct par_partition *p, const struct tri_mesh *mesh,
-                                   const struct tri_quality *options, double estimate, double cell_triangles,
+                                   const struct tri_quality *quality, double estimate, double cell_triangles,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
     struct samples s = {0};
@@ -335,7 +335,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
         choose_numbers(p, cell_triangles, p->high.x - p->low.x, p->high.y - p->low.y);
     }
     double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
-    bool done = tri_sample_work(mesh, options, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
+    bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
     if (done && choose_for_work(p, cell_triangles))
         done = cut_anew(p, &s, executor);
     free(s.item);

@@ -31,7 +31,7 @@ struct par_partition {
 /* Cuts the plane into cells of about cell_triangles. estimate: what tri_estimate says. TRI_NO_MEMORY. O(triangles +
  * samples log samples). */
 enum tri_status par_partition_make(struct par_partition *partition, const struct tri_mesh *mesh,
-                                   const struct tri_quality *options, double estimate, double cell_triangles,
+                                   const struct tri_quality *quality, double estimate, double cell_triangles,
                                    const struct tri_executor *executor, struct tri_error *error);
 
 /* A copy with memory of its own. */

@@ -93,6 +93,12 @@ struct par_run {
     struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };
 
+/* Those of the caller, for a sequential call. */
+static inline struct tri_refine_hooks par_hooks(const struct par_run *state)
+{
+    return state->options->hooks ? *state->options->hooks : (struct tri_refine_hooks){0};
+}
+
 enum { PAR_NO_ROUND = -1 };
 
 /* The key of the first triangle that a block leaves in a phase of a round. */

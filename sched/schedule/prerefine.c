@@ -91,8 +91,11 @@ enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_qua
     if (!list_long_ones(state, &test, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
     assert(long_ones.n <= state->worklist.n);
-    const struct tri_refine_hooks hooks = {
-        .urgent = is_too_long, .urgent_user = &test, .worklist = long_ones.item, .n_worklist = long_ones.n};
+    struct tri_refine_hooks hooks = par_hooks(state);
+    hooks.urgent = is_too_long;
+    hooks.urgent_user = &test;
+    hooks.worklist = long_ones.item;
+    hooks.n_worklist = long_ones.n;
     double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
         status = tri_refine_with(state->mesh, &coarse, &hooks, &report, error);

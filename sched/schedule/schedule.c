@@ -53,7 +53,7 @@ static struct par_checkpoint *checkpoint_of(const struct par_run *state)
 static enum tri_status refine_rest(struct par_run *state, const struct tri_quality *quality, bool all,
                                    struct tri_error *error)
 {
-    struct tri_refine_hooks hooks = state->options->hooks ? *state->options->hooks : (struct tri_refine_hooks){0};
+    struct tri_refine_hooks hooks = par_hooks(state);
     struct tri_refine_report report = {0};
     struct tri_refiner *refiner = NULL;
     if (!all) {
@@ -421,7 +421,8 @@ static enum tri_status refine_a_little(struct par_run *state, const struct tri_q
     struct tri_refine_report report;
     double began = tri_seconds();
     options.max_steiner = (int64_t)(triangles / 2);
-    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    const struct tri_refine_hooks hooks = par_hooks(state);
+    enum tri_status status = tri_refine_with(state->mesh, &options, &hooks, &report, error);
     *done = !report.hit_limit;
     report.hit_limit = false;
     par_add_up(&state->report->total, &report);

@@ -35,8 +35,8 @@ struct par_options {
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
     bool size_test_in_parallel; /* size function and size test may be called by several threads at once; else, where
                                    there is one, the mesh is refined sequentially */
-    const struct tri_refine_hooks *hooks; /* of a sequential call for the whole mesh: with a gate or a fence there is no
-                                             schedule; NULL: none */
+    const struct tri_refine_hooks *hooks; /* gate, fence and told alone, of sequential calls: with a gate or a fence
+                                             there is no schedule; NULL: none */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered tile by tile, along a curve (sched/tiles/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then. By block, a sink gets
@@ -122,10 +122,10 @@ struct par_report {
 
 struct par_options par_defaults(void);
 
-/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; worklist,
- * gate, fence, deferred or more_room of the caller's; a size test that must not run in parallel) or the mesh is small
- * it is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
- * find out how much work there is where. In a child that was forked after a call there is one thread. Vertices that are
+/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; a
+ * gate or a fence of the caller's; a size function or size test that must not run in parallel) or the mesh is small it
+ * is one sequential call. These functions are also asked about smaller triangles that will never be, to find out how
+ * much work there is where. In a child that was forked after a call there is one thread. Vertices that are
  * there keep their ids; unless by_block, those of triangles and subsegments may change. Safe to call from several
  * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *quality,

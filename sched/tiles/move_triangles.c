@@ -119,5 +119,5 @@ void par_move_triangles(const struct par_numbering *n)
 
 int32_t par_move_batch(int32_t n_triangles)
 {
-    return n_triangles / PAR_MOVES < PAR_MOST_MOVE ? n_triangles / PAR_MOVES + 1 : PAR_MOST_MOVE;
+    return n_triangles / PAR_FEWEST_BATCHES < PAR_MOST_MOVE ? n_triangles / PAR_FEWEST_BATCHES + 1 : PAR_MOST_MOVE;
 }

@@ -344,7 +344,7 @@ double tri_check_bound(const struct tri_check_source *source, double least)
     return least / MOST_SHARE < WORTH_A_LOOK ? 0 : bound;
 }
 
-/* As many triangles as the bound allows beside these bytes, at least a few; all, where they are in memory. */
+/* As many triangles as the bound allows beside these bytes, at least a few; all, where no bound is set. */
 static enum tri_status choose_part(struct checker *c, double least)
 {
     enum { LEAST = 16 };

@@ -125,7 +125,7 @@ struct checker {
 
     uint8_t *state; /* [n_points] */
 
-    /* part.c, store.c */
+    /* shares.c, store.c */
     int64_t part_triangles; /* in a part, at most */
     struct check_part part;
     struct check_store *store;

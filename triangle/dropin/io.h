@@ -1,4 +1,4 @@
-/* From struct triangulateio to a PSLG or a mesh, and from a mesh back (run.h has what lies between).
+/* From struct triangulateio to a PSLG or a mesh, and from a mesh back (call.h has what lies between).
  *
  * Everything that can fail comes before the first change of the caller's structs: the arrays of the output are all
  * allocated before the first of them is filled. */

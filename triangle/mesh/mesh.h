@@ -70,7 +70,7 @@ struct tri_parent {
  * are parent[start[v] .. start[v + 1]); where they are many, in order of direction. */
 struct tri_incidence {
     tri_parent_id *parent; /* [2 * n_parents] */
-    int32_t *start;        /* [n_vertices + 1] */
+    int32_t *start;        /* [n_vertices + 2], the last for filling */
     int32_t n_vertices;    /* 0: not listed yet */
 };
 

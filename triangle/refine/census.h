@@ -42,7 +42,7 @@ void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_quality *
 void tri_settle_counts(const struct tri_refine_report *report, const int64_t found[TRI_EXCUSES + 1],
                        int64_t count[TRI_EXCUSES]);
 
-/* found[n_triangles] receives the triangles that violate the bounds though there is nothing to do at them: what
+/* found[n_triangles] receives the triangles that violate the bounds but cannot be improved: what
  * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           tri_triangle_id *found);

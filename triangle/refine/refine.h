@@ -28,8 +28,8 @@ typedef void tri_deferred(void *user, tri_triangle_id triangle);
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
-/* Who works on a part of a mesh (TRI_BEYOND). changed: these triangles have just been made. beyond: the call returns
- * TRI_NO_ROOM, since what lies behind an edge has to be known, and edge[] are its ends. */
+/* Callbacks of a caller that holds only part of a mesh (TRI_BEYOND). changed: these triangles have just been made.
+ * beyond: the call returns TRI_NO_ROOM, since what lies behind an edge has to be known, and edge[] are its ends. */
 struct tri_part {
     void (*changed)(void *user, const tri_triangle_id *triangle, int32_t n);
     void (*beyond)(void *user, const tri_vertex_id edge[2]);
@@ -81,7 +81,7 @@ struct tri_refine_report {
 /* Refines until every bad triangle is given up or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
  * TRI_TOO_LARGE comes before anything is done where area bounds ask for more than a mesh holds (tri_refine_check; not
- * asked within a fence, and of a part).
+ * within a fence, nor of a part).
  * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
                            struct tri_error *error);

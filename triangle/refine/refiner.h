@@ -8,7 +8,7 @@
 #include "triangle/refine/criterion.h"
 #include "triangle/refine/refine.h"
 
-enum tri_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
+enum tri_bound_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
 enum tri_step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
@@ -26,7 +26,7 @@ struct tri_refiner {
     enum tri_step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_listed, n_worklist;
-    enum tri_stage stage;
+    enum tri_bound_stage stage;
     enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
@@ -79,7 +79,7 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry);
  * memory. */
 bool tri_split_encroached(struct tri_refiner *r);
 
-/* Somebody asks for the end, or how far the work is: between two points the mesh is in order. */
+/* Reports progress; true if the run must stop. Between two points the mesh is in order. */
 bool tri_refiner_must_stop(struct tri_refiner *r);
 
 #endif

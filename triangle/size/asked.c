@@ -29,8 +29,8 @@ double tri_area2_in_region(const struct tri_asked *a, tri_region_id region)
     return own > 0 ? tri_lesser(to_area2(a, own), a->area2) : a->area2;
 }
 
-/* A length that is not above 0 wants nothing: no mesh could have it. In the mesh's units: squares of the caller's may be
- * beyond the range of doubles. */
+/* A length that is not above 0 wants nothing: no mesh could have it. In the mesh's units: squares of the caller's may
+ * be beyond the range of doubles. */
 static bool is_above_length(const struct tri_asked *asked, const struct tri_point p[4], double area)
 {
     const struct tri_quality *q = asked->quality;

@@ -25,7 +25,7 @@ struct field {
     double size[3];
     struct wall strip[STRIPS][2]; /* gaps, by their two sides */
     int n_strips;
-    double least; /* h is no less: where walls meet they do not ask for ever smaller triangles */
+    double least; /* h is no less, so that the integral is finite where walls meet */
 };
 
 static struct wall wall_of(const struct tri_mesh *mesh, const struct tri_subsegment *sub)
@@ -126,10 +126,10 @@ struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_qua
                               angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
 }
 
-/* As many as squares of the size that features impose fill it, where that is less than what is asked for. A bad
- * triangle takes a few for each octave between its shortest edge and its longest however small it is; between two walls
- * it takes more, since no size can grow there. A good one stays, unless sizes around do not let it; so does a hopeless
- * one. */
+/* The number of squares of the feature size that fill the triangle, where features ask for smaller ones than sizes do.
+ * A bad triangle takes a few for each octave between its shortest edge and its longest however small it is; between two
+ * walls it takes more, since no size can grow there. A good one stays, unless sizes around do not let it; so does a
+ * hopeless one. */
 double tri_crowd_work(const struct tri_crowd *c, tri_triangle_id t, double asked)
 {
     const struct tri_mesh *mesh = c->mesh;

@@ -14,8 +14,8 @@ struct tri_crowd {
 /* The mesh has been made ready for refinement (groundwork.h). Borrowed. */
 struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_quality *quality);
 
-/* Triangles that angles make of one, beside itself and those that sizes ask for in it, `asked`. Takes a time that grows
- * with the logarithms of the ratios of sizes in it: about as long as a point. */
+/* Triangles that angles make of one, beside itself and those that sizes ask for in it, `asked`. Cost:
+ * logarithmic in the ratio of sizes, about that of one point. */
 double tri_crowd_work(const struct tri_crowd *crowd, tri_triangle_id t, double asked);
 
 #endif

@@ -25,11 +25,10 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* Are the bounds to be reached in two steps: sizes with an easy angle bound, and then the angles? Angles above
- * TRI_EASY_ANGLE are dear to mend where triangles of different sizes meet. In a mesh that areas have made even such
- * triangles seldom meet; where features decide on sizes they meet anyway, and are mended twice. So the answer is yes
- * where areas ask for more than twice as many triangles as angles, in the mesh as it is, and where there is a size
- * test. O(triangles). */
+/* Should refinement reach the sizes first, with an easy angle bound, and the angles afterwards? Angles above
+ * TRI_EASY_ANGLE are dear to mend where triangles of different sizes meet. Area bounds make neighbours of similar size;
+ * features do not, and mending there would be done twice. So the answer is yes where areas ask for more than twice as
+ * many triangles as angles, in the mesh as it is, and where sizes are functions of the caller. O(triangles). */
 bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_executor *executor);
 

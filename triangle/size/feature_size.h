@@ -15,7 +15,7 @@ double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
 /* The same for a point on subsegment s whose cavity has been found by tri_cavity_search_split. */
 double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, tri_sub_id s, bool sized);
 
-/* Is the edge between vertices a and b, of squared length l2, too short for what is around it, whatever that does for
+/* Is the edge between vertices a and b, of squared length l2, too short for what is around it, regardless of
  * angles? */
 bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2);
 

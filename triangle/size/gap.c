@@ -85,8 +85,9 @@ struct gap {
     bool spike;
 };
 
-/* Does filling the space between p and another parent, which an edge uv bridges, cost less than this? True only where
- * that is sure at a glance: see tri_filling_cost, where the shorter one is no longer than p and log2(1 + x) < 1.5 x. */
+/* Does filling the space between p and another parent, which an edge uv bridges, cost less than this? A sufficient
+ * test, true is certain, false is not: see tri_filling_cost, where the shorter one is no longer than p and log2(1 + x)
+ * < 1.5 x. */
 static bool is_cheaper(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
                        double cost)
 {

@@ -5,7 +5,7 @@
 #include "triangle/geometry/shape.h"
 #include "triangle/mesh/mesh.h"
 
-/* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
+/* A bad angle that no point can mend, or that a point would only move elsewhere: see the rules in the .c file. */
 bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* Does the shortest edge of the triangle join two segments that touch? */

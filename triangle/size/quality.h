@@ -21,8 +21,8 @@ struct tri_quality {
     void *edge_length_user;
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
-    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
-                              asked about triangles that are smaller by this; 0: as they are */
+    double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
+                              about triangles of 1 / area_scale of the area; 0: as they are */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
@@ -31,7 +31,7 @@ struct tri_quality {
 /* Nothing is asked. */
 struct tri_quality tri_quality_defaults(void);
 
-/* Are sizes the caller's functions, which not every thread may call? */
+/* Are sizes given by functions of the caller, which only some threads may call? */
 static inline bool tri_asks_caller(const struct tri_quality *quality)
 {
     return quality->edge_length || quality->unsuitable;
