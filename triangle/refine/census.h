@@ -26,7 +26,7 @@ int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
-/* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
+/* Counts the triangles that violate the bounds, by reason. The caller's functions are asked by the calling thread alone.
  * O(triangles). */
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                    const struct tri_refine_report *report, const struct tri_executor *executor,
@@ -43,7 +43,7 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
                        int64_t count[TRI_EXCUSES]);
 
 /* found[n_triangles] receives the triangles that violate the bounds but cannot be improved: what
- * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */
+ * tri_find_work leaves out. Returns how many. The caller's functions are asked. O(triangles). */
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           tri_triangle_id *found);
 

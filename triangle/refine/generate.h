@@ -5,8 +5,8 @@
  * triangle/refine/refine.h) by tri_refine as often as wanted, and freed by tri_mesh_free.
  *
  * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of
- * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates and size tests always get the
- * caller's coordinates. */
+ * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates, size functions and size tests get
+ * the caller's coordinates. */
 #ifndef TRIANGLE_REFINE_GENERATE_H
 #define TRIANGLE_REFINE_GENERATE_H
 

@@ -9,8 +9,8 @@
 tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* Is the triangle one that only the size test refuses, and always would, for the length of an edge beside a wall that
- * must not be split? Then nothing is to be had here. See the rule. */
+/* Is the triangle one that only the caller's functions refuse, and always would, for the length of an edge beside a
+ * wall that must not be split? Then nothing is to be had here. See the rule. */
 bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* The triangle's centroid. False where a disk about it, in the triangle, would have a radius below the shortest edge
