@@ -23,6 +23,11 @@
 /* Rounds of a schedule, each on blocks four times as large, before what is left is done by one call. Guess. */
 #define PAR_MOST_ROUNDS 24
 
+/* Samples of the work for each cell. Guess. */
+#define PAR_SAMPLES_PER_CELL 32
+/* Columns and rows are chosen anew where the work is so many times more drawn out than the box of the points. Guess. */
+#define PAR_SKEW 8.0
+
 /* --- room for blocks */
 
 /* Triangles that a worklist becomes in each phase, over those that its work says. Measured: the rest is left at the

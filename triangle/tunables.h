@@ -90,6 +90,14 @@
 #define TRI_MOST_OVER_BOUND 0.75
 /* A bad triangle, and each octave between its shortest edge and its longest, makes so many. Guess. */
 #define TRI_BAD_WORK 1.25
+/* What angles ask for is found in all of so many triangles, in a quarter of more, in at most so many. Measured: coasts
+ * take 6% to 8% less time than with a rougher estimate of each triangle. */
+#define TRI_FEWEST_SAMPLED (1 << 10)
+#define TRI_MOST_SAMPLED (1 << 14)
+/* The caller's functions are asked in so many pieces of the figure at least; a piece that asks for few triangles is not
+ * divided. Guess. */
+#define TRI_WISH_PIECES (1 << 12)
+#define TRI_WISH_FEW 256
 /* Triangles for angles (crowd.h): growth of h over distance, triangles for an octave and for a gap, and
  * TRI_FINENESS / (TRI_NEVER - angle) for each of the squares that features impose; once more where sizes come first.
  * Fitted to 19 coasts, parts, maps and point sets at 20 to 36 degrees, without areas and with two area bounds each. */

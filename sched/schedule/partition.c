@@ -8,7 +8,7 @@
  * cannot split it, and refines up to it as it is; the other half of its work is done from triangles that were good
  * already, step by step, and makes a mesh that grades several times as slowly (measured: up to 2.3 times the triangles
  * of one sequential call at 32 degrees, and 1.06 with cuts that cross the gap). So the box of the middle half of the
- * work, as its quantiles show it, decides on the numbers of columns and rows where it is SKEW times more drawn out
+ * work, as its quantiles show it, decides on the numbers of columns and rows where it is PAR_SKEW times more drawn out
  * than the mesh: cells are square up to that factor where the work is. */
 #include "sched/schedule/partition.h"
 
@@ -16,12 +16,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/tunables.h"
 #include "triangle/base/grow.h"
 #include "triangle/base/radix.h"
 #include "triangle/size/estimate.h"
 
 enum {
-    SAMPLES_PER_CELL = 32,
     RUNS = 16, /* a power of two: each is sorted by a task */
     FEW = 1024 /* samples are one run */
 };
@@ -304,14 +304,13 @@ static double middle_half(const double *bounds, int32_t n)
 /* Is the work on a line, against the box that the cells were made for? Then they are chosen anew. */
 static bool choose_for_work(struct par_partition *p, double cell_triangles)
 {
-    const double SKEW = 8;
     int32_t columns = p->n_columns, rows = p->n_rows;
     double width = p->high.x - p->low.x, height = p->high.y - p->low.y, middle = middle_half(p->x, columns);
     double beside = middle_half(p->y + (size_t)(columns / 2) * (size_t)rows, rows);
-    if (SKEW * middle * height < beside * width)
-        choose_numbers(p, cell_triangles, SKEW * middle, beside);
-    else if (SKEW * beside * width < middle * height)
-        choose_numbers(p, cell_triangles, middle, SKEW * beside);
+    if (PAR_SKEW * middle * height < beside * width)
+        choose_numbers(p, cell_triangles, PAR_SKEW * middle, beside);
+    else if (PAR_SKEW * beside * width < middle * height)
+        choose_numbers(p, cell_triangles, middle, PAR_SKEW * beside);
     return p->n_columns != columns || p->n_rows != rows;
 }
 
@@ -334,7 +333,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
         find_box(p, mesh, executor);
         choose_numbers(p, cell_triangles, p->high.x - p->low.x, p->high.y - p->low.y);
     }
-    double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
+    double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
     bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
     if (done && choose_for_work(p, cell_triangles))
         done = cut_anew(p, &s, executor);

@@ -12,7 +12,7 @@
 #include "triangle/size/integral.h"
 #include "triangle/tunables.h"
 
-enum { DEEPEST_CUT = 12, FEWEST = 1 << 10, MOST = 1 << 14 };
+enum { DEEPEST_CUT = 12 };
 
 /* More than anybody will have, and no infinity: bounds may ask for any number. */
 static const double MOST_WORK = 1e15;
@@ -67,9 +67,8 @@ static double wished_at(const void *user, struct tri_point q)
 /* Triangles that the caller's functions ask for in a piece. */
 static double wished_in(const struct estimator *e, const struct tri_point p[3])
 {
-    enum { FEW = 256 };
     const struct wish wish = {&e->asked, p};
-    const struct tri_size_field field = {wished_at, &wish, 0, e->large, FEW, 2 * DEEPEST_CUT};
+    const struct tri_size_field field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT};
     return tri_integral(&field, p);
 }
 
@@ -108,13 +107,12 @@ static double angle_work(const struct estimator *e, tri_triangle_id t)
 
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    enum { PIECES = 1 << 12 }; /* of the whole mesh */
     struct estimator e = {mesh, tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL, NULL};
     double all = 0;
     for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
         all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
     if (tri_asks_caller(quality))
-        e.large = all / PIECES;
+        e.large = all / TRI_WISH_PIECES;
     return e;
 }
 
@@ -143,10 +141,10 @@ static struct works asked_works(const struct estimator *e)
     return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->mesh->n_triangles};
 }
 
-/* Triangles lie along a curve, so that every n-th is a fair sample: all of FEWEST, then fewer, at most MOST. */
+/* Triangles lie along a curve, so that every n-th is a fair sample. */
 static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
-    const int32_t n = e->mesh->n_triangles, step = n < 4 * FEWEST ? 1 + n / FEWEST : 4 + n / MOST;
+    const int32_t n = e->mesh->n_triangles, step = n < 4 * TRI_FEWEST_SAMPLED ? 1 + n / TRI_FEWEST_SAMPLED : 4 + n / TRI_MOST_SAMPLED;
     return (struct works){.e = e, .of = of, .step = step, .n = (n + step - 1) / step};
 }
 
