@@ -26,7 +26,7 @@ int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality *quality,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
-/* Counts the triangles that violate the bounds, by reason. The caller's functions are asked by the calling thread alone.
+/* Counts the triangles that violate the bounds, by reason. The calling thread alone asks the caller's functions.
  * O(triangles). */
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                    const struct tri_refine_report *report, const struct tri_executor *executor,

@@ -144,7 +144,8 @@ static struct works asked_works(const struct estimator *e)
 /* Triangles lie along a curve, so that every n-th is a fair sample. */
 static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
-    const int32_t n = e->mesh->n_triangles, step = n < 4 * TRI_FEWEST_SAMPLED ? 1 + n / TRI_FEWEST_SAMPLED : 4 + n / TRI_MOST_SAMPLED;
+    const int32_t n = e->mesh->n_triangles;
+    const int32_t step = n < 4 * TRI_FEWEST_SAMPLED ? 1 + n / TRI_FEWEST_SAMPLED : 4 + n / TRI_MOST_SAMPLED;
     return (struct works){.e = e, .of = of, .step = step, .n = (n + step - 1) / step};
 }
 
