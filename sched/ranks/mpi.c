@@ -3,9 +3,9 @@
 #include "ptriangle/mpi.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-#include "sched/checkpoint/spool.h"
 #include "sched/ranks/mpi_carrier.h"
 #include "sched/ranks/rank_stream.h"
 #include "sched/tunables.h"
@@ -177,7 +177,12 @@ static int64_t layout(void)
         int32_t sizes[4];
     } probe = {1.0 / 3, INT64_C(0x0102030405060708),
                {sizeof(size_t), sizeof(bool), sizeof(struct tri_tile), sizeof(struct tri_error)}};
-    return (int64_t)(par_hash(0, &probe, sizeof probe) >> 1);
+    unsigned char byte[sizeof probe];
+    uint64_t hash = 0;
+    memcpy(byte, &probe, sizeof probe);
+    for (size_t i = 0; i < sizeof byte; i++)
+        hash = 31 * hash + byte[i];
+    return (int64_t)(hash >> 1);
 }
 
 /* Collective: has everybody got memory, and the same kind of machine? Who has none must not let the others wait. */
