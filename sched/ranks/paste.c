@@ -53,8 +53,11 @@ void par_messages_free(const struct par_ranks *r, struct par_message *message)
 
 /* --- the worklist */
 
+/* Where nothing comes the list stays where it is: the last call works from it while it fetches more of the mesh. */
 bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
 {
+    if (m->n_entries == 0)
+        return true;
     int32_t *item = malloc(((size_t)m->n_entries + 1) * sizeof *item);
     uint64_t *key = malloc(((size_t)m->n_entries + 1) * sizeof *key);
     bool memory = item && key;

@@ -239,8 +239,9 @@ static enum tri_status read_piece(struct par_ranks *r, int file, const char *pat
 
 enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file *of, struct tri_error *error)
 {
-    const int32_t *own = &r->territory.start[r->carrier->rank];
-    const int32_t first = own[0] > of->first ? own[0] : of->first, end = own[1] < of->end ? own[1] : of->end;
+    const int32_t *start = r->territory.start, rank = r->carrier->rank;
+    const int32_t first = start[rank] > of->first ? start[rank] : of->first;
+    const int32_t end = start[rank + 1] < of->end ? start[rank + 1] : of->end;
     char path[PAR_CHECKPOINT_PATH];
     if (first >= end)
         return TRI_OK;

@@ -353,6 +353,7 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
         return TRI_OK;
     enum tri_status status = tri_refiner_new(&refiner, state->mesh, state->quality, &hooks, &report, error);
     status = status ? status : run_last_call(&call, refiner, error);
+    assert(state->worklist.item == hooks.worklist); /* entries come with what is lent first, not with more of it */
     tri_refiner_free(refiner);
     free(call.asked.item);
     par_add_up(&state->report->total, &report);
