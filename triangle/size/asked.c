@@ -35,7 +35,7 @@ static bool is_above_length(const struct tri_asked *asked, const struct tri_poin
 {
     const struct tri_quality *q = asked->quality;
     const double unit = asked->mesh->unit;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 3; k >= 0; k--) {
         const double at[2] = {p[k].x * unit, p[k].y * unit}, length = q->edge_length(q->edge_length_user, at) / unit;
         if (length > 0 && area > EQUILATERAL * length * length)
             return true;
@@ -66,7 +66,7 @@ static double area_of(const struct tri_point p[3])
 bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c,
                     double scale)
 {
-    const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}};
+    const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}}; /* the last first */
     assert(scale > 0 && tri_asks_caller(asked->quality));
     if (asked->quality->edge_length && is_above_length(asked, place, area_of(place) / scale))
         return true;
