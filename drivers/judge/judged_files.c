@@ -13,7 +13,7 @@
 
 /* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
 #define TEXT_SHARE 5.0
-#define UNLISTED_SHARE 10.0 /* without a .poly file, should the mesh be full of holes */
+#define UNLISTED_SHARE 14.0 /* without a .poly file, should the mesh be full of holes */
 #define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
 
 bool judged_cut_suffix(char *path, const char *suffix)
