@@ -1091,7 +1091,7 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
         options.scratch = ".";
         while (fail_streaming_once(&start, &options, k))
             k += 1 + k * every(4) / 12; /* the later, the more alike */
-        assert_true(k > 10);
+        assert_true(k > (i == 1 ? 10 : 30)); /* one call asks for little */
         tri_pslg_free(&start.pslg);
     }
 }

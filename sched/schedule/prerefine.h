@@ -6,7 +6,7 @@
 #include "sched/schedule/phase.h"
 
 /* The bounds of a uniform pre-refinement: the same with areas scaled up, as the paper has it, for the area that makes
- * COARSE_PER_CELL triangles in a cell. */
+ * PAR_COARSE_PER_CELL triangles in a cell. */
 struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double cell);
 
 /* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each

@@ -4,7 +4,6 @@
 
 #include "triangle/mesh/mesh.h"
 
-
 struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */

@@ -9,6 +9,9 @@
 #include "triangle/base/ids.h"
 #include "triangle/geometry/point.h"
 
+/* Area over squared edge of an equilateral triangle: sqrt(3) / 4. */
+static const double TRI_EQUILATERAL = 0.43301270189221932;
+
 /* The corners, or edges, that come after and before one. */
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
 
@@ -35,6 +38,12 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tr
     int second = s.l[1] < s.l[0], third = s.l[2] < tri_lesser(s.l[0], s.l[1]);
     s.shortest = 2 * third + (second & ~third); /* without a branch, which nobody could predict */
     return s;
+}
+
+/* Its area; above 0 for corners in counterclockwise order. */
+static inline double tri_area_of(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    return 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
 }
 
 /* The square of its longest edge. */

@@ -6,8 +6,8 @@
 
 /* found[last - first] receives, in order, the triangles from first to last - 1 at which the loop has something to do:
  * an angle that is bad and not hopeless, a bad size, or, if conforming, a subsegment that the triangle encroaches.
- * Returns how many. Neighbours are not looked at: they may be
- * elsewhere. Each call works the bounds out anew, which costs more than to judge a triangle. */
+ * Returns how many. Neighbours are not looked at: they may be elsewhere. Each call works the bounds out anew, which
+ * costs more than to judge a triangle. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 

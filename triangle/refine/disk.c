@@ -9,8 +9,8 @@
  *
  * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
  * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
- * shortest edge. What stays is where coordinates have no place for a level: h^2 < TRI_LEVEL_PARTS
- * ulps of the length. */
+ * shortest edge. What stays is where coordinates have no place for a level: h^2 < TRI_LEVEL_PARTS ulps of
+ * the length. */
 #include "triangle/refine/disk.h"
 
 #include <assert.h>
@@ -18,7 +18,6 @@
 
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/parents.h"
-#include "triangle/refine/split.h"
 #include "triangle/refine/split.h"
 #include "triangle/tunables.h"
 

@@ -52,7 +52,7 @@ bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, c
         return false;
     const struct tri_point a = mesh->xy[t->v[tri_next[e]]], b = mesh->xy[t->v[tri_prev[e]]];
     const struct tri_point low = lowest_apex(mesh, a, b, mesh->xy[t->v[e]], shape->area2 / sqrt(longest2));
-    return tri_is_refused(asked, a, b, low, tri_area_scale(asked->quality));
+    return tri_is_refused(asked, a, b, low);
 }
 
 bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,

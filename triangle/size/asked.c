@@ -3,9 +3,6 @@
 
 #include <assert.h>
 
-/* Area over squared edge of an equilateral triangle: sqrt(3) / 4. */
-static const double EQUILATERAL = 0.43301270189221932;
-
 /* No bound. */
 static const double ANY_LENGTH = 1e100;
 
@@ -37,46 +34,42 @@ static bool is_above_length(const struct tri_asked *asked, const struct tri_poin
     const double unit = asked->mesh->unit;
     for (int k = 3; k >= 0; k--) {
         const double at[2] = {p[k].x * unit, p[k].y * unit}, length = q->edge_length(q->edge_length_user, at) / unit;
-        if (length > 0 && area > EQUILATERAL * length * length)
+        if (length > 0 && area > TRI_EQUILATERAL * length * length)
             return true;
     }
     return false;
 }
 
-/* The answer of the size test about a triangle shrunk about a place. */
+/* The answer of the size test about a triangle shrunk about a place, to 1 / scale of its area. */
 static bool test_refuses(const struct tri_asked *asked, const struct tri_point corner[3], struct tri_point about,
-                         double factor)
+                         double scale)
 {
-    const double unit = asked->mesh->unit;
+    const double unit = asked->mesh->unit, factor = 1 / sqrt(scale);
+    struct tri_point whole[3];
     double p[3][2];
     for (int k = 0; k < 3; k++) {
-        p[k][0] = (factor == 1 ? corner[k].x : about.x + factor * (corner[k].x - about.x)) * unit;
-        p[k][1] = (factor == 1 ? corner[k].y : about.y + factor * (corner[k].y - about.y)) * unit;
+        whole[k] = (struct tri_point){corner[k].x * unit, corner[k].y * unit};
+        p[k][0] = scale == 1 ? whole[k].x : (about.x + factor * (corner[k].x - about.x)) * unit;
+        p[k][1] = scale == 1 ? whole[k].y : (about.y + factor * (corner[k].y - about.y)) * unit;
     }
-    const double area = 0.5 * ((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+    const double area = tri_area_of(whole[0], whole[1], whole[2]) / scale;
     return asked->quality->unsuitable(asked->quality->unsuitable_user, p[0], p[1], p[2], area) != 0;
 }
 
-static double area_of(const struct tri_point p[3])
-{
-    double bx = p[1].x - p[0].x, by = p[1].y - p[0].y, cx = p[2].x - p[0].x, cy = p[2].y - p[0].y;
-    return 0.5 * (bx * cy - by * cx);
-}
-
-bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c,
-                    double scale)
+bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c)
 {
     const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}}; /* the last first */
+    const double scale = tri_area_scale(asked->quality);
     assert(scale > 0 && tri_asks_caller(asked->quality));
-    if (asked->quality->edge_length && is_above_length(asked, place, area_of(place) / scale))
+    if (asked->quality->edge_length && is_above_length(asked, place, tri_area_of(a, b, c) / scale))
         return true;
-    return asked->quality->unsuitable && test_refuses(asked, place, place[3], scale == 1 ? 1 : 1 / sqrt(scale));
+    return asked->quality->unsuitable && test_refuses(asked, place, place[3], scale);
 }
 
 bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3])
 {
     const struct tri_point *xy = asked->mesh->xy;
-    return tri_is_refused(asked, xy[v[0]], xy[v[1]], xy[v[2]], tri_area_scale(asked->quality));
+    return tri_is_refused(asked, xy[v[0]], xy[v[1]], xy[v[2]]);
 }
 
 bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *t, const struct tri_shape *shape)
@@ -85,14 +78,14 @@ bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *
            (tri_asks_caller(asked->quality) && tri_is_unsuitable(asked, t->v));
 }
 
-static double probe(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at,
-                    double coarser)
+static double probe(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at)
 {
     enum { DEEPEST = 16 };
-    double factor = 1 / coarser;
-    for (int k = 0; k <= DEEPEST; k++, factor *= 0.5)
-        if (!test_refuses(asked, triangle, at, factor))
-            return k > 0 ? factor * sqrt(2 * area_of(triangle) / EQUILATERAL) : ANY_LENGTH;
+    const double area = tri_area_of(triangle[0], triangle[1], triangle[2]);
+    double scale = tri_area_scale(asked->quality);
+    for (int k = 0; k <= DEEPEST; k++, scale *= 4)
+        if (!test_refuses(asked, triangle, at, scale))
+            return k > 0 ? 1 / sqrt(scale) * sqrt(2 * area / TRI_EQUILATERAL) : ANY_LENGTH;
     return ANY_LENGTH;
 }
 
@@ -106,6 +99,6 @@ double tri_asked_length(const struct tri_asked *asked, const struct tri_point tr
         length = here > 0 ? tri_lesser(length, here / unit) : length;
     }
     if (quality->unsuitable)
-        length = tri_lesser(length, probe(asked, triangle, at, coarser));
+        length = tri_lesser(length, probe(asked, triangle, at));
     return length < ANY_LENGTH ? coarser * length : length;
 }

@@ -24,13 +24,12 @@ static inline double tri_area2_bound(const struct tri_asked *asked, tri_region_i
     return asked->quality->region_areas ? tri_area2_in_region(asked, region) : asked->area2;
 }
 
-/* Do the caller's functions (tri_asks_caller) refuse a triangle of these corners, in the mesh's units? A scale above 1
- * asks on behalf of a coarser mesh: the size test sees the triangle shrunk about its centroid, to 1 / scale of its
- * area. */
-bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c,
-                    double scale);
+/* Do the caller's functions (tri_asks_caller) refuse a triangle of these corners, in the mesh's units? A
+ * quality->area_scale above 1 asks on behalf of a coarser mesh: the size test sees the triangle shrunk about its
+ * centroid, to 1 / area_scale of its area. */
+bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c);
 
-/* The same for a triangle with these corners, at quality->area_scale. */
+/* The same for a triangle with these corners. */
 bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3]);
 
 /* The longest edge that the caller's functions accept about a place in a triangle, in the mesh's units, at

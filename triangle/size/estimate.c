@@ -19,18 +19,11 @@ static const double MOST_WORK = 1e15;
 
 /* What work is estimated from. */
 struct estimator {
-    const struct tri_mesh *mesh;
     struct tri_asked asked;
     struct tri_crowd crowd;
     double large; /* the caller's functions are asked in pieces no larger than this */
     double *known; /* [n_triangles] what sizes ask for in each; NULL: to be asked for */
 };
-
-static double area_of(const struct tri_point p[3])
-{
-    double bx = p[1].x - p[0].x, by = p[1].y - p[0].y, cx = p[2].x - p[0].x, cy = p[2].y - p[0].y;
-    return 0.5 * (bx * cy - by * cx);
-}
 
 static struct tri_point middle(struct tri_point a, struct tri_point b)
 {
@@ -59,7 +52,7 @@ struct wish {
 
 static double wished_at(const void *user, struct tri_point q)
 {
-    const double MEAN_SQUARE = 0.43301270189221932 * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
+    const double MEAN_SQUARE = TRI_EQUILATERAL * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
     const struct wish *wish = user;
     return sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
 }
@@ -75,7 +68,7 @@ static double wished_in(const struct estimator *e, const struct tri_point p[3])
 /* Triangles that sizes ask for in a piece of a triangle of this region. */
 static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3])
 {
-    double work = area_of(p) * 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
+    double work = tri_area_of(p[0], p[1], p[2]) * 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
     if (tri_asks_caller(e->asked.quality))
         work = fmax(work, wished_in(e, p));
     return work < MOST_WORK ? work : MOST_WORK;
@@ -87,27 +80,27 @@ static double asked_work(const struct estimator *e, tri_triangle_id t)
     struct tri_point p[3];
     if (e->known)
         return e->known[t];
-    if (!tri_has_sizes(e->asked.quality) || !tri_is_live(&e->mesh->tri[t]))
+    if (!tri_has_sizes(e->asked.quality) || !tri_is_live(&e->asked.mesh->tri[t]))
         return 0;
-    corners_of(e->mesh, t, p);
-    return asked_in(e, e->mesh->tri[t].region, p);
+    corners_of(e->asked.mesh, t, p);
+    return asked_in(e, e->asked.mesh->tri[t].region, p);
 }
 
 static double rest_work(const struct estimator *e, tri_triangle_id t)
 {
     const double asked = asked_work(e, t);
-    return tri_is_live(&e->mesh->tri[t]) ? fmax(1 - asked, 0) + tri_crowd_work(&e->crowd, t, asked) : 0;
+    return tri_is_live(&e->asked.mesh->tri[t]) ? fmax(1 - asked, 0) + tri_crowd_work(&e->crowd, t, asked) : 0;
 }
 
 /* What angles alone would make of it. */
 static double angle_work(const struct estimator *e, tri_triangle_id t)
 {
-    return tri_is_live(&e->mesh->tri[t]) ? 1 + tri_crowd_work(&e->crowd, t, 0) : 0;
+    return tri_is_live(&e->asked.mesh->tri[t]) ? 1 + tri_crowd_work(&e->crowd, t, 0) : 0;
 }
 
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    struct estimator e = {mesh, tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL, NULL};
+    struct estimator e = {tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL, NULL};
     double all = 0;
     for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
         all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
@@ -118,7 +111,7 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
 
 double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
 {
-    const struct estimator here = {.mesh = mesh, .asked = tri_asked_of(mesh, quality), .large = HUGE_VAL};
+    const struct estimator here = {.asked = tri_asked_of(mesh, quality), .large = HUGE_VAL};
     if (!tri_is_live(&mesh->tri[t]))
         return 0;
     const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
@@ -138,13 +131,13 @@ struct works {
 
 static struct works asked_works(const struct estimator *e)
 {
-    return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->mesh->n_triangles};
+    return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->asked.mesh->n_triangles};
 }
 
 /* Triangles lie along a curve, so that every n-th is a fair sample. */
 static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
-    const int32_t n = e->mesh->n_triangles;
+    const int32_t n = e->asked.mesh->n_triangles;
     const int32_t step = n < 4 * TRI_FEWEST_SAMPLED ? 1 + n / TRI_FEWEST_SAMPLED : 4 + n / TRI_MOST_SAMPLED;
     return (struct works){.e = e, .of = of, .step = step, .n = (n + step - 1) / step};
 }
@@ -194,38 +187,53 @@ static void know_share(void *context, size_t share)
         w->known[i] = w->of(w->e, w->step * i);
 }
 
-/* Where there is no memory each is asked for when it is needed. */
-static void know_all(struct works *w, const struct tri_executor *executor)
+/* All of them; to be freed. NULL where there is no memory: each is asked for when it is needed. */
+static double *know_all(struct works w, const struct tri_executor *executor)
 {
-    w->known = malloc(((size_t)w->n + 1) * sizeof *w->known);
-    if (w->known)
-        tri_execute(executor_for(w, executor), tri_shares(w->n), know_share, w);
+    w.known = malloc(((size_t)w.n + 1) * sizeof *w.known);
+    if (w.known)
+        tri_execute(executor_for(&w, executor), tri_shares(w.n), know_share, &w);
+    return w.known;
 }
 
-/* What sizes ask for: the caller's functions are asked once for all. To be freed: known. */
-static struct works know_asked(struct estimator *e, const struct tri_executor *executor)
+/* Are there sizes, beside a bound on angles that is dear to mend? */
+static bool may_come_first(const struct tri_quality *quality)
 {
-    struct works asked = asked_works(e);
-    if (tri_has_sizes(e->asked.quality))
-        know_all(&asked, executor);
-    e->known = asked.known;
-    return asked;
+    return fmin(quality->min_angle, TRI_USUAL_ANGLE) > TRI_EASY_ANGLE && tri_has_sizes(quality);
+}
+
+/* Is what sizes ask for far more than what angles would make? */
+static bool outweighs_angles(const struct estimator *e, double asked, const struct tri_executor *executor)
+{
+    double ignored = 0;
+    return asked > TRI_SIZES_FIRST * sum_of(sampled_works(e, angle_work), executor, &ignored);
+}
+
+bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                          const struct tri_executor *executor)
+{
+    double ignored = 0;
+    if (!may_come_first(quality) || tri_asks_caller(quality))
+        return may_come_first(quality);
+    const struct estimator e = estimator_for(mesh, quality);
+    return outweighs_angles(&e, sum_of(asked_works(&e), executor, &ignored), executor);
 }
 
 /* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
+    const bool asks = tri_asks_caller(quality);
     struct estimator e = estimator_for(mesh, quality);
-    struct works known = tri_asks_caller(quality) ? know_asked(&e, executor) : asked_works(&e);
-    const bool twice = tri_sizes_come_first(mesh, quality, executor);
-    const double again = twice ? TRI_AGAIN / (TRI_NEVER_AGAIN - fmin(quality->min_angle, TRI_USUAL_ANGLE)) : 0;
-    double urgent = 0, ignored = 0;
-    double asked = tri_has_sizes(quality) ? sum_of(known, executor, &urgent) : 0;
+    double urgent = 0, ignored = 0, again = 0;
+    e.known = asks ? know_all(asked_works(&e), executor) : NULL;
+    const double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
+    if (may_come_first(quality) && (asks || outweighs_angles(&e, asked, executor)))
+        again = TRI_AGAIN / (TRI_NEVER_AGAIN - fmin(quality->min_angle, TRI_USUAL_ANGLE));
     *sure = mesh->n_triangles + urgent;
-    asked += sum_of(sampled_works(&e, rest_work), executor, &ignored);
-    free(known.known);
-    return (1 + again * again) * asked;
+    const double rest = sum_of(sampled_works(&e, rest_work), executor, &ignored);
+    free(e.known);
+    return (1 + again * again) * (asked + rest);
 }
 
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
@@ -237,7 +245,7 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
     areas.unsuitable = NULL;
     if (!tri_has_sizes(&areas))
         return 0;
-    const struct estimator e = {.mesh = mesh, .asked = tri_asked_of(mesh, &areas)};
+    const struct estimator e = {.asked = tri_asked_of(mesh, &areas)};
     sum_of(asked_works(&e), executor, &urgent);
     return TRI_MEAN_OVER_BOUND / TRI_MOST_OVER_BOUND * urgent;
 }
@@ -251,19 +259,6 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_q
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "the area bounds ask for at least %s triangles, and a mesh holds %s",
                     tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
-}
-
-bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality *quality,
-                          const struct tri_executor *executor)
-{
-    double ignored = 0;
-    if (fmin(quality->min_angle, TRI_USUAL_ANGLE) <= TRI_EASY_ANGLE || !tri_has_sizes(quality))
-        return false;
-    if (tri_asks_caller(quality))
-        return true;
-    const struct estimator e = estimator_for(mesh, quality);
-    return sum_of(asked_works(&e), executor, &ignored) >
-           TRI_SIZES_FIRST * sum_of(sampled_works(&e, angle_work), executor, &ignored);
 }
 
 /* Who is given the samples. */
@@ -293,7 +288,7 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
 /* Small pieces of work are gathered until they are worth a sample. */
 static bool sample_rest(const struct receiver *to, const struct works *rest, double grain)
 {
-    const struct tri_mesh *mesh = rest->e->mesh;
+    const struct tri_mesh *mesh = rest->e->asked.mesh;
     double waiting = 0;
     for (int32_t i = 0; i < rest->n; i++) {
         const tri_vertex_id *v = mesh->tri[rest->step * i].v;
@@ -308,18 +303,18 @@ static bool sample_rest(const struct receiver *to, const struct works *rest, dou
     return true;
 }
 
-static bool sample_asked(const struct receiver *to, const struct works *asked, double grain)
+static bool sample_asked(const struct receiver *to, const struct estimator *e, double grain)
 {
-    const struct tri_mesh *mesh = asked->e->mesh;
+    const struct tri_mesh *mesh = e->asked.mesh;
     double waiting = 0;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
-        double work = work_at(asked, t);
+        double work = asked_work(e, t);
         waiting += work < grain ? work : 0;
         if (work == 0 || (work < grain && waiting < grain))
             continue;
         struct tri_point p[3];
         corners_of(mesh, t, p);
-        if (!sample_triangle(to, asked->e, mesh->tri[t].region, p, work < grain ? waiting : work,
+        if (!sample_triangle(to, e, mesh->tri[t].region, p, work < grain ? waiting : work,
                              work < grain ? waiting : grain, DEEPEST_CUT))
             return false;
         waiting = work < grain ? 0 : waiting;
@@ -333,12 +328,13 @@ bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *qual
     const struct receiver to = {take, user};
     struct estimator e = estimator_for(mesh, quality);
     assert(take && grain >= 0);
-    struct works asked = know_asked(&e, executor), rest = sampled_works(&e, rest_work);
-    know_all(&rest, executor);
+    e.known = tri_has_sizes(quality) ? know_all(asked_works(&e), executor) : NULL;
+    struct works rest = sampled_works(&e, rest_work);
+    rest.known = know_all(rest, executor);
     bool taken = sample_rest(&to, &rest, grain);
     if (taken && tri_has_sizes(quality))
-        taken = sample_asked(&to, &asked, grain);
+        taken = sample_asked(&to, &e, grain);
     free(rest.known);
-    free(asked.known);
+    free(e.known);
     return taken;
 }

@@ -25,4 +25,3 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
     bounds.off_centre = TRI_OFF_CENTRE * sqrt((1 + cosine) / (1 - cosine));
     return bounds;
 }
-
