@@ -500,6 +500,41 @@ static void test_gate_and_fence(void **state)
     tri_mesh_delete(mesh);
 }
 
+/* Random points in a square; the caller frees points.at. */
+static struct tri_figure scattered(int n)
+{
+    struct tri_figure figure = tri_no_figure();
+    uint32_t bits = 7;
+    double *at = malloc(2 * (size_t)n * sizeof *at);
+    for (int i = 0; i < 2 * n; i++)
+        at[i] = (bits = bits * 1664525 + 1013904223) / 4294967296.0; /* Numerical Recipes' generator */
+    figure.points = tri_reals_of(at, n, 2);
+    return figure;
+}
+
+/* Bounds that no refinement was asked for are a reason of their own; those of the last one are not. */
+static void test_bounds_that_were_not_asked_for_are_deferred(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = scattered(500);
+    struct tri_settings angle = tri_no_settings(), area = tri_no_settings();
+    struct tri_mesh *mesh = mesh_of(&figure, NULL);
+    int64_t by_reason[TRI_REASONS];
+    angle.min_angle = 28;
+    area.max_area = 1e-4;
+    int64_t bad = tri_mesh_count_bad(mesh, &angle, by_reason, TRI_REASONS);
+    assert_true(bad > 0 && by_reason[TRI_REASON_DEFERRED] == bad);
+    assert_int_equal(tri_mesh_refine(mesh, &angle, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_count_bad(mesh, &angle, NULL, 0), 0);
+    bad = tri_mesh_count_bad(mesh, &area, by_reason, TRI_REASONS);
+    assert_true(bad > 0 && by_reason[TRI_REASON_DEFERRED] == bad);
+    angle.min_angle = 32;
+    bad = tri_mesh_count_bad(mesh, &angle, by_reason, TRI_REASONS);
+    assert_true(bad > 0 && by_reason[TRI_REASON_DEFERRED] == bad);
+    tri_mesh_delete(mesh);
+    free((void *)figure.points.at);
+}
+
 static bool after_some(void *user) { return ++*(int *)user > 3; }
 
 static void test_stop(void **state)
@@ -567,6 +602,41 @@ static void test_progress(void **state)
         tri_mesh_delete(mesh);
         tri_mesh_delete(silent);
     }
+}
+
+/* What was told. */
+struct heard {
+    double done[10000], triangles[10000];
+    int n;
+};
+
+static void note(void *user, double done, int64_t triangles)
+{
+    struct heard *heard = user;
+    assert_true(heard->n < 10000);
+    heard->done[heard->n] = done;
+    heard->triangles[heard->n++] = (double)triangles;
+}
+
+/* A mesh that was made without bounds is refined: what angles ask for is estimated as well as for a new mesh. */
+static void test_progress_of_angles(void **state)
+{
+    (void)state;
+    static struct heard heard;
+    const struct tri_figure figure = scattered(2000);
+    struct tri_settings settings = tri_no_settings();
+    struct tri_mesh *mesh = mesh_of(&figure, NULL);
+    settings.min_angle = 30;
+    settings.progress = note;
+    settings.progress_user = &heard;
+    const double first = (double)tri_mesh_triangles(mesh).n;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    const double last = (double)tri_mesh_triangles(mesh).n;
+    for (int i = 0; i < heard.n; i++)
+        assert_true(fabs(heard.done[i] - (heard.triangles[i] - first) / (last - first)) < 0.3);
+    assert_true(heard.n > 5);
+    tri_mesh_delete(mesh);
+    free((void *)figure.points.at);
 }
 
 static void assert_refused(const struct tri_figure *figure, const struct tri_settings *settings)
@@ -817,7 +887,9 @@ int main(void)
         cmocka_unit_test(test_input_that_is_not_finite),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_bounds_that_were_not_asked_for_are_deferred),
         cmocka_unit_test(test_progress),
+        cmocka_unit_test(test_progress_of_angles),
         cmocka_unit_test(test_figures_without_meaning),
         cmocka_unit_test(test_settings_without_meaning),
         cmocka_unit_test(test_headers_of_other_versions),

@@ -673,6 +673,22 @@ static void test_a_long_gap_costs_no_triangles(void **state)
     }
 }
 
+/* A first trial call that the schedule goes on with has given nothing up. */
+static void test_a_trial_call_gives_nothing_up(void **state)
+{
+    (void)state;
+    struct start start = square(15000, 28, 0);
+    const struct par_options options = small_blocks(4000, 2);
+    struct par_report report;
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    assert_true(report.levels > 0);
+    assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
+    assert_int_equal(report.total.given_up[TRI_EXCUSE_LIMIT], 0);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
 /* Blocks of the usual size: the mesh is no larger than the sequential one, but for two per cent. */
 static void test_default_blocks_cost_no_triangles(void **state)
 {
@@ -1140,6 +1156,7 @@ int main(void)
         cmocka_unit_test(test_any_unit_makes_the_same_mesh),
         cmocka_unit_test(test_small_and_empty_meshes),
         cmocka_unit_test(test_calls_can_follow_each_other),
+        cmocka_unit_test(test_a_trial_call_gives_nothing_up),
         cmocka_unit_test(test_progress_is_told_by_the_caller),
         cmocka_unit_test(test_callers_on_threads_of_their_own),
         cmocka_unit_test(test_callers_in_a_parallel_region),

@@ -29,6 +29,8 @@ void par_tell(const struct par_run *state, int phase);
 /* Every triangle that gates and fences have kept back has had its turn: the report's total forgets them. */
 void par_forget_deferred(struct par_report *report);
 
+/* Adds the points that a call inserted. par_add_up also adds what it left undone. */
+void par_add_points(struct tri_refine_report *sum, const struct tri_refine_report *add);
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
 /* Who left each triangle of a worklist, and when: round + 1 (8 bits), place of the block in the order of all, by

@@ -99,8 +99,7 @@ enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_qua
     double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
         status = tri_refine_with(state->mesh, &coarse, &hooks, &report, error);
-        state->report->total.inserted_free += report.inserted_free;
-        state->report->total.inserted_on_segments += report.inserted_on_segments;
+        par_add_points(&state->report->total, &report);
         refined = tri_seconds();
         status = status ? status : par_fill_worklist(state, quality, true, error);
     }

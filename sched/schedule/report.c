@@ -22,10 +22,15 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     return TRI_NONE;
 }
 
-void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+void par_add_points(struct tri_refine_report *sum, const struct tri_refine_report *add)
 {
     sum->inserted_free += add->inserted_free;
     sum->inserted_on_segments += add->inserted_on_segments;
+}
+
+void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+{
+    par_add_points(sum, add);
     sum->gated += add->gated;
     sum->fenced += add->fenced;
     for (int k = 0; k < TRI_EXCUSES; k++)

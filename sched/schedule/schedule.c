@@ -424,8 +424,10 @@ static enum tri_status refine_a_little(struct par_run *state, const struct tri_q
     const struct tri_refine_hooks hooks = par_hooks(state);
     enum tri_status status = tri_refine_with(state->mesh, &options, &hooks, &report, error);
     *done = !report.hit_limit;
-    report.hit_limit = false;
-    par_add_up(&state->report->total, &report);
+    if (*done)
+        par_add_up(&state->report->total, &report);
+    else /* the schedule meets the triangles again that the limit left */
+        par_add_points(&state->report->total, &report);
     state->report->seconds_prerefine += tri_seconds() - began;
     return status;
 }

@@ -199,11 +199,14 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     double sure;
+    enum tri_status status = tri_refine_prepare(mesh, way->executor, error); /* the estimate asks for features */
+    if (status)
+        return status;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
     struct tri_refine_hooks told = *hooks;
     told.told = tell;
     told.told_user = &f;
-    enum tri_status status = way->refine(way, mesh, how, &told, s, report, error);
+    status = way->refine(way, mesh, how, &told, s, report, error);
     if (!status)
         s->progress(s->progress_user, 1, mesh->n_triangles);
     return status;
@@ -234,12 +237,15 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     (void)quality;
     *report = (struct tri_refine_report){0};
     refiner->m->odd_length[0] = 0;
+    refiner->m->refined = (struct tri_settings){0};
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
     enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, &hooks, s, report, error)
                                          : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);
     if (atomic_flag_test_and_set(&sizes.is_odd))
         tell_odd(refiner->m, &sizes);
+    if (!status)
+        refiner->m->refined = *s;
     return status;
 }
 
@@ -401,6 +407,17 @@ _Static_assert((int)TRI_REASONS == (int)TRI_EXCUSES && (int)TRI_REASON_INPUT_ANG
                    (int)TRI_REASON_DEFERRED == (int)TRI_EXCUSE_DEFERRED,
                "the reasons of the header are those of the library");
 
+/* Did the last refinement end, with bounds at least as strict as these? */
+static bool is_refined_for(const struct tri_api_mesh *m, const struct tri_settings *s)
+{
+    const struct tri_settings *done = &m->refined;
+    const bool same_lengths = done->edge_length == s->edge_length && done->edge_length_user == s->edge_length_user;
+    const bool same_test = done->unsuitable == s->unsuitable && done->unsuitable_user == s->unsuitable_user;
+    const bool area = s->max_area == 0 || (done->max_area > 0 && done->max_area <= s->max_area);
+    return s->min_angle <= done->min_angle && area && (!s->edge_length || same_lengths) &&
+           (!s->unsuitable || same_test);
+}
+
 int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_settings *settings, int64_t *by_reason,
                            int n_reasons)
 {
@@ -411,7 +428,9 @@ int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_setting
         return -1;
     struct sizes sizes = {.settings = &own, .is_odd = ATOMIC_FLAG_INIT};
     const struct tri_quality how = quality_of(m, &sizes);
-    tri_count_bad(mesh, &how, &m->report.quality, NULL, count);
+    struct tri_refine_report report = m->report.quality;
+    report.gated += !is_refined_for(m, &own); /* triangles without another reason are deferred to a refinement */
+    tri_count_bad(mesh, &how, &report, NULL, count);
     for (int k = 0; by_reason && k < n_reasons; k++)
         by_reason[k] = 0;
     for (int k = 0; k < TRI_EXCUSES; k++) {

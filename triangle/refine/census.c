@@ -104,6 +104,8 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
                                   const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &c->asked.mesh->tri[triangle];
+    if (!c->asked.mesh->incidence.start) /* never prepared for refinement: its features are not known */
+        return TRI_EXCUSES;
     if (tri_is_too_large(&c->asked, t, shape))
         badness = TRI_BAD_SIZE;
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->asked.mesh, triangle, shape))
