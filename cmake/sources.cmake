@@ -5,6 +5,7 @@
 set(PTRIANGLE_MESHER_SOURCES
     triangle/base/status.c
     triangle/base/scratch_file.c
+    triangle/base/mapped_file.c
     triangle/geometry/predicates.c
     triangle/mesh/pslg.c
     triangle/mesh/mesh.c
@@ -135,7 +136,8 @@ set(PTRIANGLE_HDF5_SOURCES
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/buffer.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
-set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/base/mapped_file.c
+    triangle/mesh/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 

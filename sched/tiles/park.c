@@ -3,7 +3,7 @@
  * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
  * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a part of
  * the bound for what is to come before they grow again. */
-#define _DEFAULT_SOURCE /* madvise, malloc_trim */
+#define _DEFAULT_SOURCE /* malloc_trim */
 
 #include "sched/tiles/park.h"
 
@@ -16,8 +16,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 #ifdef __GLIBC__
@@ -27,23 +25,16 @@
 #include "sched/schedule/threads.h"
 #include "sched/tunables.h"
 #include "triangle/base/at_place.h"
-#include "triangle/base/scratch_file.h"
+#include "triangle/base/mapped_file.h"
 #include "triangle/base/size_text.h"
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS };
-
-/* One array in its file. */
-struct sheet {
-    int file;   /* -1: none */
-    char *at;   /* mapping of all that has disk space; NULL: nothing has */
-    size_t size;
-};
 
 struct par_park {
     const char *folder;         /* NULL: what does not fit is an error */
     double memory, others;      /* the bound; the most seen in memory beside the arrays, since it was trimmed */
     double files;               /* bytes of pages of files to begin with: libraries */
-    struct sheet sheet[SHEETS]; /* arrays, then extras; changed under the lock */
+    struct tri_mapped_file sheet[SHEETS]; /* arrays, then extras; changed under the lock */
     struct tri_storage storage;
     struct tri_bound bound;
     size_t most, wanted;        /* bytes of disk; with those of the reservation that failed */
@@ -102,51 +93,11 @@ static int64_t bytes_now(const struct par_park *park)
     return sum;
 }
 
-/* Beyond a limit on files a signal would come. */
-static int check_limit(size_t size)
-{
-    struct rlimit limit;
-    bool allowed = getrlimit(RLIMIT_FSIZE, &limit) || limit.rlim_cur == RLIM_INFINITY || size <= limit.rlim_cur;
-    return allowed ? 0 : EFBIG;
-}
-
-/* Disk space. Returns errno. */
-static int extend_file(struct sheet *sheet, const char *folder, size_t size)
-{
-    int fault;
-    if (sheet->file < 0)
-        sheet->file = tri_scratch_file(folder);
-    if (sheet->file < 0)
-        return errno;
-    fault = check_limit(size);
-    while (!fault || fault == EINTR) {
-        fault = posix_fallocate(sheet->file, (off_t)sheet->size, (off_t)(size - sheet->size));
-        if (!fault)
-            break;
-    }
-    return fault;
-}
-
-static int extend(struct sheet *sheet, const char *folder, size_t size)
-{
-    int fault = extend_file(sheet, folder, size);
-    if (fault)
-        return fault;
-    void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, sheet->file, 0);
-    if (at == MAP_FAILED)
-        return errno;
-    if (sheet->at)
-        munmap(sheet->at, sheet->size);
-    sheet->at = at;
-    sheet->size = size;
-    return 0;
-}
-
-static void *reserve_sheet(struct par_park *park, struct sheet *sheet, size_t bytes)
+static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet, size_t bytes)
 {
     const size_t wanted = (bytes + PAR_PARK_GROWTH - 1) / PAR_PARK_GROWTH * PAR_PARK_GROWTH;
     pthread_mutex_lock(&park->lock);
-    const int fault = wanted > sheet->size ? extend(sheet, park->folder, wanted) : 0;
+    const int fault = wanted > sheet->size ? tri_mapped_file_extend(sheet, park->folder, wanted) : 0;
     const size_t now = (size_t)bytes_now(park);
     park->most = now > park->most ? now : park->most;
     pthread_mutex_unlock(&park->lock);
@@ -157,14 +108,10 @@ static void *reserve_sheet(struct par_park *park, struct sheet *sheet, size_t by
     return NULL;
 }
 
-static void drop_sheet(struct par_park *park, struct sheet *sheet)
+static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
 {
     pthread_mutex_lock(&park->lock);
-    if (sheet->at)
-        munmap(sheet->at, sheet->size);
-    if (sheet->file >= 0)
-        close(sheet->file);
-    *sheet = (struct sheet){.file = -1};
+    tri_mapped_file_close(sheet);
     pthread_mutex_unlock(&park->lock);
 }
 
@@ -227,8 +174,7 @@ static void unmap_pages(struct par_park *park)
 {
     pthread_mutex_lock(&park->lock);
     for (int k = 0; k < SHEETS; k++)
-        if (park->sheet[k].at)
-            madvise(park->sheet[k].at, park->sheet[k].size, MADV_DONTNEED);
+        tri_mapped_file_release_pages(&park->sheet[k]);
     pthread_mutex_unlock(&park->lock);
 }
 

@@ -3,33 +3,21 @@
  * INVARIANT: no more is in memory of the files than the rows that have been asked for since pages were let go, which
  * happens whenever somebody asks for a row whose number is a multiple of TRI_GRID_ROUNDS: for writers go through all
  * rows of a kind, once and about in their order. Where they do not, or go through extras alone, they say when. */
-#define _DEFAULT_SOURCE /* madvise */
-
 #include "triangle/text/tile_store.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
-#include "triangle/base/at_place.h"
-#include "triangle/base/scratch_file.h"
+#include "triangle/base/mapped_file.h"
 #include "triangle/text/stream.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS };
 
-struct sheet {
-    int file;       /* -1: none */
-    size_t bytes;
-    void *at;       /* mapping; NULL: not mapped */
-};
-
 struct tri_tile_store {
     const char *folder;
-    struct sheet sheet[SHEETS]; /* kinds, then extras */
+    struct tri_mapped_file sheet[SHEETS]; /* kinds, then extras */
     struct tri_storage storage; /* gives the extras */
     struct tri_tile_grid all;   /* what has been taken, as one tile */
 };
@@ -44,55 +32,23 @@ static enum tri_status cannot_write(const struct tri_tile_store *s, struct tri_e
 
 static bool append(struct tri_tile_store *s, enum kind kind, const void *bytes, size_t n)
 {
-    struct sheet *sheet = &s->sheet[kind];
-    if (sheet->file < 0)
-        sheet->file = tri_scratch_file(s->folder);
-    if (sheet->file < 0 || !tri_write_at(sheet->file, bytes, n, sheet->bytes))
-        return false;
-    sheet->bytes += n;
-    return true;
-}
-
-static bool map(struct sheet *sheet)
-{
-    if (sheet->at || sheet->bytes == 0)
-        return true;
-    void *at = mmap(NULL, sheet->bytes, PROT_READ | PROT_WRITE, MAP_SHARED, sheet->file, 0);
-    sheet->at = at != MAP_FAILED ? at : NULL;
-    return sheet->at;
-}
-
-static void empty(struct sheet *sheet)
-{
-    if (sheet->at)
-        munmap(sheet->at, sheet->bytes);
-    if (sheet->file >= 0)
-        close(sheet->file);
-    *sheet = (struct sheet){.file = -1};
+    return tri_mapped_file_append(&s->sheet[kind], s->folder, bytes, n);
 }
 
 /* --- room beside the arrays */
-
-/* Disk space is taken before it is used. Where that fails errno says why. */
-static bool make_extra(struct sheet *sheet, const char *folder, size_t bytes)
-{
-    sheet->file = tri_scratch_file(folder);
-    sheet->bytes = bytes;
-    const int fault = sheet->file < 0 ? errno : posix_fallocate(sheet->file, 0, (off_t)bytes);
-    if (fault == 0 && map(sheet))
-        return true;
-    const int reason = fault ? fault : errno;
-    empty(sheet);
-    errno = reason;
-    return false;
-}
 
 static void *extra(void *user, size_t bytes)
 {
     struct tri_tile_store *s = user;
     for (int k = KINDS; k < SHEETS; k++)
-        if (s->sheet[k].file < 0)
-            return make_extra(&s->sheet[k], s->folder, bytes + 1) ? s->sheet[k].at : NULL;
+        if (s->sheet[k].file < 0) {
+            const int fault = tri_mapped_file_extend(&s->sheet[k], s->folder, bytes + 1);
+            void *at = s->sheet[k].at;
+            if (fault)
+                tri_mapped_file_close(&s->sheet[k]);
+            errno = fault;
+            return at;
+        }
     errno = EMFILE;
     return NULL;
 }
@@ -102,15 +58,14 @@ static void extra_free(void *user, void *extra)
     struct tri_tile_store *s = user;
     for (int k = KINDS; extra && k < SHEETS; k++)
         if (s->sheet[k].at == extra)
-            empty(&s->sheet[k]);
+            tri_mapped_file_close(&s->sheet[k]);
 }
 
 static void let_go(const void *user)
 {
     const struct tri_tile_store *s = user;
     for (int k = 0; k < SHEETS; k++)
-        if (s->sheet[k].at)
-            madvise(s->sheet[k].at, s->sheet[k].bytes, MADV_DONTNEED);
+        tri_mapped_file_release_pages(&s->sheet[k]);
 }
 
 /* --- the sink */
@@ -119,7 +74,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
 {
     struct tri_tile_store *s = user;
     for (int k = 0; k < SHEETS; k++)
-        empty(&s->sheet[k]);
+        tri_mapped_file_close(&s->sheet[k]);
     return tri_tile_grid_begin(&s->all, stream, false, error);
 }
 
@@ -146,7 +101,7 @@ enum tri_status tri_tile_store_grid(struct tri_tile_store *s, bool markers, stru
                                     struct tri_error *error)
 {
     for (int k = 0; k < KINDS; k++)
-        if (!map(&s->sheet[k]))
+        if (!tri_mapped_file_map(&s->sheet[k]))
             return cannot_write(s, error);
     s->all.tile = (struct tri_tile){.points = s->sheet[POINTS].at, .point_markers = s->sheet[POINT_MARKERS].at,
                                     .attributes = s->sheet[ATTRIBUTES].at, .corners = s->sheet[CORNERS].at,
@@ -180,7 +135,7 @@ void tri_tile_store_free(struct tri_tile_store *s)
     if (!s)
         return;
     for (int k = 0; k < SHEETS; k++)
-        empty(&s->sheet[k]);
+        tri_mapped_file_close(&s->sheet[k]);
     free(s->all.columns);
     free(s);
 }
