@@ -23,23 +23,6 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
     return spread <= width ? shorter / width : shorter / spread * tri_rough_log2(1 + spread / width);
 }
 
-static bool do_touch(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
-{
-    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
-    return tri_touches(mesh, p, b[0]) || tri_touches(mesh, p, b[1]) || tri_touches(mesh, q, a[0]) ||
-           tri_touches(mesh, q, a[1]);
-}
-
-/* Do the lines of two parents meet at 60 degrees or more? */
-static bool is_wide(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
-{
-    const struct tri_point a = mesh->xy[mesh->parents[p].v[0]], b = mesh->xy[mesh->parents[p].v[1]];
-    const struct tri_point c = mesh->xy[mesh->parents[q].v[0]], d = mesh->xy[mesh->parents[q].v[1]];
-    double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
-    double dot = px * qx + py * qy, cross = px * qy - py * qx;
-    return 3 * dot * dot <= cross * cross;
-}
-
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v)
 {
@@ -48,9 +31,7 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     enum tri_corner corner = tri_corner_between(mesh, first, second);
     if (corner != TRI_APART)
         return corner == TRI_NARROW_CORNER;
-    if (tri_filling_cost(mesh, first, second, u, v) > mesh->limits.dearest_gap)
-        return false;
-    return !is_wide(mesh, first, second) || !do_touch(mesh, first, second);
+    return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
 }
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }

@@ -12,8 +12,7 @@
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
 
-/* Will the space between two parents be filled, so that its width is a feature? Not where an end of one touches the
- * other, unless they meet at less than 60 degrees. u and v as above. */
+/* Will the space between two parents be filled, so that its width is a feature? u and v as above. */
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v);
 

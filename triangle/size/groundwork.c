@@ -7,8 +7,8 @@
  *   features    how far each vertex is from what is around it, by all of the above (feature_size.h)
  *
  * RULE (rounding). Distances of 32 to 256 resolutions are features if one vertex alone is so near to another one or to a
- * segment. Where more are, lines were computed twice, or points that belong on them: such distances are rounding. They
- * are noise of all sizes, and each that counts as a feature takes some 400 triangles.
+ * segment. If more are, lines were computed twice, or points that belong on them: then such distances are rounding, and
+ * each that counted as a feature would take some 400 triangles.
  *
  * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
 #include "triangle/size/groundwork.h"
@@ -54,26 +54,21 @@ static void find_acute(struct tri_mesh *mesh)
 static double largest_coordinate(const struct tri_mesh *mesh)
 {
     double size = 0;
-    for (tri_vertex_id v = 0; v < mesh->n_input; v++) {
-        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
-        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
-    }
+    for (tri_vertex_id v = 0; v < mesh->n_input; v++)
+        size = tri_larger(size, tri_larger(fabs(mesh->xy[v].x), fabs(mesh->xy[v].y)));
     return size;
 }
 
-static void measure(struct tri_mesh *mesh, double shortest, const struct tri_executor *executor)
+/* Limits and sizes with this shortest edge. Returns how many vertices have features up to TRI_BLUR times as long (what
+ * no triangle uses has the least size). */
+static int32_t measure(struct tri_mesh *mesh, double shortest, const struct tri_executor *executor)
 {
+    int32_t n = 0;
     mesh->limits.shortest2 = shortest * shortest;
     tri_choose_gaps(mesh, executor);
     tri_estimate_features(mesh, executor);
-}
-
-/* How many vertices have features of such sizes? (Those that no triangle uses have the least that there is.) */
-static int32_t count_features(const struct tri_mesh *mesh, double above, double below)
-{
-    int32_t n = 0;
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
-        n += mesh->feature[v] > above && mesh->feature[v] < below;
+        n += mesh->feature[v] > shortest && mesh->feature[v] < TRI_BLUR * shortest;
     return n;
 }
 
@@ -86,8 +81,7 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
     if (status)
         return status;
     const double shortest = TRI_SHORTEST_EDGE * largest_coordinate(mesh);
-    measure(mesh, shortest, executor);
-    if (count_features(mesh, shortest, TRI_BLUR * shortest) > 1)
+    if (measure(mesh, shortest, executor) > 1)
         measure(mesh, TRI_BLUR * shortest, executor);
     return TRI_OK;
 }
