@@ -90,13 +90,34 @@ static void test_acute_vertices(void **state)
     }
 }
 
-/* 32 units in the last place of the largest coordinate. */
+/* A segment in a square, and so many vertices 64 resolutions beside it. */
+static double shortest_beside(int vertices)
+{
+    struct tri_pslg pslg = support_pslg(6 + vertices, 5, 0, 0);
+    for (int k = 0; k < 4; k++)
+        support_add_point(&pslg, k == 1 || k == 2, k / 2);
+    for (int k = 0; k < 4; k++)
+        support_add_segment(&pslg, k, (k + 1) % 4);
+    for (int k = 0; k < 2; k++)
+        support_add_point(&pslg, 0.25 + 0.5 * k, 0.5);
+    support_add_segment(&pslg, 4, 5);
+    for (int k = 0; k < vertices; k++)
+        support_add_point(&pslg, 0.4 + 0.2 * k, 0.5 + (k > 0 ? -0x1p-46 : 0x1p-46));
+    struct tri_options options = support_quality(20, 0);
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    double shortest = sqrt(mesh.limits.shortest2);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return shortest;
+}
+
+/* 32 resolutions of the largest coordinate; 256 where more than one vertex has something nearer than that. */
 static void test_the_shortest_edge(void **state)
 {
     (void)state;
-    struct tri_mesh mesh = wheel(8);
-    assert_true(mesh.limits.shortest2 == 0x1p-94);
-    tri_mesh_free(&mesh);
+    assert_true(shortest_beside(0) == 0x1p-47);
+    assert_true(shortest_beside(1) == 0x1p-47);
+    assert_true(shortest_beside(2) == 0x1p-44);
 }
 
 int main(void)

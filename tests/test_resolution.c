@@ -63,6 +63,84 @@ static void test_a_corner_near_a_wall(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Three by three slanted cells, each a ring of its own; more copies of them are moved by up to so many resolutions. */
+static struct tri_pslg map_of(int copies, double resolutions, uint64_t seed)
+{
+    enum { CELLS = 3 };
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(4 * CELLS * CELLS * copies, 4 * CELLS * CELLS * copies, 0, 0);
+    double at[CELLS + 1][CELLS + 1][2];
+    for (int i = 0; i < (CELLS + 1) * (CELLS + 1); i++) {
+        at[i / (CELLS + 1)][i % (CELLS + 1)][0] = 0.2 * (i / (CELLS + 1) + 0.3 * support_unit(&random));
+        at[i / (CELLS + 1)][i % (CELLS + 1)][1] = 0.2 * (i % (CELLS + 1) + 0.3 * support_unit(&random));
+    }
+    for (int i = 0; i < copies * CELLS * CELLS; i++) {
+        double reach = i < CELLS * CELLS ? 0 : resolutions * 0x1p-52;
+        for (int k = 0; k < 4; k++) {
+            const double *p = at[i / CELLS % CELLS + (k == 1 || k == 2)][i % CELLS + k / 2];
+            support_add_point(&pslg, p[0] + reach * (2 * support_unit(&random) - 1),
+                              p[1] + reach * (2 * support_unit(&random) - 1));
+        }
+        for (int k = 0; k < 4; k++)
+            support_add_segment(&pslg, 4 * i + k, 4 * i + (k + 1) % 4);
+    }
+    return pslg;
+}
+
+static int32_t count_refined(struct tri_pslg pslg)
+{
+    struct tri_mesh mesh = refined(&pslg, 20, false);
+    int32_t n = mesh.n_triangles;
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return n;
+}
+
+/* What lies within rounding is no feature where there is much of it: each would take hundreds of triangles. */
+static void test_borders_computed_twice(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 5; seed++) {
+        int32_t once = count_refined(map_of(1, 0, seed));
+        for (double resolutions = 1; resolutions <= 128; resolutions *= 2)
+            assert_true(count_refined(map_of(2, resolutions, seed)) <= 24 * once);
+    }
+}
+
+/* A zigzag in a box, and a copy of it that far away. */
+static struct tri_pslg zigzag(int copies, double away, uint64_t seed)
+{
+    enum { STEPS = 6 };
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(4 + 2 * (STEPS + 1), 4 + 2 * STEPS, 0, 0);
+    double height[STEPS + 1];
+    for (int k = 0; k < 4; k++)
+        support_add_point(&pslg, k == 1 || k == 2, k / 2);
+    for (int k = 0; k < 4; k++)
+        support_add_segment(&pslg, k, (k + 1) % 4);
+    for (int k = 0; k <= STEPS; k++)
+        height[k] = 0.5 + 0.1 * support_unit(&random);
+    for (int copy = 0; copy < copies; copy++)
+        for (int k = 0; k <= STEPS; k++) {
+            double x = copy * away * (2 * support_unit(&random) - 1), y = copy * away * (1 + support_unit(&random));
+            int32_t v = support_add_point(&pslg, 0.1 + 0.8 * k / STEPS + x, height[k] + y);
+            if (k > 0)
+                support_add_segment(&pslg, v - 1, v);
+        }
+    return pslg;
+}
+
+/* The space between two lines is too dear to fill, and how wide it is at its ends and corners is no feature either. */
+static void test_a_line_drawn_twice(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 5; seed++) {
+        int32_t once = count_refined(zigzag(1, 0, seed));
+        for (int exponent = -48; exponent <= -20; exponent += 4)
+            assert_true(count_refined(zigzag(2, ldexp(1, exponent), seed)) <= 2 * once);
+    }
+}
+
 static struct tri_pslg scaled(const struct tri_pslg *pslg, int exponent)
 {
     struct tri_pslg copy = support_pslg(pslg->n_points, pslg->n_segments, 0, 0);
@@ -155,6 +233,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_lies_near_a_segment_is_a_feature),
         cmocka_unit_test(test_a_corner_near_a_wall),
+        cmocka_unit_test(test_borders_computed_twice),
+        cmocka_unit_test(test_a_line_drawn_twice),
         cmocka_unit_test(test_the_mesh_is_the_same_at_any_scale),
         cmocka_unit_test(test_no_rounding_folds_a_tiny_mesh),
         cmocka_unit_test(test_subnormal_figures_are_refused),

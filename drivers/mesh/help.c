@@ -25,7 +25,7 @@ static const char *const paragraphs[] = {
 
     "Bounds\n"
     "  -q      no angle below 20 degrees; -q30: below 30. Up to 28 is always reached except next to\n"
-    "          small angles of the input and to what is finer than 64 units in the last place of its\n"
+    "          small angles of the input and to what is finer than 512 units in the last place of its\n"
     "          largest coordinate; up to 36 nearly always; above 38 it is taken as 38\n"
     "  -a0.5   no triangle larger than 0.5. The number has no exponent: -a1e-3 means -a1 -e\n"
     "  -a      areas are bounded by the regions of the .poly file or, with -r, by the .area file\n"

@@ -107,6 +107,46 @@ static void make_shifted_copy(struct figure *f)
     draw_cells(f, &map, 0, 0.2);
 }
 
+/* Lines side by side, every second one across the others if it is a grid, each drawn so often, a little out of place. */
+static void draw_hatching(struct figure *f, bool grid, int32_t copies, double shift)
+{
+    struct tri_point turn = figure_on_circle(figure_chance(f, 0.3) ? 0 : figure_real(f, 0, 1));
+    int32_t n = figure_size(f, 3, 24);
+    for (int32_t i = 0; i < n * copies; i++) {
+        double beside = 2.0 * (i / copies) / n - 1 + (i % copies > 0 ? figure_real(f, -shift, shift) : 0);
+        double along[2] = {figure_real(f, -1.3, -0.2), figure_real(f, 0.2, 1.3)};
+        for (int k = 0; k < 2; k++) {
+            bool across = grid && i / copies % 2 > 0;
+            double x = across ? -beside : along[k], y = across ? along[k] : beside;
+            figure_point(f, turn.x * x - turn.y * y, turn.y * x + turn.x * y);
+        }
+        figure_segment(f, f->pslg.n_points - 2, f->pslg.n_points - 1);
+    }
+    if (figure_chance(f, 0.7))
+        figure_box(f, -2, -2, 4, 4);
+}
+
+/* Borders that were computed twice or three times: hatchings, grids, maps. */
+static void make_doubled(struct figure *f)
+{
+    int32_t kind = figure_whole(f, 0, 2), copies = figure_whole(f, 2, 3);
+    double shift = figure_power(f, -16, -11);
+    if (kind < 2) {
+        draw_hatching(f, kind == 1, copies, shift);
+        return;
+    }
+    const struct map map = draw_map(f, 1, 0.3);
+    for (int32_t k = 0; k < copies; k++) {
+        struct map copy = map;
+        for (int32_t i = 0; k > 0 && i < (map.n + 1) * (map.n + 1); i++) {
+            struct tri_point off = figure_draw(f, -shift, shift);
+            copy.corner[i / (map.n + 1)][i % (map.n + 1)].x += off.x;
+            copy.corner[i / (map.n + 1)][i % (map.n + 1)].y += off.y;
+        }
+        draw_cells(f, &copy, 0, 0);
+    }
+}
+
 /* Polygons that touch themselves: corners on sides, borders run twice, eights. */
 static void make_self_touching(struct figure *f)
 {
@@ -160,6 +200,7 @@ const struct family families_map[] = {
     {"slivers", make_slivers, 1, true, false},
     {"overlay", make_overlay, 1, true, false},
     {"shifted_copy", make_shifted_copy, 1, true, false},
+    {"doubled", make_doubled, 1, true, false},
     {"self_touching", make_self_touching, 1, true, false},
     {"tangle", make_tangle, 1, true, false},
     {0},

@@ -2,7 +2,7 @@
  *
  * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within
  * TRI_BUNDLE_ALONG resolutions of its line, along it and for as many triangles again beyond its ends; of two stops
- * within TRI_BUNDLE_APART of each other along the line, the first alone is one. The pieces from stop to stop run
+ * within TRI_VERTICES_APART of each other along the line, the first alone is one. The pieces from stop to stop run
  * through all the stops between them. Where some of these pieces overlap, they are cut there, and one of each
  * elementary piece is left (tri_share_stops).
  *
@@ -123,7 +123,7 @@ static bool is_before(const void *context, int32_t v, int32_t w)
     return at_v != at_w ? at_v < at_w : v < w;
 }
 
-/* In their order, each TRI_BUNDLE_APART from the one before. */
+/* In their order, each TRI_VERTICES_APART from the one before. */
 static void sort_stops(struct bundles *b)
 {
     double x = b->b.x - b->a.x, y = b->b.y - b->a.y, length = sqrt(x * x + y * y);
@@ -131,7 +131,7 @@ static void sort_stops(struct bundles *b)
     tri_heap_sort(b->stop, b->n_stops, is_before, b);
     for (int32_t k = 0; k < b->n_stops; k++) {
         tri_vertex_id v = b->stop[k];
-        double apart = TRI_BUNDLE_APART * length * tri_resolution(b->mesh->xy[v]);
+        double apart = TRI_VERTICES_APART * length * tri_resolution(b->mesh->xy[v]);
         b->place[v] = TRI_NONE;
         if (kept > 0 && along(b, v) - along(b, b->stop[kept - 1]) <= apart)
             continue;

@@ -410,7 +410,7 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
     bool late = l->crossings_left < l->crossings / 2;
     bool room = found == TRI_SEARCH_FOUND && lies_between(l, p, &l->piece[first]) &&
                 lies_between(l, p, &l->piece[first + 1]);
-    struct choice shared = choose_vertex(l, first, t, p, TRI_CROSSING_APART * tri_resolution(p));
+    struct choice shared = choose_vertex(l, first, t, p, TRI_VERTICES_APART * tri_resolution(p));
     tri_vertex_id v = late ? nearest_end(l, first) : TRI_NONE;
     if (v == TRI_NONE && shared.astray == 0)
         v = shared.vertex;

@@ -6,7 +6,8 @@
  *     |bp|, inherited as insertion radii are (Shewchuk 2002);
  *   - a split point: the same from all vertices around it, but no more than its distance from other features;
  *   - a point inserted because of sizes: no more than its distance from its neighbours.
- * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches).
+ * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches), nor are widths of spaces
+ * that are not filled (gap.h), at their ends either.
  *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / TRI_SHRINK is not refined for its angle.
  *
@@ -51,16 +52,17 @@ static void divide_vertices(struct estimate *e)
     e->own[shares] = e->mesh->n_vertices;
 }
 
-/* The least of its distances from the other corners, and from the wall opposite to it, that coordinates resolve. */
+/* The least of its distances from the other corners, and from the wall opposite to it, that are features. */
 static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
 {
     double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
     bool wall = t->n[k] < 0 && is_beside(edge, left, right);
-    double distance2[3] = {left, right, wall ? shape->area2 * shape->area2 / edge : HUGE_VAL}, size2 = HUGE_VAL;
+    double distance2[3] = {left, right, wall ? shape->area2 * shape->area2 / edge : HUGE_VAL};
+    tri_vertex_id v = t->v[k], other[2] = {t->v[tri_prev[k]], t->v[tri_next[k]]};
     for (int i = 0; i < 3; i++)
-        if (distance2[i] >= mesh->limits.shortest2)
-            size2 = tri_lesser(size2, distance2[i]);
-    mesh->feature[t->v[k]] = tri_lesser(mesh->feature[t->v[k]], sqrt(size2));
+        if (distance2[i] >= mesh->limits.shortest2 && sqrt(distance2[i]) < mesh->feature[v] &&
+            !(i < 2 ? tri_spans_gap(mesh, v, other[i]) : tri_lines_gap(mesh, mesh->sub[~t->n[k]].parent, v)))
+            mesh->feature[v] = sqrt(distance2[i]);
 }
 
 static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
@@ -155,9 +157,11 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
 {
     int32_t on = mesh->on[v];
     double inherited = mesh->feature[v] + TRI_SLOPE * distance;
+    if (distance >= inherited || on == TRI_VERTEX_FREE)
+        return inherited;
     bool is_feature = on >= 0 ? tri_is_filled(mesh, p, on, at, mesh->xy[v])
-                              : on != TRI_VERTEX_FREE && !tri_touches(mesh, p, v);
-    return is_feature && distance < inherited ? distance : inherited;
+                              : !tri_touches(mesh, p, v) && !tri_lines_gap(mesh, p, v);
+    return is_feature ? distance : inherited;
 }
 
 /* The distance of the new point from a subsegment on its cavity's boundary; infinity where the point does not lie

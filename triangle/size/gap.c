@@ -23,23 +23,6 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
     return spread <= width ? shorter / width : shorter / spread * tri_rough_log2(1 + spread / width);
 }
 
-static bool do_touch(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
-{
-    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
-    return tri_touches(mesh, p, b[0]) || tri_touches(mesh, p, b[1]) || tri_touches(mesh, q, a[0]) ||
-           tri_touches(mesh, q, a[1]);
-}
-
-/* Do the lines of two parents meet at 60 degrees or more? */
-static bool is_wide(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
-{
-    const struct tri_point a = mesh->xy[mesh->parents[p].v[0]], b = mesh->xy[mesh->parents[p].v[1]];
-    const struct tri_point c = mesh->xy[mesh->parents[q].v[0]], d = mesh->xy[mesh->parents[q].v[1]];
-    double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
-    double dot = px * qx + py * qy, cross = px * qy - py * qx;
-    return 3 * dot * dot <= cross * cross;
-}
-
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v)
 {
@@ -48,9 +31,7 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     enum tri_corner corner = tri_corner_between(mesh, first, second);
     if (corner != TRI_APART)
         return corner == TRI_NARROW_CORNER;
-    if (tri_filling_cost(mesh, first, second, u, v) > mesh->limits.dearest_gap)
-        return false;
-    return !is_wide(mesh, first, second) || !do_touch(mesh, first, second);
+    return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
 }
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
@@ -66,11 +47,11 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
 /* Does triangle u, v, w lie on one side of the parent through u? Amid the parent it does, since triangles cross none.
  * At an end it may lie behind that end, or go round it with v and w on different sides, so that no more than its corner
  * touches the space on either. What is nearer to the parent's line than an edge may be short counts as on it: split
- * points lie beside it by rounding. */
+ * points lie beside it by rounding. w == u or w == v: there is no triangle to ask about. */
 static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
                        tri_vertex_id w)
 {
-    if (!is_end(p, u))
+    if (!is_end(p, u) || w == u || w == v)
         return true;
     struct tri_point o = mesh->xy[u], far = mesh->xy[p->v[p->v[0] == u]], a = mesh->xy[v], b = mesh->xy[w];
     double x = far.x - o.x, y = far.y - o.y, near2 = mesh->limits.shortest2 * (x * x + y * y);
@@ -96,8 +77,8 @@ static bool is_cheaper(const struct tri_mesh *mesh, const struct tri_parent *p, 
     return 2 * (x * x + y * y) < cost * fabs(x * (to.y - from.y) - y * (to.x - from.x));
 }
 
-/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in; what costs less than
- * `least` need not be among them. */
+/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in, or any that it bridges,
+ * if w == v; what costs less than `least` need not be among them. */
 static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w,
                               double least)
 {
@@ -144,10 +125,28 @@ bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, co
     return gap_at(mesh, triangle, shape, 0).spike;
 }
 
+bool tri_spans_gap(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
+{
+    return gap_between(mesh, u, v, v, mesh->limits.dearest_gap).cost > mesh->limits.dearest_gap;
+}
+
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    struct gap gap = gap_at(mesh, triangle, shape, 0);
-    return gap.spike || gap.cost > mesh->limits.dearest_gap;
+    const tri_vertex_id *v = mesh->tri[triangle].v;
+    const int k = shape->shortest;
+    return tri_spans_gap(mesh, v[tri_next[k]], v[tri_prev[k]]) || tri_bridges_spike(mesh, triangle, shape);
+}
+
+bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v)
+{
+    int32_t n;
+    tri_parent_id beside[8];
+    const tri_vertex_id *end = mesh->parents[p].v;
+    const tri_parent_id *q = tri_parents_beside(mesh, v, end[0], end[1], beside, &n);
+    for (int32_t i = 0; i < n; i++)
+        if (q[i] != p && tri_filling_cost(mesh, p, q[i], mesh->xy[end[0]], mesh->xy[v]) > mesh->limits.dearest_gap)
+            return true;
+    return false;
 }
 
 enum { OCTAVES = 64 };

@@ -12,8 +12,7 @@
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
 
-/* Will the space between two parents be filled, so that its width is a feature? Not where an end of one touches the
- * other, unless they meet at less than 60 degrees. u and v as above. */
+/* Will the space between two parents be filled, so that its width is a feature? u and v as above. */
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v);
 
@@ -24,7 +23,12 @@ double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const
 /* Does the shortest edge of the triangle bridge a spike? */
 bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* Does the shortest edge of the triangle bridge a spike, or a space between two parents that is too dear to fill? */
+/* Is the distance of two vertices the width of a space between two parents that is too dear to fill, be it at its end?
+ * Is that of a vertex from a parent, as one of the vertex's own parents bounds such a space with it? */
+bool tri_spans_gap(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v);
+bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v);
+
+/* Does the shortest edge of the triangle bridge a spike, or such a space? */
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.

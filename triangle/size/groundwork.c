@@ -1,10 +1,14 @@
 /* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
  *
- *   limits      the shortest edge that coordinates can carry
- *   features    how far each vertex is from what is around it (feature_size.h)
  *   acute       input vertices at which two subsegments meet at less than 60 degrees
  *   incidence   the parents that end at each vertex, in order of direction where they are many
+ *   limits      the shortest edge that coordinates can carry
  *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
+ *   features    how far each vertex is from what is around it, by all of the above (feature_size.h)
+ *
+ * RULE (rounding). Distances of 32 to 256 resolutions are features if one vertex alone is so near to another one or to a
+ * segment. If more are, lines were computed twice, or points that belong on them: then such distances are rounding, and
+ * each that counted as a feature would take some 400 triangles.
  *
  * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
 #include "triangle/size/groundwork.h"
@@ -47,25 +51,37 @@ static void find_acute(struct tri_mesh *mesh)
         }
 }
 
-double tri_shortest_edge2(const struct tri_mesh *mesh)
+static double largest_coordinate(const struct tri_mesh *mesh)
 {
     double size = 0;
-    for (tri_vertex_id v = 0; v < mesh->n_input; v++) {
-        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
-        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
-    }
-    return size * TRI_SHORTEST_EDGE * (size * TRI_SHORTEST_EDGE);
+    for (tri_vertex_id v = 0; v < mesh->n_input; v++)
+        size = tri_larger(size, tri_larger(fabs(mesh->xy[v].x), fabs(mesh->xy[v].y)));
+    return size;
+}
+
+/* Limits and sizes with this shortest edge. Returns how many vertices have features up to TRI_BLUR times as long (what
+ * no triangle uses has the least size). */
+static int32_t measure(struct tri_mesh *mesh, double shortest, const struct tri_executor *executor)
+{
+    int32_t n = 0;
+    mesh->limits.shortest2 = shortest * shortest;
+    tri_choose_gaps(mesh, executor);
+    tri_estimate_features(mesh, executor);
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
+        n += mesh->feature[v] > shortest && mesh->feature[v] < TRI_BLUR * shortest;
+    return n;
 }
 
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     if (mesh->incidence.start)
         return TRI_OK;
-    mesh->limits.shortest2 = tri_shortest_edge2(mesh);
-    tri_estimate_features(mesh, executor);
     find_acute(mesh);
     enum tri_status status = tri_incidence_list(mesh, error);
-    if (!status)
-        tri_choose_gaps(mesh, executor);
-    return status;
+    if (status)
+        return status;
+    const double shortest = TRI_SHORTEST_EDGE * largest_coordinate(mesh);
+    if (measure(mesh, shortest, executor) > 1)
+        measure(mesh, TRI_BLUR * shortest, executor);
+    return TRI_OK;
 }

@@ -6,7 +6,7 @@
  *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the angle of the input dictates its length;
  *   - it joins the sides of a spike, two segments that meet at less than 1 / TRI_SHARP;
  *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
- *     width each (tri_choose_gaps);
+ *     width each (tri_choose_gaps), inside or at its end;
  *   - it is shorter than limits.shortest2 says: rounding;
  *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles.
  * Triangles that stay are counted by reason (tri_count_bad). */
