@@ -415,6 +415,22 @@ static void test_notes_of_skipped_segments(void **state)
     tri_mesh_delete(mesh);
 }
 
+/* A bound above the largest that is worked for is noted. */
+static void test_note_of_a_lowered_angle(void **state)
+{
+    (void)state;
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 38;
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    assert_string_equal(tri_mesh_notes(mesh), "");
+    settings.min_angle = 40.5;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    assert_string_equal(tri_mesh_notes(mesh),
+                        "an angle bound of 40.5 degrees is above 38: triangles are made for 38");
+    tri_mesh_delete(mesh);
+}
+
 static void test_too_large_leaves_no_mesh(void **state)
 {
     (void)state;
@@ -883,6 +899,7 @@ int main(void)
         cmocka_unit_test(test_place_of_an_odd_length),
         cmocka_unit_test(test_notes_of_an_empty_mesh),
         cmocka_unit_test(test_notes_of_skipped_segments),
+        cmocka_unit_test(test_note_of_a_lowered_angle),
         cmocka_unit_test(test_too_large_leaves_no_mesh),
         cmocka_unit_test(test_input_that_is_not_finite),
         cmocka_unit_test(test_gate_and_fence),

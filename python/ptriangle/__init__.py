@@ -8,8 +8,9 @@ help(ptriangle.mesh) tells all that can be given and wanted, help(ptriangle.Mesh
 
 The mesh depends on the input alone, not on the number of threads. While the library works, other threads of Python run.
 Errors are exceptions with the library's words: InputError (a ValueError), TooLargeError (a MemoryError), FileError (an
-OSError), StoppedError; all are Error. A mesh without triangles is an EmptyMeshWarning that says why; segments that are
-skipped, and sizes that are no lengths, are InputWarning, of which it is one.
+OSError), StoppedError; all are Error. Input that was hardly meant so is an InputWarning: skipped segments, polygons
+that overlap, sizes that are no lengths. EmptyMeshWarning, a kind of it, says why a mesh has no triangles;
+IgnoredWarning, another kind, says that part of a call has no effect.
 
 ptriangle.compat stands in for the package `triangle`.
 """
@@ -18,9 +19,9 @@ from ._errors import Error, FileError, InputError, StoppedError, TooLargeError
 from ._library import SizeFunction
 from ._make import mesh, read
 from ._mesh import Mesh
-from ._notes import EmptyMeshWarning, InputWarning
+from ._notes import EmptyMeshWarning, IgnoredWarning, InputWarning
 from ._verdict import Verdict
 
 __version__: str = _library.library.tri_version().decode()
-__all__ = ["EmptyMeshWarning", "Error", "FileError", "InputError", "InputWarning", "Mesh", "SizeFunction",
-           "StoppedError", "TooLargeError", "Verdict", "mesh", "read"]
+__all__ = ["EmptyMeshWarning", "Error", "FileError", "IgnoredWarning", "InputError", "InputWarning", "Mesh",
+           "SizeFunction", "StoppedError", "TooLargeError", "Verdict", "mesh", "read"]

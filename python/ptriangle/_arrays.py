@@ -43,6 +43,14 @@ def _refuse_other_ints(rows: Array, name: str) -> None:
         raise InputError("%s: beyond the range of 32 bits" % name)
 
 
+def as_int32(given: Any, name: str) -> Array:
+    """Integers of 32 bits, also of numbers of another type with such values; nothing wraps."""
+    rows = numbers(given, name)
+    if rows.size and not (rows.max() <= np.iinfo(np.int32).max and rows.min() >= np.iinfo(np.int32).min):
+        raise InputError("%s: beyond the range of 32 bits" % name)
+    return rows.astype(np.int32, copy=False)
+
+
 def numbers(given: Any, name: str) -> Array:
     """An array of numbers of whatever is given."""
     try:

@@ -16,6 +16,7 @@ from ._calls import Calls
 from ._errors import FileError, InputError
 from ._figure import SHAPES, figure_of
 from ._library import library
+from ._settings import whole
 
 Arrays = Dict[str, Array]
 
@@ -110,5 +111,5 @@ def write_arrays(path: Any, arrays: Arrays, first: int, who: str) -> None:
     if triangles.shape[1] == 6:  # the library has middles opposite the corners
         triangles = triangles[:, [0, 1, 2, 4, 5, 3]]
     figure.triangles, owner = from_numpy(lib.Ints, triangles, who + ": triangles")
-    Calls(who).run_checked(library.tri_file_write, os.fsencode(path), byref(figure), first)
+    Calls(who).run_checked(library.tri_file_write, os.fsencode(path), byref(figure), whole(who, "first", first))
     del kept, owner  # which the library has looked at until here

@@ -8,13 +8,13 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _files, _picture, _second_order
-from ._arrays import Array, freeze, to_numpy
+from . import _files, _interpolate, _picture, _second_order
+from ._arrays import Array, freeze, numbers, to_numpy
 from ._calls import Calls
 from ._errors import InputError
 from ._figure import figure_of
 from ._library import Demands, Figure, Ints, Settings, VerdictDetail, library
-from ._notes import tell
+from ._notes import tell, warn
 from ._settings import Progress, Size, Unsuitable, settings_of
 from ._signature import explained
 from ._verdict import Verdict
@@ -57,6 +57,23 @@ def _arrays_of(handle: Handle) -> Dict[str, Array]:
     return arrays
 
 
+def _used(arrays: Mapping[str, Array], n_input: int, crossings: int) -> Array:
+    """Which points are corners of triangles, or ends of segments. New points are, except where segments cross."""
+    corners, n = arrays["triangles"].ravel(), len(arrays["points"])
+    first_new = n if crossings else n_input
+    used = np.arange(n) >= first_new
+    used[corners[corners < first_new] if first_new < n else corners] = True
+    used[arrays["segments"].ravel()] = True
+    return used
+
+
+def _firsts(points: Array) -> Array:
+    """For each point the first one at its place."""
+    places = points[:, 0] + 1j * points[:, 1]
+    _, first, group = np.unique(places, return_index=True, return_inverse=True)
+    return first[group.reshape(-1)]
+
+
 class Mesh:
     """A triangle mesh, made by ptriangle.mesh(). It does not change; refine() makes another one.
 
@@ -66,17 +83,43 @@ class Mesh:
 
     def __init__(self, handle: Handle, order: int = 1) -> None:
         self._handle: Optional[Handle] = handle
+        self._numbers: Optional[Array] = None  # of the library's points, where others have been dropped
+        self._input_points: Array = np.empty(0, np.int32)
         self._order = order
         self._arrays = _arrays_of(handle)
         self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
+
+    def _settle_points(self, n_input: int, keep_unused: bool) -> None:
+        """Says where the first n_input points went, and drops points that no triangle uses. A mesh without triangles
+        keeps its points."""
+        arrays = self._arrays
+        self._input_points = np.arange(n_input, dtype=np.int32)
+        used = _used(arrays, n_input, self._counts["crossings"])
+        if len(arrays["triangles"]) > 0 and not used.all():
+            kept = np.ones(len(used), bool) if keep_unused else used
+            numbers = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
+            self._input_points = numbers[_firsts(arrays["points"][:n_input])]
+            if not keep_unused:
+                self._numbers = numbers
+                arrays.update({name: arrays[name][kept] for name in _NAMES[:3]})
+                arrays.update({name: numbers[arrays[name]] for name in ("triangles", "segments")})
+                freeze(arrays.values())
+        freeze([self._input_points])
 
     # --- arrays
 
     @property
     def points(self) -> Reals:
         """Coordinates, [n, 2]: the points that were given, in their order, new ones, and with order 2 the middles of
-        the edges."""
+        the edges. Given points that no triangle uses are left out (mesh() has keep_unused)."""
         return self._nodes[0]
+
+    @property
+    def input_points(self) -> Integers:
+        """Where the points went that mesh() was given, with the corners of polygons behind them: the number in `points`
+        of each; of a duplicate, that of the first point at its place; -1 if it was left out. With union=True the
+        corners of polygons are not listed. refine() keeps these numbers."""
+        return self._input_points
 
     @property
     def point_attributes(self) -> Reals:
@@ -207,7 +250,11 @@ class Mesh:
             return np.empty((0, 2), np.int32), np.empty(0, np.int32)
         edges, markers, handle = Ints(), Ints(), self._library_mesh()
         Calls("edges").run_checked(library.tri_mesh_edges, handle.mesh, byref(edges), byref(markers))
-        return to_numpy(edges, handle), to_numpy(markers, handle)[:, 0]
+        ends = to_numpy(edges, handle)
+        if self._numbers is not None:
+            ends = self._numbers[ends]
+            freeze([ends])
+        return ends, to_numpy(markers, handle)[:, 0]
 
     def _library_mesh(self) -> Handle:
         """The library's mesh; after unpickling it is built again, with the same numbers."""
@@ -220,12 +267,13 @@ class Mesh:
 
     def __getstate__(self) -> Mapping[str, Any]:
         return {"order": self._order, "arrays": {name: np.array(rows) for name, rows in self._arrays.items()},
-                "counts": self._counts}
+                "counts": self._counts, "input_points": self._input_points}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
-        self._handle = None
+        self._handle = self._numbers = None
         self._order, self._arrays, self._counts = state["order"], dict(state["arrays"]), state["counts"]
-        freeze(self._arrays.values())
+        self._input_points = state["input_points"]
+        freeze([*self._arrays.values(), self._input_points])
 
     def __copy__(self) -> "Mesh":
         return self  # it does not change
@@ -251,8 +299,36 @@ class Mesh:
                                       max_new_points, gate, fence, threads, stop, progress)
         figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
         finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
+        finer._input_points = self._input_points
         del kept
         return finer
+
+    @explained
+    def interpolate(self, points: npt.ArrayLike, values: npt.ArrayLike, outside: Optional[float] = None) -> Reals:
+        """Values at the points of this mesh, of measurements at other places: depths, heights.
+
+        points [k, 2], values [k] or [k, w]; the result is [n] or [n, w]. Interpolation is linear in the Delaunay
+        triangulation of the measurements; of several at one place the first counts. At points of this mesh outside the
+        measurements' convex hull the value is that of the nearest place of the hull, or `outside` (such as numpy.nan).
+        """
+        who, at = "interpolate()", np.asarray(self.points)
+        given = numbers(values, who + ": values").astype(np.float64)
+        figure, kept = figure_of({"points": points}, who)
+        if given.ndim not in (1, 2) or len(given) != figure.points.n:
+            raise InputError("%s: values of shape %s for %d points" % (who, given.shape, figure.points.n))
+        cloud = Mesh(made(figure, Settings(), Calls(who)))
+        del kept
+        if len(cloud.triangles) == 0:
+            raise InputError("%s: all points lie on one line" % who)
+        corners = cloud.points[cloud.triangles]
+        triangle, inside = _interpolate.locate(corners, cloud.neighbors, at)
+        at = at.copy()
+        at[~inside] = _interpolate.onto_border(cloud.points, cloud.boundary, at[~inside])
+        triangle[~inside] = _interpolate.locate(corners, cloud.neighbors, at[~inside])[0]
+        found = _interpolate.interpolated(corners, given[cloud.triangles], triangle, at)
+        if outside is not None:
+            found[~inside] = outside
+        return found
 
     @explained
     def bad(self, *, min_angle: Optional[float] = None, max_area: Optional[float] = None, size: Optional[Size] = None,
@@ -277,13 +353,19 @@ class Mesh:
     @explained
     def check(self, min_angle: Optional[float] = None, max_area: Optional[float] = None,
               conforming: bool = False) -> Verdict:
-        """A judgement by exact arithmetic, independent of the mesher: is it a mesh, and does it keep these bounds?"""
+        """A judgement by exact arithmetic, independent of the mesher: is it a mesh, and does it keep these bounds?
+
+        Points that no triangle uses are no fault, but an InputWarning."""
         detail, calls = VerdictDetail(), Calls("check()")
         demands = Demands(min_angle=float(min_angle or 0), max_area=float(max_area or 0), delaunay=int(conforming))
         figure, kept = figure_of(self._arrays, calls.who)
         calls.run_checked(library.tri_check_figure, byref(figure), None, byref(demands), byref(detail))
         del kept
-        return Verdict(detail)
+        found, n = Verdict(detail), len(self._arrays["points"])
+        if 0 < found.n_points < n:
+            warn("%d points are used by no triangle: a finite-element matrix is singular with them" %
+                 (n - found.n_points), calls.who)
+        return found
 
     @explained
     def write(self, path: Any, first: int = 1) -> None:
@@ -297,7 +379,7 @@ class Mesh:
 
     def to_meshio(self) -> Any:
         """The mesh as a meshio.Mesh: triangles (triangle6 with order 2), then segments (line, line3), with their
-        markers as cell data `marker`, attributes as `attribute 0`, ...; z is 0."""
+        markers as cell data `marker`, attributes as `attribute_0`, ...; z is 0."""
         try:
             import meshio  # type: ignore[import-untyped, unused-ignore]
         except ImportError:
@@ -307,10 +389,10 @@ class Mesh:
         cells = [(kinds[0], self.triangles), (kinds[1], self.segments)]
         cell_data: Dict[str, List[Array]] = {"marker": [np.zeros(len(self.triangles), np.int32), self.segment_markers]}
         for k, column in enumerate(self.triangle_attributes.T):
-            cell_data["attribute %d" % k] = [column, np.zeros(len(self.segments))]
+            cell_data["attribute_%d" % k] = [column, np.zeros(len(self.segments))]
         point_data: Dict[str, Array] = {"marker": self.point_markers}
         for k, column in enumerate(self.point_attributes.T):
-            point_data["attribute %d" % k] = column
+            point_data["attribute_%d" % k] = column
         return meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data)
 
     def plot(self, ax: Any = None, *, color: Any = "tab:blue", segment_color: Any = "black",

@@ -1,13 +1,18 @@
-"""Warnings of input that was hardly meant so, in the words of the library."""
+"""Warnings of input that was hardly meant so, mostly in the words of the library."""
 from __future__ import annotations
 
 import sys
 import warnings
-from typing import Optional
+from typing import Optional, Type
 
 
 class InputWarning(UserWarning):
-    """Segments are skipped, or a size function returned what is no length; the text says which or where."""
+    """Input that was hardly meant so: skipped segments, polygons that overlap, a size function that returned no length.
+    The text says which or where."""
+
+
+class IgnoredWarning(InputWarning):
+    """Part of a call has no effect: the exponent of a1e-5, segments without the switch p, an angle bound above 38."""
 
 
 class EmptyMeshWarning(InputWarning):
@@ -22,9 +27,16 @@ def _depth() -> int:
     return depth
 
 
-def tell(notes: Optional[bytes], who: str) -> None:
-    """A warning for each line of the library's notes, given where the package was called."""
+_KINDS = {"the mesh is empty": EmptyMeshWarning, "an angle bound of": IgnoredWarning}  # by the beginning of a line
+
+
+def warn(text: str, who: str, kind: Type[InputWarning] = InputWarning) -> None:
+    """A warning at the line that called the package."""
+    warnings.warn("%s: %s" % (who, text), kind, stacklevel=_depth())
+
+
+def tell(notes: Optional[bytes], who: str, kind: Type[InputWarning] = InputWarning) -> None:
+    """A warning for each line of the library's notes."""
     for line in (notes or b"").decode("utf-8", "replace").splitlines():
-        kind = EmptyMeshWarning if line.startswith("the mesh is empty") else InputWarning
-        warnings.warn("%s: %s" % (who, line.replace("edge_length returned", "size returned")), kind,
-                      stacklevel=_depth())
+        found = [_KINDS[begin] for begin in _KINDS if line.startswith(begin)]
+        warn(line.replace("edge_length returned", "size returned"), who, found[0] if found else kind)

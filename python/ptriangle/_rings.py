@@ -8,7 +8,7 @@ import numpy as np
 from ._arrays import Array, numbers
 from ._errors import InputError
 
-Polygon = List[Array]  # rings [k, 2] without a last point that is the first; inside is what lies in an odd number
+Polygon = List[Array]  # an outline and its holes: rings [k, 2] without a last point that is the first
 
 
 def _ring(given: Any, name: str) -> Array:
@@ -59,6 +59,19 @@ def polygons_of(given: Any, name: str) -> List[Polygon]:
     if not isinstance(given, Iterable):
         raise InputError("%s: %r instead of a list of rings or polygons" % (name, type(given).__name__))
     return [polygon for k, item in enumerate(given) for polygon in _of_any(item, "%s[%d]" % (name, k))]
+
+
+def _area(ring: Array) -> float:
+    """The area of a ring that does not cross itself."""
+    if len(ring) < 3:
+        return 0.0
+    x, y = (ring - ring[0]).T
+    return float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2)
+
+
+def areas_of(polygons: Iterable[Polygon]) -> Array:
+    """Areas [n] of polygons that are valid."""
+    return np.array([_area(polygon[0]) - sum(map(_area, polygon[1:])) if polygon else 0.0 for polygon in polygons])
 
 
 def segments_of(polygons: Iterable[Polygon], first: int) -> Tuple[Array, Array]:

@@ -20,15 +20,19 @@ Progress = Union[bool, Callable[[float, int], Any]]
 def number(who: str, name: str, given: Any) -> float:
     try:
         return float(given)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError("%s: %s is %r instead of a number" % (who, name, given)) from None
 
 
-def whole(who: str, name: str, given: Any) -> int:
+def whole(who: str, name: str, given: Any, bits: int = 32) -> int:
+    """An integer with sign of so many bits; None is 0."""
     value = number(who, name, 0 if given is None else given)
-    if value != math.floor(value) or math.isinf(value):
+    if not math.isfinite(value) or value != math.floor(value):
         raise InputError("%s: %s is %r instead of a whole number" % (who, name, given))
-    return int(value)
+    found = given if isinstance(given, int) else int(value)
+    if not -1 << (bits - 1) <= found < 1 << (bits - 1):
+        raise InputError("%s: %s is %r: beyond the range of %d bits" % (who, name, given, bits))
+    return found
 
 
 def _name_of(function: Any) -> str:
@@ -89,7 +93,7 @@ def settings_of(who: str, min_angle: Optional[float], max_area: Optional[float],
     settings = Settings(min_angle=number(who, "min_angle", min_angle or 0),
                         max_area=number(who, "max_area", max_area or 0), conforming=bool(conforming),
                         keep_hull=bool(keep_hull), protect=whole(who, "protect", protect),
-                        most_new_points=whole(who, "max_new_points", max_new_points),
+                        most_new_points=whole(who, "max_new_points", max_new_points, 64),
                         threads=whole(who, "threads", threads))
     if fence is not None:
         if len(fence) != 4:

@@ -6,12 +6,13 @@ that there are: nothing is computed twice in different ways.
 """
 from __future__ import annotations
 
-from typing import List, Tuple
+from typing import List, Optional, Tuple
 
 import numpy as np
 
 from ._arrays import Array
-from ._rings import Polygon
+from ._notes import warn
+from ._rings import Polygon, areas_of
 
 _MOST = 1 << 22  # pairs of points and edges that are looked at together
 
@@ -40,29 +41,64 @@ def faces_of(neighbors: Array, walls: Array) -> Array:
             label = label[label]
 
 
-def _is_inside(places: Array, polygon: Polygon) -> Array:
-    """Which places lie in an odd number of the polygon's rings."""
-    odd = np.zeros(len(places), bool)
+def _is_enclosed(places: Array, ring: Array) -> Array:
+    """Which places lie in a ring, by the even-odd rule."""
     x, y = places[:, :1], places[:, 1:]
-    for ring in polygon:
-        a, b = ring, np.roll(ring, -1, axis=0)
-        up = (a[:, 1] <= y) != (b[:, 1] <= y)
-        side = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
-        odd ^= np.count_nonzero(up & ((side > 0) == (b[:, 1] > a[:, 1])), axis=1) % 2 == 1
-    return odd
+    a, b = ring, np.roll(ring, -1, axis=0)
+    up = (a[:, 1] <= y) != (b[:, 1] <= y)
+    side = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
+    return np.asarray(np.count_nonzero(up & ((side > 0) == (b[:, 1] > a[:, 1])), axis=1) % 2 == 1)
+
+
+def _is_inside(places: Array, polygon: Polygon) -> Array:
+    """Which places lie in the outline of a polygon, its first ring, and in none of its holes."""
+    inside = _is_enclosed(places, polygon[0])
+    for hole in polygon[1:]:
+        inside[inside] = ~_is_enclosed(places[inside], hole)
+    return inside
 
 
 def inside_any(places: Array, polygons: List[Polygon]) -> Array:
+    """Which places lie in one of the polygons."""
     found = np.zeros(len(places), bool)
-    for polygon in polygons:
-        corners = np.concatenate(polygon)
+    for polygon in filter(None, polygons):
+        corners = polygon[0]
+        if len(corners) == 0:
+            continue
         near = (places >= corners.min(axis=0)).all(axis=1) & (places <= corners.max(axis=0)).all(axis=1) & ~found
         which = np.nonzero(near)[0]
-        step = max(1, _MOST // len(corners))
+        step = max(1, _MOST // max(map(len, polygon)))
         for k in range(0, len(which), step):
             some = which[k:k + step]
             found[some] = _is_inside(places[some], polygon)
     return found
+
+
+def _inlay_of(polygons: List[Polygon]) -> Optional[Tuple[int, int]]:
+    """(a polygon all of whose corners lie in another one, that one), the first of the first thousand that has any."""
+    places = np.array([polygon[0][0] if polygon and len(polygon[0]) else (np.nan, np.nan) for polygon in polygons])
+    for k, polygon in enumerate(polygons[:1000]):
+        for found in np.nonzero(inside_any(places, [polygon]))[0].tolist():
+            if found != k and inside_any(polygons[found][0], [polygon]).all():
+                return found, k
+    return None
+
+
+def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
+    """By the areas: those of valid polygons that do not overlap add up to what the even-odd rule has meshed."""
+    meant = float(areas_of(polygons).sum())
+    if abs(meshed - meant) <= 1e-9 * sum(areas_of([[ring]])[0] for polygon in polygons for ring in polygon):
+        return
+    inlay = _inlay_of(polygons) if len(polygons) > 1 else None
+    if inlay:
+        text = "polygon %d lies in polygon %d (counted from 0) and is a hole of it by the even-odd rule. A hole that is " \
+               "meant is a ring of its polygon: [outline, hole]" % inlay
+    elif len(polygons) > 1:
+        text = "polygons overlap, or their rings are not those of valid polygons"
+    else:
+        text = "the rings are not those of a valid polygon: holes overlap or lie outside, or rings cross"
+    warn("%s. The even-odd rule meshes an area of %g, where the polygons have %g; union=True meshes what lies in any "
+         "of them" % (text, meshed, meant), who)
 
 
 def _largest_of(label: Array, areas: Array) -> Array:

@@ -2,7 +2,7 @@
 
 Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, refined on all cores. Different on
 purpose: what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not
-exist) is refused or skipped; the switch u needs the argument `unsuitable`.
+exist) is refused or skipped; usual mistakes are warnings; the switch u needs the argument `unsuitable`.
 """
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Set, Tuple, Uni
 import numpy as np
 
 from . import _library as lib
+from ._arrays import as_int32
 from ._calls import Calls
-from ._compat_files import load, loads
+from ._compat_files import ENDINGS, load, loads
 from ._compat_plot import compare, comparev, plot
 from ._errors import InputError, exception_of
 from ._library import TriangulateIO, TriangulateOptions, library
-from ._notes import tell
+from ._notes import EmptyMeshWarning, IgnoredWarning, tell, warn
 
 __version__ = "20250106"  # of the package whose functions these are
-__all__ = ["compare", "comparev", "convex_hull", "delaunay", "get_data", "load", "loads", "plot", "show_data",
-           "triangulate", "voronoi"]
+__all__ = ["EmptyMeshWarning", "IgnoredWarning", "compare", "comparev", "convex_hull", "delaunay", "get_data", "load",
+           "loads", "plot", "show_data", "triangulate", "voronoi"]
 
 # key: (type, list of the struct, count of the struct, columns: a number or the count that tells)
 Arrays = Dict[str, Any]
@@ -52,7 +53,7 @@ _VORONOI: _Fields = {
 def _fill(io: TriangulateIO, key: str, given: Any) -> Any:
     """Sets the fields of one key; the array that must live as long, or None."""
     dtype, list_name, count_name, width = _FIELDS[key]
-    rows = np.asarray(given, dtype)
+    rows = as_int32(given, key) if dtype is np.int32 else np.asarray(given, dtype)
     if rows.size == 0:
         return None
     if rows.ndim == 1:
@@ -97,7 +98,7 @@ def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: L
     def hear(_user: Any, is_error: int, text: bytes) -> None:
         if is_error:
             words.append(text.decode("utf-8", "replace"))
-        else:  # why the mesh is empty
+        else:
             notes.append(text)
 
     def ask(_user: Any, a: Any, b: Any, c: Any, area: float) -> int:
@@ -109,6 +110,14 @@ def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: L
         options.unsuitable = lib.SizeTest(calls.guarded(ask, 0))
     options.stop = lib.StopTest(lambda _user: int(calls.fault is not None))
     return options
+
+
+def _warn_of_no_effect(tri: Mapping[str, Any], switches: bytes, who: str) -> None:
+    """A forgotten p is the commonest mistake. Without it the library does not look at these arrays."""
+    names = ["segments"] if b"r" in switches else ["segments", "holes", "regions"]
+    given = [name for name in names if np.size(tri.get(name, ())) > 0]
+    if given and b"p" not in switches:
+        warn("%s: ignored without the switch p" % ", ".join(given), who, IgnoredWarning)
 
 
 def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
@@ -129,11 +138,12 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
     options = _options_of(unsuitable, calls, words, notes)
     borrowed = {data.holelist, data.regionlist}  # which `out` names as well
     try:
-        status = calls.run(library.triangulate_with, b"zQ" + opts, byref(data), byref(out), byref(vorout),
+        status = calls.run(library.triangulate_with, b"z" + opts, byref(data), byref(out), byref(vorout),
                            byref(options))
         if status:
             raise exception_of(status, words[-1] if words else "error %d" % status)
-        tell(b"\n".join(notes), calls.who)
+        tell(b"\n".join(notes), calls.who, IgnoredWarning)
+        _warn_of_no_effect(tri, opts, calls.who)
         mesh = _taken(out, _FIELDS)
         return mesh, _taken(vorout, _VORONOI)
     finally:
@@ -143,7 +153,7 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
 
 def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
                 unsuitable: Optional[Callable[..., Any]] = None) -> Arrays:
-    """Triangulates a dictionary of arrays by Triangle's switches; z and Q are always set.
+    """Triangulates a dictionary of arrays by Triangle's switches; z is always set, and nothing is ever printed.
 
     Keys of `tri`: vertices [n, 2]; optional vertex_attributes, vertex_markers, segments [s, 2], segment_markers,
     holes [h, 2], regions [r, 4]; with r also triangles, triangle_attributes, triangle_max_area. The result has those of
@@ -151,6 +161,10 @@ def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
     segment_markers, holes and regions (p), edges and edge_markers (e) that are not empty; markers are [n, 1].
 
     unsuitable(a, b, c, area), for the switch u: must this triangle be refined?
+
+    Mistakes are warnings of the class IgnoredWarning: a number with an exponent ("a%g" % 1e-5 is read as a1 and e;
+    write "a%.20f"), segments, holes or regions without the switch p, duplicate points, an angle bound above 38 degrees.
+    An empty mesh is an EmptyMeshWarning. warnings.filterwarnings("ignore", category=IgnoredWarning) silences them.
     """
     return _call(tri, opts, unsuitable)[0]
 
@@ -175,8 +189,17 @@ def voronoi(pts: Any) -> Tuple[Any, Any, Any, Any]:
 
 
 def get_data(name: str) -> Arrays:
-    """An example: its arrays, by the name of its files; {} where there is none of that name."""
-    return load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "data"), name)
+    """The arrays of an example: plate, ground or points, or the mesh of one, plate.1 and so on.
+
+    Another name is an InputError: the examples of the package `triangle` ("A", "face", ...) are files of its own.
+    """
+    directory = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
+    found = load(directory, name)
+    if not found:
+        names = {os.path.splitext(file)[0] for file in os.listdir(directory) if file.endswith(ENDINGS)}
+        raise InputError("get_data(): there is no example %r, but %s; load(directory, %r) reads files of your own" % (
+            name, ", ".join(sorted(names)), name))
+    return found
 
 
 def show_data(name: str) -> None:

@@ -1,7 +1,10 @@
 """ptriangle.compat: keys, types and shapes of the package `triangle`, and its documented examples."""
+import warnings
+
 import numpy as np
 import pytest
 
+import ptriangle
 import ptriangle.compat as triangle
 
 NAMES = ["plate", "plate.1", "points", "ground", "ground.1"]
@@ -102,6 +105,49 @@ def test_errors():
         triangle.triangulate({"vertices": [[0, 0], [1, 0], [0, 1]]}, "u")
 
 
+SQUARE = {"vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+RING = [[0, 1], [1, 2], [2, 3], [3, 0]]
+
+
+@pytest.mark.parametrize("more, switches, words", [
+    ({}, "a%g" % 1e-5, r"-a1e-05: numbers of switches have no exponent; the e is taken for a switch$"),
+    ({}, "a1e-05Q", r"-a1e-05: numbers"),
+    ({}, "q40", r"an angle bound of 40 degrees is above 38: triangles are made for 38$"),
+    (dict(segments=RING), "q", r"segments: ignored without the switch p$"),
+    (dict(segments=RING, holes=[[9, 9]], regions=[[0.5, 0.5, 1, 0.1]]), "qAa",
+     r"segments, holes, regions: ignored without the switch p$"),
+    (dict(segments=RING, triangles=[[0, 1, 2], [0, 2, 3]], holes=[[9, 9]]), "r", r"segments: ignored without"),
+    (dict(vertices=SQUARE["vertices"] + [[1, 1]]), "", r"1 points lie where a point of lower number lies")])
+def test_mistakes_are_warnings(more, switches, words):
+    with pytest.warns(ptriangle.IgnoredWarning, match=r"^triangulate\(\): " + words) as caught:
+        triangle.triangulate({**SQUARE, **more}, switches)
+    assert len(caught) == 1 and caught[0].filename == __file__
+
+
+def test_what_is_no_mistake():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        triangle.triangulate(SQUARE, "qa0.00001")
+        triangle.triangulate({**SQUARE, "segments": RING, "holes": [[9, 9]]}, "pq30")
+        triangle.triangulate({**SQUARE, "segments": []})
+        warnings.simplefilter("ignore", category=triangle.IgnoredWarning)
+        triangle.triangulate({**SQUARE, "segments": RING}, "a1e-5")
+
+
+@pytest.mark.parametrize("key, rows", [("vertex_markers", [1, 2, 3, 1 << 40]), ("segments", [[0, (1 << 32) + 1]]),
+                                       ("vertex_markers", np.array([1, 2, 3, -1 << 33])),
+                                       ("segment_markers", [np.inf]), ("vertex_markers", [0, 1, 2, np.nan])])
+def test_numbers_that_do_not_fit_are_refused(key, rows):
+    with pytest.raises(ptriangle.InputError, match="%s: beyond the range of 32 bits" % key):
+        triangle.triangulate({**SQUARE, "segments": RING[:1], key: rows}, "p")
+
+
+def test_area_bounds_may_be_left_out():
+    mesh = triangle.triangulate({**SQUARE, "triangles": [[0, 1, 2], [0, 2, 3]]}, "rau",
+                                unsuitable=lambda a, b, c, area: area > 0.1)
+    assert len(mesh["triangles"]) >= 10
+
+
 def test_size_test():
     def unsuitable(a, b, c, area):
         return area > 0.01
@@ -119,7 +165,8 @@ def test_examples_are_there():
         data = triangle.get_data(name)
         assert "vertices" in data
         triangle.triangulate(data, "rpq" if name.endswith(".1") else "pq" if "segments" in data else "q")
-    assert triangle.get_data("nothing of that name") == {}
+    with pytest.raises(ptriangle.InputError, match="no example 'A', but ground, ground.1, plate, .*load"):
+        triangle.get_data("A")
 
 
 def test_loads():

@@ -1,6 +1,8 @@
 """ptriangle.mesh: what comes out is judged by the library's checker."""
+import pickle
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -79,12 +81,14 @@ def box(x, y, width, height):
 
 def test_polygons():
     rings = [box(0, 0, 8, 8), box(1, 1, 4, 4) + [[1, 1]], np.array(box(2, 2, 1, 1)), box(8, 0, 2, 4)]
-    m = ptriangle.mesh(polygons=rings, min_angle=30)
+    with pytest.warns(ptriangle.InputWarning, match="polygon 1 lies in polygon 0"):
+        m = ptriangle.mesh(polygons=rings, min_angle=30)
     assert m.check(min_angle=30) and abs(areas(m).sum() - (64 - 16 + 1 + 8)) < 1e-9
     same = ptriangle.mesh(PLATE, RINGS, holes="auto", min_angle=30)
     assert np.array_equal(same.points, plate(min_angle=30).points)
     mixed = ptriangle.mesh(PLATE, RINGS, polygons=[box(1.25, 1.25, 0.5, 0.5)])
     assert abs(areas(mixed).sum() - 11.25) < 1e-9
+    assert ptriangle.mesh(polygons=[rings[:2], *rings[2:]]).areas.sum() == pytest.approx(64 - 16 + 1 + 8)
     with pytest.raises(ptriangle.InputError, match="ring"):
         ptriangle.mesh(polygons=[[0, 1, 2]])
     with pytest.raises(ptriangle.InputError, match="auto"):
@@ -123,6 +127,87 @@ def test_refine():
     bounds[0] = 1e-4
     local = ptriangle.mesh(m.points, m.segments, triangles=m.triangles, triangle_areas=bounds, min_angle=30)
     assert len(m.triangles) < len(local.triangles) < 3000
+
+
+# --- points that no triangle uses
+
+SPARE = np.array([[9, 9], [0, 0], [1, 0], [1, 0], [1, 1], [0.5, 3], [0, 1], [0, 0]], float)
+SPARE_RING = [[1, 3], [2, 4], [4, 6], [6, 7]]
+
+
+@pytest.mark.parametrize("wanted", [dict(min_angle=30, max_area=0.05), dict(max_area=0.05, order=2), {}])
+def test_points_that_no_triangle_uses_are_dropped(wanted):
+    values = SPARE.sum(axis=1)
+    m = ptriangle.mesh(SPARE, SPARE_RING, point_attributes=values, **wanted)
+    assert np.array_equal(np.unique(m.triangles), np.arange(len(m.points)))
+    assert m.input_points.tolist() == [-1, 0, 1, 1, 2, -1, 3, 0]
+    assert np.array_equal(m.points[m.input_points[m.input_points >= 0]], SPARE[m.input_points >= 0])
+    assert np.allclose(m.point_attributes[:, 0], m.points.sum(axis=1)) and len(m.point_markers) == len(m.points)
+    assert m.areas.sum() == pytest.approx(1) and not m.points.flags.writeable
+    ends = np.unique(np.sort(m.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    assert np.array_equal(np.unique(np.sort(m.edges, axis=1), axis=0), ends)
+    assert set(map(frozenset, m.segments.tolist())) == set(map(frozenset, m.boundary.tolist()))
+    again = pickle.loads(pickle.dumps(m))
+    for other in (again, m.refine()):
+        assert np.array_equal(np.sort(other.edges, axis=1), np.sort(m.edges, axis=1))
+        assert np.array_equal(other.input_points, m.input_points)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert m.check()
+
+
+def test_points_that_no_triangle_uses_may_stay():
+    m = ptriangle.mesh(SPARE, SPARE_RING, max_area=0.05, keep_unused=True)
+    assert np.array_equal(m.points[:8], SPARE) and m.input_points.tolist() == [0, 1, 2, 2, 4, 5, 6, 1]
+    with pytest.warns(ptriangle.InputWarning, match=r"check\(\): 4 points are used by no triangle") as caught:
+        assert m.check(max_area=0.05)
+    assert caught[0].filename == __file__
+
+
+def test_numbers_of_the_corners_of_polygons():
+    m = ptriangle.mesh(polygons=[box(0, 0, 1, 1), box(1, 0, 1, 1)], max_area=0.05)
+    assert np.array_equal(np.unique(m.triangles), np.arange(len(m.points)))
+    assert m.input_points.tolist() == [0, 1, 2, 3, 1, 4, 5, 2]
+    union = ptriangle.mesh([[0.5, 0.5], [7, 7]], polygons=[box(0, 0, 1, 1), box(1, 0, 1, 1)], union=True)
+    assert union.input_points.tolist() == [0, -1]
+
+
+def test_crossings_outside_are_dropped():
+    cross = [[5, 5], [6, 6], [5, 6], [6, 5]]
+    m = ptriangle.mesh(np.vstack([PLATE, cross]), np.vstack([RINGS, [[8, 9], [10, 11]]]), holes=[[1.5, 1.5]], min_angle=30)
+    assert m.counts["crossings"] == 1 and np.array_equal(np.unique(m.triangles), np.arange(len(m.points)))
+
+
+# --- measurements
+
+def test_interpolation_of_measurements():
+    generator = np.random.default_rng(7)
+    places = np.vstack([generator.random((3000, 2)) * [4, 3] - 1, generator.normal(1, 1e-5, (500, 2))])
+    m = plate(min_angle=30, max_area=0.01)
+    depths = m.interpolate(places, 3 * places[:, 0] - 2 * places[:, 1] + 5)
+    plane = 3 * m.points[:, 0] - 2 * m.points[:, 1] + 5
+    inside = np.all((m.points < 1.9) & (m.points > -0.9), axis=1)
+    assert depths.shape == (len(m.points),) and np.allclose(depths[inside], plane[inside])
+    two = m.interpolate(places, np.column_stack([places, places[:, :1] ** 2]), outside=np.nan)
+    assert two.shape == (len(m.points), 3) and np.isnan(two[m.points[:, 0] == 4]).all()
+    assert np.allclose(two[inside, :2], m.points[inside]) and np.abs(two[inside, 2] - m.points[inside, 0] ** 2).max() < 0.05
+
+
+def test_interpolation_outside_takes_the_nearest_place_of_the_hull():
+    m = ptriangle.mesh(PLATE[:4], RINGS[:4], max_area=0.01, order=2)
+    inner = np.array([[1, 1], [3, 1], [3, 2], [1, 2], [2, 1.5], [2, 1.5]])
+    depths = m.interpolate(inner, inner @ [10, 1])  # the second value at a place counts for nothing
+    assert np.allclose(depths, np.clip(m.points, [1, 1], [3, 2]) @ [10, 1])
+    for places, values in [([[0, 0], [1, 1], [2, 2]], [1, 2, 3]), (inner, [1, 2]), ([[0, 0], [1, 1]], [1, 2])]:
+        with pytest.raises(ptriangle.InputError):
+            m.interpolate(places, values)
+
+
+def test_interpolation_walks_through_flat_triangles():
+    x = np.linspace(0, 4, 400)
+    places = np.vstack([np.column_stack([x, 1e-9 * np.sin(9 * x)]), np.column_stack([x, 3 + 1e-13 * x * x]), [[2, 1.5]]])
+    m = plate(min_angle=30, max_area=0.01)
+    assert np.allclose(m.interpolate(places, places @ [1, 1]), m.points @ [1, 1], atol=1e-8)
 
 
 def test_threads_give_the_same_mesh():

@@ -38,6 +38,47 @@ def test_sizes_that_are_no_lengths(odd):
     assert len(caught) == 1
 
 
+@pytest.mark.parametrize("call", [lambda: ptriangle.mesh(SQUARE, RING, min_angle=40),
+                                  lambda: ptriangle.mesh(SQUARE, RING).refine(min_angle=40)])
+def test_an_angle_that_is_lowered(call):
+    with pytest.warns(ptriangle.IgnoredWarning, match="an angle bound of 40 degrees is above 38") as caught:
+        call()
+    assert len(caught) == 1 and caught[0].filename == __file__
+
+
+def ring(x, y, width, height):
+    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
+
+
+@pytest.mark.parametrize("polygons, even_odd, union, words", [
+    ([[ring(0, 0, 1, 1), ring(5, 0, 1, 1)]], 2, 1, "the rings are not those of a valid polygon"),
+    ([[ring(-1, -1, 10, 10), ring(0, 0, 2, 2), ring(1, 1, 2, 2)]], 94, 93, "the rings are not those of a valid"),
+    ([[[[0, 0], [2, 2], [2, 0], [0, 2]]]], 2, 2, "the rings are not those of a valid"),
+    ([ring(0, 0, 4, 4), ring(1, 1, 2, 2)], 12, 16, "polygon 1 lies in polygon 0 .* by the even-odd rule"),
+    ([ring(1, 1, 2, 2), [ring(0, 0, 4, 4)]], 12, 16, "polygon 0 lies in polygon 1"),
+    ([ring(0, 0, 2, 2), ring(1, 0, 2, 2)], 4, 6, "polygons overlap, or their rings")])
+def test_polygons_that_overlap_or_are_not_valid(polygons, even_odd, union, words):
+    with pytest.warns(ptriangle.InputWarning, match=words) as caught:
+        m = ptriangle.mesh(polygons=polygons, min_angle=20)
+    assert len(caught) == 1 and caught[0].filename == __file__ and m.areas.sum() == pytest.approx(even_odd)
+    geometry = {"type": "GeometryCollection", "geometries": [
+        {"type": "Polygon", "coordinates": rings if np.ndim(rings[0]) == 2 else [rings]} for rings in polygons]}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for given in (polygons, geometry):
+            assert ptriangle.mesh(polygons=given, union=True).areas.sum() == pytest.approx(union)
+
+
+def test_polygons_that_are_fine():
+    far = np.array([500000, 5600000])
+    cells = [far + np.array(ring(x, y, 1, 1)) / 3 for x in range(20) for y in range(20)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ptriangle.mesh(polygons=cells, min_angle=20)
+        ptriangle.mesh(polygons=[[ring(0, 0, 8, 8), ring(1, 1, 3, 3), ring(5, 5, 1, 1)], ring(2, 2, 1, 1)], max_area=0.1)
+        ptriangle.mesh(SQUARE, RING, polygons=[ring(1, 1, 1, 1)])
+
+
 def test_silence():
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -53,7 +53,11 @@ def test_unknown_keywords(call, words):
 @pytest.mark.parametrize("wanted, words", [
     (dict(min_angle=-1), r"^mesh\(\): min_angle is -1"), (dict(min_angle="big"), r"^mesh\(\): min_angle is 'big'"),
     (dict(size=0), r"^mesh\(\): size"), (dict(order=3), r"^mesh\(\): order is 3"),
-    (dict(protect=0.5), "protect is 0.5"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"),
+    (dict(protect=0.5), "protect is 0.5"), (dict(protect=np.inf), "protect is inf instead of a whole"),
+    (dict(protect=np.nan), "protect is nan instead of a whole"), (dict(protect=1 << 32), "protect is 4294967296: beyond"),
+    (dict(threads=(1 << 32) + 1), "threads is 4294967297: beyond"), (dict(max_new_points=10 ** 400), "max_new_points is"),
+    (dict(max_new_points=1 << 63), "max_new_points is 9223372036854775808: beyond"), (dict(min_angle=np.nan), "is nan"),
+    (dict(max_area=10 ** 400), "max_area is 1000"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"),
     (dict(union=True), "union"),
     (dict(regions=[[1, 2]]), r"^mesh\(\): regions: shape \(1, 2\)"), (dict(segment_markers="x"), "segment_markers")])
 def test_errors_name_function_and_argument(wanted, words):
@@ -170,7 +174,8 @@ def test_union():
     m = ptriangle.mesh(polygons=OVERLAPPING, union=True, min_angle=30)
     assert m.areas.sum() == pytest.approx(UNION) and m.check(min_angle=30)
     assert len(m.boundary) == len(m.segments)  # borders inside have vanished
-    odd = ptriangle.mesh(polygons=OVERLAPPING)
+    with pytest.warns(ptriangle.InputWarning, match="polygon 4 lies in polygon 0"):
+        odd = ptriangle.mesh(polygons=OVERLAPPING)
     assert odd.areas.sum() == pytest.approx(16 + 16 - 8 + 3 - 2 + 1 - 1)
     holed = [[box(0, 0, 8, 8), box(2, 2, 4, 4)], [box(3, 3, 1, 1), box(3.25, 3.25, 0.5, 0.5)], box(1, 4, 2, 1)]
     assert ptriangle.mesh(polygons=holed, union=True).areas.sum() == pytest.approx(48 + 0.75 + 1)
@@ -234,6 +239,8 @@ def test_suffixes_that_do_not_exist(tmp_path):
         with pytest.raises(ptriangle.InputError, match=r"write\(\): .*\.vtu, \.msh, \.2dm"):
             m.write(tmp_path / name)
     assert os.listdir(tmp_path) == []
+    with pytest.raises(ptriangle.InputError, match="first is 4294967296: beyond"):
+        m.write(tmp_path / "run.1", first=1 << 32)
     m.write(tmp_path / "run.1")
     assert sorted(os.listdir(tmp_path)) == ["run.1.ele", "run.1.node", "run.1.poly"]
     with pytest.raises(ptriangle.FileError, match=r"read\(\): .*cannot read '.geojson' files, but .*\.poly.*polygons="):
@@ -249,7 +256,10 @@ def test_meshio(order, tmp_path):
     m.to_meshio().write(tmp_path / "plate.vtu")
     read = meshio.read(tmp_path / "plate.vtu")
     assert np.array_equal(read.cells[0].data, m.triangles) and np.array_equal(read.points[:, :2], m.points)
-    assert read.cells[0].type == ("triangle", "triangle6")[order - 1] and set(read.cell_data["attribute 0"][0]) == {7}
+    assert read.cells[0].type == ("triangle", "triangle6")[order - 1] and set(read.cell_data["attribute_0"][0]) == {7}
+    m.to_meshio().write(tmp_path / "plate.vtk")
+    legacy = meshio.read(tmp_path / "plate.vtk")
+    assert set(legacy.cell_data["attribute_0"][0].ravel()) == {7} and len(legacy.points) == len(m.points)
 
 
 @pytest.mark.parametrize("suffix", [".vtu", ".msh", ".ele", ".14", ".h5"])

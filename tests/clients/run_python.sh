@@ -77,3 +77,4 @@ sed -i 's|#include "triangle.h"|#define REAL double\n&\ntypedef REAL *vertex;|' 
 must_pip install --no-deps --no-build-isolation --no-cache-dir --force-reinstall .
 cd "$work/run"
 "$python" -B -m pytest -q -p no:cacheprovider -k "triangle or point_attributes" "$work/meshpy/test/test_meshpy.py"
+"$python" -B -m pytest -q -p no:cacheprovider "$here/meshpy_triangle.py"

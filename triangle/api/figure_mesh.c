@@ -13,6 +13,7 @@
 #include "triangle/api/figure.h"
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
+#include "triangle/tunables.h"
 
 /* --- settings */
 
@@ -144,10 +145,15 @@ static void add_note(struct tri_api_mesh *m, const char *note)
 
 static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
 {
+    char lowered[100];
     m->notes[0] = 0;
     add_note(m, m->report.notes.empty);
     add_note(m, m->report.notes.skipped);
     add_note(m, m->odd_length);
+    snprintf(lowered, sizeof lowered, "an angle bound of %g degrees is above %g: triangles are made for %g",
+             s->min_angle, TRI_USUAL_ANGLE, TRI_USUAL_ANGLE);
+    if (s->min_angle > TRI_USUAL_ANGLE)
+        add_note(m, lowered);
     if (s->note && m->notes[0])
         s->note(s->note_user, m->notes);
 }

@@ -57,13 +57,16 @@ static bool is_stopped(void *user)
 
 /* --- messages */
 
+/* Errors, and remarks on input that was hardly meant so. Q keeps these remarks off standard error alone. */
 static void tell(const struct io_run *run, bool is_error, const char *text)
 {
     if (run->options->message)
         run->options->message(run->options->message_user, is_error, text);
-    if (run->aloud && !run->switches->quiet)
+    if (run->aloud && (is_error || !run->switches->quiet))
         tri_io_print(text);
 }
+
+static void tell_remark(const struct io_run *run, const char *text) { tell(run, false, text); }
 
 static void warn(const struct io_run *run, const char *text)
 {
@@ -71,14 +74,13 @@ static void warn(const struct io_run *run, const char *text)
         run->options->message(run->options->message_user, 0, text);
 }
 
-/* The reason why a mesh is empty is told to a function also if quiet. */
 static void tell_notes(const struct io_run *run)
 {
     const struct tri_notes *notes = &run->report.notes;
     if (notes->skipped[0] && !run->switches->quiet)
-        tell(run, false, notes->skipped);
+        tell_remark(run, notes->skipped);
     if (notes->empty[0])
-        tell(run, false, notes->empty);
+        tell_remark(run, notes->empty);
 }
 
 static void warn_number(const struct io_run *run, int n, const char *what)
@@ -91,8 +93,7 @@ static void warn_number(const struct io_run *run, int n, const char *what)
 
 static void warn_of_switch(void *user, const char *text, bool misread)
 {
-    (void)misread;
-    warn(user, text);
+    (misread ? tell_remark : warn)(user, text);
 }
 
 static void warn_of_input(const struct io_run *run)
@@ -108,14 +109,6 @@ static void warn_of_input(const struct io_run *run)
 }
 
 /* --- stages */
-
-static enum tri_status check_switches(const struct tri_switches *s, const struct triangulateio *vorout,
-                                      struct tri_error *error)
-{
-    if (s->voronoi && !vorout)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "switch v: there is no struct for the Voronoi diagram");
-    return tri_switches_check(s, error);
-}
 
 static enum tri_status run_stages(struct io_run *run, const struct triangulateio *in)
 {
@@ -139,7 +132,7 @@ static enum tri_status run_stages(struct io_run *run, const struct triangulateio
 static enum tri_status run_all(struct io_run *run, const struct triangulateio *in, struct triangulateio *out,
                                struct triangulateio *vorout)
 {
-    enum tri_status status = check_switches(run->switches, vorout, run->error);
+    enum tri_status status = tri_switches_check(run->switches, run->error);
     status = status ? status : run_stages(run, in);
     if (!status)
         status = tri_io_output(&run->mesh, &run->input, run->switches, in, out, vorout, run->error);
@@ -166,6 +159,8 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     enum tri_status status;
     options = options ? options : &none;
     tri_switches_add(&s, switches ? switches : "");
+    const bool no_diagram = s.voronoi && !vorout;
+    s.voronoi = s.voronoi && vorout;
     struct io_run run = {.switches = &s, .options = options, .aloud = aloud, .how = tri_switches_options(&s),
                          .error = &error};
     const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
@@ -183,5 +178,7 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
         zero_counts(vorout);
     if (status)
         tell(&run, true, error.text);
+    else if (no_diagram)
+        tell_remark(&run, "switch v: there is no struct for the Voronoi diagram");
     return (int)status;
 }

@@ -112,18 +112,23 @@ static void take_points(struct taking *t)
     pslg->markers = in->pointmarkerlist;
 }
 
+/* A count that clients of Triangle may leave negative: no items. */
+static int count_of(int given) { return given > 0 ? given : 0; }
+
 static void take_holes(struct taking *t)
 {
-    check(t, "holes", t->in->numberofholes, t->in->holelist);
-    t->input->pslg.n_holes = t->in->numberofholes;
-    t->input->pslg.holes = take_reals(t, t->in->holelist, t->in->numberofholes, 2);
+    const int n = count_of(t->in->numberofholes);
+    check(t, "holes", n, t->in->holelist);
+    t->input->pslg.n_holes = n;
+    t->input->pslg.holes = take_reals(t, t->in->holelist, n, 2);
 }
 
 static void take_regions(struct taking *t)
 {
-    check(t, "regions", t->in->numberofregions, t->in->regionlist);
-    t->input->pslg.n_regions = t->in->numberofregions;
-    t->input->pslg.regions = take_reals(t, t->in->regionlist, t->in->numberofregions, 4);
+    const int n = count_of(t->in->numberofregions);
+    check(t, "regions", n, t->in->regionlist);
+    t->input->pslg.n_regions = n;
+    t->input->pslg.regions = take_reals(t, t->in->regionlist, n, 4);
 }
 
 /* Corners, and the nodes amid edges apart from them. */
@@ -149,13 +154,11 @@ static void take_triangles(struct taking *t, bool with_areas)
     const int n = in->numberoftriangles;
     elements->n = n;
     elements->n_nodes = in->numberofcorners;
-    elements->n_attributes = in->numberoftriangleattributes;
+    elements->n_attributes = count_of(in->numberoftriangleattributes);
     check(t, "triangles", n, in->trianglelist);
     if (!t->status && elements->n_nodes != 3 && elements->n_nodes != 6)
         t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "triangles with %d corners", in->numberofcorners);
     check(t, "attributes of a triangle", elements->n_attributes, in->triangleattributelist);
-    if (with_areas)
-        check(t, "triangles, but area bounds", n, in->trianglearealist);
     take_nodes(t);
     elements->attributes = take_reals(t, in->triangleattributelist, n, elements->n_attributes);
     elements->areas = with_areas ? take_reals(t, in->trianglearealist, n, 1) : NULL;

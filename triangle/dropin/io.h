@@ -24,8 +24,9 @@ struct tri_io_input {
     int n_copies;
 };
 
-/* Reads what the switches select. TRI_BAD_INPUT: a negative count, a count without an array; with r, a
- * segment that names no point. *input is valid until `in` changes; to be freed in any case. O(input). */
+/* Reads what the switches select. TRI_BAD_INPUT: a negative count of points, of their attributes, of segments or of
+ * triangles; a count without an array; with r, a segment that names no point. *input is valid until `in` changes. Free
+ * it in any case. O(input). */
 enum tri_status tri_io_input_make(struct tri_io_input *input, const struct triangulateio *in,
                                   const struct tri_switches *switches, struct tri_error *error);
 void tri_io_input_free(struct tri_io_input *input);

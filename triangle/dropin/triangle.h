@@ -16,10 +16,15 @@
 
 /* ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error nothing
  * is allocated, no array is changed, and all counts in *out and *vorout are 0, so that a client that does not ask sees
- * no mesh; only an *out that is *in stays as it was. The words that go with the error are told to options->message.
- * Since old clients do not ask, triangulate() writes them as one line to standard error, unless the switches have Q. It
- * writes a line, too, where a mesh is empty without an error ("the outline is open at points 3 and 17"), and where
- * segments are skipped. It prints nothing else, triangulate_with() nothing at all. */
+ * no mesh; only an *out that is *in stays as it was. options->message receives the text of the error. Old clients ask
+ * for no status, so triangulate() prints this text as one line on standard error, also with the switch Q. Without Q it
+ * prints a line in four more cases: a mesh is empty without an error ("the outline is open at points 3 and 17"),
+ * segments are skipped, a number of a switch is misread (a1e-5 is a1 and e), v has no vorout. It prints nothing else;
+ * triangulate_with() prints nothing.
+ *
+ * Input that Triangle's library accepts, or on which it crashes although the meaning is plain, is no error: negative
+ * counts of holes, regions and attributes of triangles (none), r with a bare `a` but without trianglearealist (no
+ * bounds), v without vorout (no diagram). */
 
 #ifndef TRI_REAL
 #ifdef SINGLE
@@ -62,7 +67,7 @@ struct triangulateio {
     int *trianglelist;          /* corners counter-clockwise; with o2 then the middles of the edges opposite to them:
                                    r | !E */
     TRI_REAL *triangleattributelist; /* if there are attributes: r | !E */
-    TRI_REAL *trianglearealist; /* largest areas, <= 0: any: ra (a without number) | never */
+    TRI_REAL *trianglearealist; /* largest areas, <= 0: any; NULL: any: ra (a without number) | never */
     int *neighborlist;          /* triangles opposite the corners: never | n */
     int numberoftriangles;      /* r */
     int numberofcorners;        /* r: 3 or 6; others than the first three are left out */
@@ -92,8 +97,8 @@ enum triangulate_status {
     TRIANGULATE_STOPPED = 8    /* options->stop said so */
 };
 
-/* Triangulates `in` as the string of switches says. vorout receives the Voronoi diagram (v); without v it may be NULL,
- * else its counts are written. */
+/* Triangulates `in` as the string of switches says. vorout receives the Voronoi diagram (v). It may be NULL: then there
+ * is no diagram. Otherwise its counts are written, also without v. */
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
                 struct triangulateio *vorout);
 
@@ -116,9 +121,9 @@ struct triangulate_options {
                                    answers must not depend on order; it is then also asked about triangles that are
                                    never made. Else u means one thread */
     int threads;                /* of libptriangle; <= 0: OMP_NUM_THREADS, else one for each core */
-    /* Told of the error in one sentence, without newline; with is_error 0 why a mesh is empty, and, unless the switches
-     * have Q, what is odd about the input: duplicate points, segments that name no point and so on. Called by the
-     * calling thread. */
+    /* Called on the calling thread with one sentence, without newline. With is_error it is the error. Otherwise it is
+     * a remark on the input. With the switch Q only these remarks remain: why a mesh is empty, which number of a switch
+     * is misread, that v has no vorout. */
     void (*message)(void *user, int is_error, const char *text);
     void *message_user;
     /* Not 0: the call ends soon, with TRIANGULATE_STOPPED. Asked every few thousand steps, by several threads at once;
