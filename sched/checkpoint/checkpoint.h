@@ -6,8 +6,8 @@
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
- * that are whole on the disk. For a state is written into a new file, which gets the name that the manifest does not name;
- * tiles and state are synced, and then a new manifest takes the name of the old one.
+ * that are whole on the disk. For a state is written into a new file, which then gets the name that the manifest does
+ * not name; tiles and state are synced, and then a new manifest takes the name of the old one.
  *
  * WHOSE FILES: the directory may hold other files. A manifest is made before any of the files above, and removed after
  * them: with one, files of these names are a run's; where there are some without one they are somebody else's, and the
