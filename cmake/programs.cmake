@@ -81,7 +81,8 @@ function(ptriangle_program_of_parts name)
         ptriangle_static_runtime(${name}_module)
         target_link_libraries(${name}_module PRIVATE libtrihdf5)
         target_link_options(${name}_module PRIVATE -Wl,--exclude-libs,ALL) # the runtime inside is for itself alone
-        target_compile_definitions(${name} PRIVATE PTRIANGLE_MODULE="${PTRIANGLE_MODULE_DIR}/${output}.so")
+        target_compile_definitions(${name} PRIVATE PTRIANGLE_MODULE_FOLDER="${PTRIANGLE_MODULE_DIR}"
+            PTRIANGLE_MODULE="${PTRIANGLE_MODULE_DIR}/${output}.so")
         target_link_libraries(${name} PRIVATE libtrinohdf5 ${CMAKE_DL_LIBS})
         add_dependencies(${name} ${name}_module)
         set_property(GLOBAL APPEND PROPERTY PTRIANGLE_MODULE_TARGETS ${name}_module)

@@ -386,6 +386,12 @@ void interrupt_kept(int64_t triangles, const char *command)
     atomic_store(&go_on, command);
 }
 
+void interrupt_time_up(void)
+{
+    if (who_asked() == NOBODY)
+        ask(TIME_UP);
+}
+
 void interrupt_tell(void) { hold(); }
 
 void interrupt_told(void)
@@ -415,10 +421,12 @@ enum tri_status interrupt_open(struct tri_output_set *set, const char *path, str
     return status;
 }
 
-enum tri_status interrupt_commit(struct tri_output_set *set, struct tri_error *error)
+enum tri_status interrupt_commit(struct tri_output_set *set, bool sync, struct tri_error *error)
 {
+    enum tri_status status = sync ? tri_outputs_sync(set, error) : TRI_OK; /* handlers do not wait for a slow disk */
     hold();
-    enum tri_status status = tri_outputs_commit(set, error);
+    status = status ? status : tri_outputs_commit(set, error);
+    tri_outputs_abort(set);
     publish(set);
     if (!status)
         set_unless(DONE, 0);

@@ -39,6 +39,9 @@ int64_t interrupt_reached_now(const char **what);
  * the program. Until this is called nothing is said of checkpoints. */
 void interrupt_kept(int64_t triangles, const char *go_on);
 
+/* From now on the limit of time counts as over. */
+void interrupt_time_up(void);
+
 /* What a stop without a mesh says of files: "nothing was written". */
 const char *interrupt_written(void);
 
@@ -71,8 +74,8 @@ void interrupt_begin(struct tri_output_set *set);
 enum tri_status interrupt_open(struct tri_output_set *set, const char *path, struct tri_output **output,
                                struct tri_error *error);
 
-/* Commits the guarded set, or aborts it, while handlers wait. */
-enum tri_status interrupt_commit(struct tri_output_set *set, struct tri_error *error);
+/* Commits the guarded set, or aborts it, while handlers wait; sync: once its files are on the disk. */
+enum tri_status interrupt_commit(struct tri_output_set *set, bool sync, struct tri_error *error);
 void interrupt_drop(struct tri_output_set *set);
 
 #endif

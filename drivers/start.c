@@ -10,12 +10,15 @@ int main(int argc, char **argv)
     return program_main(argc, argv);
 }
 
-#else /* its path from the folder of the executable */
+#else /* its path from the folder of the executable, as PTRIANGLE_MODULE_FOLDER */
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "triangle/text/names.h"
 
@@ -28,18 +31,19 @@ static bool needs_module(int argc, char **argv)
     return needed;
 }
 
-/* Beside the executable itself, by whatever links it was found; false: the system does not tell where that is. */
-static bool module_path(char path[OWN_PATH])
+/* A name as seen from the folder of the executable, by whatever links that was found; false: the system does not tell
+ * where it is. */
+static bool place_of(char path[OWN_PATH], const char *name)
 {
-    if (!own_path(path) || strlen(path) + sizeof "/" PTRIANGLE_MODULE > OWN_PATH)
+    if (!own_path(path) || strlen(path) + strlen(name) + 1 > OWN_PATH)
         return false;
-    strcpy(strrchr(path, '/') + 1, PTRIANGLE_MODULE);
+    strcpy(strrchr(path, '/') + 1, name);
     return true;
 }
 
-static int complain(const char *what)
+static int complain(const char *path, const char *why)
 {
-    fprintf(stderr, "%s: the module for MPI and HDF5 cannot be loaded: %s\n", PTRIANGLE_NAME, what);
+    fprintf(stderr, "%s: the module for MPI and HDF5 cannot be loaded: %s: %s\n", PTRIANGLE_NAME, path, why);
     return program_trouble;
 }
 
@@ -50,13 +54,27 @@ static int complain_of_version(const char *path, const char *version)
     return program_trouble;
 }
 
+/* A user may link another's program into a folder of their own, with a module of their own beside it: whoever starts
+ * the program there must not run that module. Does the file or folder belong to the administrator, to the program's
+ * owner or to this user? path receives its path. False: errno says why; EPERM: it does not. */
+static bool is_trusted(const char *name, char path[OWN_PATH])
+{
+    struct stat program, at;
+    if (!place_of(path, name) || stat("/proc/self/exe", &program) != 0 || stat(path, &at) != 0)
+        return false;
+    errno = EPERM;
+    return at.st_uid == 0 || at.st_uid == program.st_uid || at.st_uid == geteuid();
+}
+
 /* Its symbols are for all, since an MPI loads parts of its own that look for those of others. It stays: what it brings
  * along leaves threads and handlers behind. */
 static int run_module(int argc, char **argv)
 {
     char path[OWN_PATH];
-    if (!module_path(path))
-        return complain("/proc/self/exe does not tell where this program is");
+    if (!place_of(path, PTRIANGLE_MODULE))
+        return complain("/proc/self/exe", "does not tell where this program is");
+    if (!is_trusted(".", path) || !is_trusted(PTRIANGLE_MODULE_FOLDER, path) || !is_trusted(PTRIANGLE_MODULE, path))
+        return complain(path, errno == EPERM ? "belongs neither to root nor to the program's owner" : strerror(errno));
     void *module = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
     const char *version = module ? dlsym(module, "program_version") : NULL;
     if (version && strcmp(version, program_version) != 0)
@@ -64,7 +82,7 @@ static int run_module(int argc, char **argv)
     int (*begin)(int, char **) = NULL;
     if (version)
         *(void **)&begin = dlsym(module, "program_main");
-    return begin ? begin(argc, argv) : complain(dlerror());
+    return begin ? begin(argc, argv) : complain(path, dlerror());
 }
 
 int main(int argc, char **argv)

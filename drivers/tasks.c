@@ -1,5 +1,6 @@
 #include "drivers/tasks.h"
 
+#include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,10 +15,13 @@ bool own_path(char path[OWN_PATH])
     return whole;
 }
 
-static long number_of(const char *name)
+/* A whole number that the variable holds; -1: none, or one that no count of tasks is. */
+static int number_of(const char *name)
 {
     const char *text = getenv(name);
-    return text ? strtol(text, NULL, 10) : -1;
+    char *end = NULL;
+    const long long number = text ? strtoll(text, &end, 10) : -1;
+    return end && end != text && *end == '\0' && number >= 0 && number <= INT_MAX ? (int)number : -1;
 }
 
 /* The variables of OpenMPI, of MPICH and its kin, of a step of SLURM. */
@@ -28,8 +32,8 @@ int tasks_started(int *task)
 {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (number_of(sizes[i]) > 1) {
-            *task = number_of(ranks[i]) > 0 ? (int)number_of(ranks[i]) : 0;
-            return (int)number_of(sizes[i]);
+            *task = number_of(ranks[i]) > 0 ? number_of(ranks[i]) : 0;
+            return number_of(sizes[i]);
         }
     *task = 0;
     return 1;

@@ -7,12 +7,16 @@
 #include <errno.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "allocations.h"
 #include "sched/schedule/schedule.h"
-#include "sched/checkpoint/checkpoint.h"
+#include "sched/checkpoint/state.h"
+#include "sched/tunables.h"
+#include "triangle/base/clock.h"
 #include "trials.h"
 
 static const char DIRECTORY[] = "state";
@@ -472,10 +476,12 @@ static void count_phases(void *user, const struct par_place *place)
     r->told += place->done == 0;
 }
 
+static bool time_is_up; /* the checkpoint has said so */
+
 static bool is_told_enough(void *user)
 {
     struct whole_run *r = user;
-    return r->told >= r->most_told || (r->most_asked > 0 && ++r->asked > r->most_asked);
+    return time_is_up || r->told >= r->most_told || (r->most_asked > 0 && ++r->asked > r->most_asked);
 }
 
 static uint64_t hash_of_mesh(const struct tri_mesh *m)
@@ -680,9 +686,125 @@ static void test_a_sweep_is_not_taken_for_a_whole(void **state)
     par_checkpoint_close(&c, true);
 }
 
+/* Seconds before a limit, by what the last state took. */
+static void test_the_last_state_begins_in_time(void **state)
+{
+    (void)state;
+    struct par_checkpoint c = par_checkpoint_closed(DIRECTORY);
+    c.seconds = 600;
+    assert_false(par_state_is_due(&c, 599, 1e6));
+    assert_true(par_state_is_due(&c, 601, 1e6));
+    c.limit = 100;
+    assert_false(par_state_is_due(&c, 0.9, 1e6)); /* the first measures the disk */
+    assert_true(par_state_is_due(&c, 1.1, 1e6));
+    assert_false(par_state_is_last(&c, 99, 1e6));
+    c.last = c.saved = 12;
+    c.cost = c.writing = 2;
+    c.size = 1e6;
+    assert_false(par_state_is_due(&c, 95.9, 1e6));
+    assert_true(par_state_is_due(&c, 96.1, 1e6) && par_state_is_last(&c, 96.1, 1e6));
+    assert_false(par_state_is_last(&c, 87.9, 3e6));
+    assert_true(par_state_is_last(&c, 88.1, 3e6));
+    c.writing = 0.5; /* the rest goes into what does not grow */
+    assert_false(par_state_is_last(&c, 93.9, 3e6));
+    assert_true(par_state_is_last(&c, 94.1, 3e6));
+    assert_true(par_state_is_last(&c, 96.1, 1)); /* it is not taken to be quicker than the last */
+    c.limit = 0;
+    assert_false(par_state_is_last(&c, 1e9, 1e6));
+}
+
+/* A run on a clock of its own: so many triangles a second, which take so many seconds each on the disk; the last state
+ * takes `slower` times as long. Returns when it is stopped, and *kept of its triangles. */
+static double run_on_paper(double limit, double rate, double each, double slower, double *kept)
+{
+    struct par_checkpoint c = par_checkpoint_closed(DIRECTORY);
+    double now = 0, triangles = 0;
+    c.seconds = 600;
+    c.limit = limit;
+    for (bool is_over = false; !is_over; now += 0.1, triangles += 0.1 * rate) {
+        const bool is_last = par_state_is_last(&c, now, triangles);
+        if (!is_last && (!par_state_is_due(&c, now, triangles) || now - c.last < PAR_STATE_REST * c.cost))
+            continue;
+        c.cost = c.writing = each * triangles * (is_last ? slower : 1);
+        c.size = *kept = triangles;
+        c.last = now += c.cost;
+        c.saved++;
+        is_over = par_state_is_last(&c, now, triangles);
+    }
+    return now;
+}
+
+/* Disks from 10 MB/s to 1 GB/s, at 80 bytes a triangle. */
+static void test_the_last_state_is_whole_before_the_limit(void **state)
+{
+    (void)state;
+    for (double limit = 5; limit < 8000; limit *= 3)
+        for (double speed = 1e7; speed <= 1e9; speed *= 4)
+            for (double rate = 1e5; rate <= 4e6; rate *= 6)
+                for (double slower = 1; slower < 2; slower += 0.4) {
+                    double kept = 0;
+                    const double end = run_on_paper(limit, rate, 80 / speed, slower, &kept);
+                    assert_true(kept > 0 && end <= limit + 2); /* the program waits for 3 */
+                    assert_true(end >= limit / 4);
+                }
+}
+
+static void note_time(void) { time_is_up = true; }
+
+/* Where the limit is over when the run begins, the first state is the last. */
+static void test_a_limit_ends_the_run_with_a_state(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_WAYS; i++) {
+        struct whole_run wanted = whole_run_of(&ways[i], NULL);
+        assert_int_equal(refine_whole(&wanted), TRI_OK);
+        struct par_checkpoint c;
+        remove_all();
+        open_it(&c, false);
+        c.limit = tri_seconds();
+        c.time_up = note_time;
+        struct whole_run r = whole_run_of(&ways[i], &c);
+        assert_int_equal(refine_whole(&r), TRI_STOPPED);
+        assert_true(time_is_up && c.saved == 1 && par_checkpoint_has_state(&c));
+        time_is_up = false;
+        par_checkpoint_close(&c, false);
+        open_it(&c, true);
+        r = whole_run_of(&ways[i], &c);
+        assert_int_equal(refine_whole(&r), TRI_OK);
+        assert_true(r.hash == wanted.hash);
+        par_checkpoint_close(&c, true);
+    }
+}
+
+/* A state that finds no room on the disk leaves nothing there. */
+static void test_a_failed_state_leaves_nothing(void **state)
+{
+    (void)state;
+    const struct rlimit limit = {1 << 16, RLIM_INFINITY};
+    struct rlimit before;
+    struct par_checkpoint c;
+    remove_all();
+    open_it(&c, false);
+    c.seconds = 0;
+    struct whole_run r = whole_run_of(&ways[0], &c);
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const enum tri_status status = refine_whole(&r);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(status, TRI_CANNOT_WRITE);
+    assert_false(par_checkpoint_has_state(&c));
+    assert_false(has_file("state-0") || has_file("state-1"));
+    par_checkpoint_close(&c, true);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_last_state_begins_in_time),
+        cmocka_unit_test(test_the_last_state_is_whole_before_the_limit),
+        cmocka_unit_test(test_a_limit_ends_the_run_with_a_state),
+        cmocka_unit_test(test_a_failed_state_leaves_nothing),
         cmocka_unit_test(test_stopped_at_any_time),
         cmocka_unit_test(test_nobody_takes_tiles),
         cmocka_unit_test(test_other_runs_are_refused),

@@ -43,6 +43,9 @@ static void test_both_forms(void **state)
     char name[] = "--output=a=b";
     assert_int_equal(take(&t, name, NULL), TRI_OK);
     assert_string_equal(t.options.output, "a=b");
+    assert_false(t.options.no_sync);
+    assert_int_equal(TAKE_ALONE(&t, "--no-sync"), TRI_OK);
+    assert_true(t.options.no_sync);
     assert_int_equal(TAKE_ALONE(&t, "--no-progress"), TRI_OK);
     assert_int_equal(t.options.progress, PROGRESS_NO);
     assert_int_equal(TAKE(&t, "--progress", "letter"), TRI_OK);

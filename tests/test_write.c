@@ -581,6 +581,78 @@ static void too_many_outputs(void **state)
     assert_int_equal(empty_directory(), TRI_MAX_OUTPUTS);
 }
 
+/* What happens to files, in its order: 's' one is synced, 'd' a folder is, 'r' one gets its name. These take the place
+ * of those of the C library. */
+static char events[64];
+
+static void note_event(char event)
+{
+    const size_t n = strlen(events);
+    if (n + 1 < sizeof events)
+        events[n] = event;
+}
+
+int fsync(int file)
+{
+    struct stat status;
+    note_event(fstat(file, &status) == 0 && S_ISDIR(status.st_mode) ? 'd' : 's');
+    return 0;
+}
+
+int rename(const char *from, const char *to)
+{
+    note_event('r');
+    return renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
+
+/* Two files, the first of so many bytes. */
+static const char *events_of(uint64_t bytes, bool sync)
+{
+    struct tri_output_set set;
+    struct tri_output *output = open_one(&set, in_directory("a"));
+    put_text(output, "a");
+    assert_int_equal(ftruncate(output->file, (off_t)bytes), 0);
+    assert_int_equal(tri_output_open(&set, in_directory("b"), &output, NULL), TRI_OK);
+    put_text(output, "b");
+    memset(events, 0, sizeof events);
+    if (sync)
+        assert_int_equal(tri_outputs_sync(&set, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_int_equal(empty_directory(), 2);
+    return events;
+}
+
+/* A name never means a file that is not on the disk, if that is asked for, and the files are not small. */
+static void files_are_synced_before_they_get_their_names(void **state)
+{
+    (void)state;
+    assert_string_equal(events_of(TRI_WAITED_FOR, true), "ssrrd");
+    assert_string_equal(events_of(TRI_WAITED_FOR, false), "rr");
+    assert_string_equal(events_of(1000, true), "rr");
+}
+
+static bool always(void *user)
+{
+    (void)user;
+    return true;
+}
+
+/* Whoever asks for the end does not wait for the disk. */
+static void syncing_is_stopped(void **state)
+{
+    (void)state;
+    const struct tri_stop stop = {always, NULL};
+    struct tri_output_set set;
+    struct tri_output *output = open_one(&set, in_directory("a"));
+    assert_int_equal(ftruncate(output->file, TRI_WAITED_FOR), 0);
+    output->stop = &stop;
+    memset(events, 0, sizeof events);
+    assert_int_equal(tri_outputs_sync(&set, NULL), TRI_STOPPED);
+    assert_string_equal(events, "");
+    tri_outputs_abort(&set);
+    assert_int_equal(empty_directory(), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -601,6 +673,8 @@ int main(void)
         cmocka_unit_test(devices_are_written_in_place),
         cmocka_unit_test(full_disk_leaves_old_files),
         cmocka_unit_test(too_many_outputs),
+        cmocka_unit_test(files_are_synced_before_they_get_their_names),
+        cmocka_unit_test(syncing_is_stopped),
     };
     return cmocka_run_group_tests(tests, set_up, remove_directory);
 }

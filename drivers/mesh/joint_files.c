@@ -210,22 +210,14 @@ static enum tri_status put_texts(struct joint_files *j, enum tri_status status, 
     return status;
 }
 
-static bool has_chunks(const struct tri_h5_layout *layout)
-{
-    bool some = false;
-    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
-        some = some || layout->array[kind].n > 1;
-    return some;
-}
-
-/* Large ones are worth hours: they are on the disk before they have their name. */
+/* What may be waited for when files get their names is on the disk before: each machine writes back its own rows. */
 static enum tri_status leave_all(struct joint_files *j, struct tri_error *error)
 {
+    enum { MOST_BYTES = 128 }; /* of a triangle and its share of vertices, without attributes */
+    const bool on_disk = !j->no_sync && j->total[1] >= TRI_WAITED_FOR / MOST_BYTES;
     enum tri_status status = TRI_OK;
-    for (int i = 0; i < JOINT_FILES && !status; i++) {
-        const bool is_large = i >= JOINT_TEXTS && has_chunks(&j->h5[i - JOINT_TEXTS].layout);
-        status = tri_output_leave(&j->file[i], is_large, error);
-    }
+    for (int i = 0; i < JOINT_FILES && !status; i++)
+        status = tri_output_leave(&j->file[i], on_disk, error);
     return status;
 }
 

@@ -24,6 +24,7 @@ enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };
 struct joint_files {
     struct par_carrier *carrier;
     const char *scratch;
+    bool no_sync;                         /* files get their names without a look at the disk */
     const struct tri_stop *stop;          /* of what other ranks than the first one write */
     struct tri_text_options text_options; /* its three outputs on rank 0 alone */
     struct tri_sink text;                 /* rank 0: that of these files, if there are any */

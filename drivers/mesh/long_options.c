@@ -42,13 +42,16 @@ const char long_options_help[] =
     "  --checkpoint DIR   a run keeps in this folder what it needs to go on after it was stopped or killed; at\n"
     "                     the end its files are removed. Before the schedule it starts over\n"
     "  --every MINUTES    the time between two checkpoints (10), 0: after each step: a phase, or a column of a\n"
-    "                     mesh that is swept. A signal that ends the run, and --time-limit, take one, too\n"
+    "                     mesh that is swept. A signal that ends the run takes one, too; --time-limit takes the last\n"
+    "                     one early enough, by the measured speed of the disk\n"
     "  --resume DIR       goes on from there, with the same input and switches, on any number of threads: the files\n"
     "                     are those of a run that was never stopped. With --checkpoint DIR: or begins\n"
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
     "                     mesh that it has, whatever time that takes; else it writes nothing\n"
+    "  --no-sync          files of 8 MiB or more get their names before they are on the disk. That is faster, but a\n"
+    "                     loss of power may leave them empty\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "                     default), else a line for each stage. Never with -Q\n"
     "  --no-progress      say nothing of that\n"
@@ -82,6 +85,7 @@ static const struct kind {
     {"dry-run", FLAG, NULL, offsetof(struct long_options, dry_run)},
     {"time-limit", TIME_LIMIT, "not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", 0},
     {"write-partial", FLAG, NULL, offsetof(struct long_options, write_partial)},
+    {"no-sync", FLAG, NULL, offsetof(struct long_options, no_sync)},
     {"progress", PROGRESS, NULL, 0},
     {"no-progress", NO_PROGRESS, NULL, 0},
     {"version", FLAG, NULL, offsetof(struct long_options, version)},

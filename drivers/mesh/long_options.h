@@ -34,6 +34,7 @@ struct long_options {
     bool has_every;
     double every;       /* minutes between checkpoints, if given */
     bool write_partial, dry_run;
+    bool no_sync;       /* files get their names though the disk may not have them yet */
     bool version, help;
 };
 

@@ -171,6 +171,7 @@ static enum tri_status join_files(struct program *p, enum tri_status status)
 {
     const bool ends_at_once = !p->options.write_partial && !long_options_state(&p->options);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
+                                    .no_sync = p->options.no_sync,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
                                     .text_options = {.base = p->run->base, .figure = &p->run->pslg,
                                                      .markers = !p->run->arguments->switches.no_markers}};

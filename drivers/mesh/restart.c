@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
+#include "triangle/base/clock.h"
 
 static const char version[] = PTRIANGLE_VERSION;
 
@@ -113,6 +114,8 @@ enum tri_status restart_open(struct restart *restart, const struct long_options 
         par_checkpoint_close(&restart->checkpoint, !par_checkpoint_has_state(&restart->checkpoint));
     restart->wanted = wanted && !status;
     restart->checkpoint.seconds = 60 * (o->has_every ? o->every : USUAL_MINUTES);
+    restart->checkpoint.limit = o->time_limit > 0 ? tri_seconds() + o->time_limit : 0;
+    restart->checkpoint.time_up = interrupt_time_up;
     return carrier ? par_agree(carrier, status, error) : status;
 }
 

@@ -488,7 +488,7 @@ static enum tri_status write_output(struct run *r)
         begin_outputs(r);
     enum tri_status status = agree(r, write_all(r));
     if (!status)
-        return interrupt_commit(&outputs, r->error);
+        return interrupt_commit(&outputs, !r->hooks->options->no_sync, r->error);
     interrupt_drop(&outputs);
     return status;
 }

@@ -305,7 +305,7 @@ static enum tri_status write_picture(const struct settings *s, const struct plot
     if (status == TRI_OK)
         status = draw(s, mesh, shading, output, error);
     if (status == TRI_OK)
-        return interrupt_commit(&set, error);
+        return interrupt_commit(&set, true, error);
     interrupt_drop(&set);
     return interrupt_code() == 0 ? status : tri_fail(error, TRI_STOPPED, "", 0, "stopped by %s; nothing was written",
                                                      interrupt_cause());

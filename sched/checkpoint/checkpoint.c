@@ -18,6 +18,7 @@
 #include "sched/checkpoint/spool.h"
 #include "sched/tunables.h"
 #include "triangle/base/at_place.h"
+#include "triangle/base/clock.h"
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
@@ -42,10 +43,10 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
     return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
 }
 
-bool par_checkpoint_sync(const char *directory)
+bool par_checkpoint_end_piece(const char *directory, const char *path, int file)
 {
     const int folder = par_folder_open(directory);
-    const bool done = folder >= 0 && par_folder_sync(folder);
+    const bool done = folder >= 0 && par_folder_end(AT_FDCWD, path, file) && par_folder_sync(folder);
     if (folder >= 0)
         close(folder);
     return done;
@@ -82,7 +83,7 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
     int file = par_folder_create(c->folder, fresh_name);
     m.word = MANIFEST;
     m.hash = hash_of(&m);
-    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && fsync(file) == 0;
+    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && par_folder_end(c->folder, fresh_name, file);
     if (file >= 0)
         done = close(file) == 0 && done;
     if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !par_folder_sync(c->folder))
@@ -330,11 +331,12 @@ static bool write_waiting(struct par_state_file *f, size_t n)
     f->hash = par_hash(f->hash, f->waiting, n);
     if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
-    if (n == PAR_STATE_WRITE && tri_write_at(f->file, f->waiting, n, place))
-        return true;
-    if (n == PAR_STATE_WRITE && !(flags & O_DIRECT))
-        return false;
-    return fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
+    const double began = tri_seconds();
+    bool done = n == PAR_STATE_WRITE && tri_write_at(f->file, f->waiting, n, place);
+    if (!done && (n < PAR_STATE_WRITE || (flags & O_DIRECT)))
+        done = fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
+    f->writing += tri_seconds() - began;
+    return done;
 }
 
 static void put_bytes(struct par_state_file *f, const char *at, size_t n)
@@ -376,7 +378,7 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
         (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
     enum tri_status status = walk(to, user, error);
     bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
-                ftruncate(to->file, (off_t)to->place) == 0 && fsync(to->file) == 0;
+                ftruncate(to->file, (off_t)to->place) == 0 && par_folder_end(c->folder, name, to->file);
     const int fault = errno;
     if (to->file >= 0)
         done = close(to->file) == 0 && done;
@@ -402,6 +404,7 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
     m.tiles_bytes = c->spool.length;
     m.n_ranks = n_ranks;
     m.triangles = triangles;
+    c->writing = to.writing;
     status = write_manifest(c, m, error);
     c->saved += !status;
     return status;

@@ -6,8 +6,8 @@
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
- * that are whole on the disk. For a state is written into a new file by the name that the manifest does not name, tiles
- * and state are synced, and then a new manifest takes the name of the old one.
+ * that are whole on the disk. For a state is written into a new file, which then gets the name that the manifest does
+ * not name; tiles and state are synced, and then a new manifest takes the name of the old one.
  *
  * WHOSE FILES: the directory may hold other files. A manifest is made before any of the files above, and removed after
  * them: with one, files of these names are a run's; where there are some without one they are somebody else's, and the
@@ -48,13 +48,17 @@ struct par_checkpoint {
     int lock;                    /* the directory's, held by this process */
     int saved;                   /* states written by this process */
     double last;                 /* when the last was, or when the run began */
-    double cost;                 /* seconds that it took */
+    double cost, writing;        /* seconds that it took, and that went into writing of these, */
+    double size;                 /* and triangles in it */
+    double limit;                /* when the run will be stopped, by tri_seconds(); 0: not known. To be set likewise */
+    double looked;               /* when the last border was */
     struct par_spool spool;
     char tiles_path[PAR_CHECKPOINT_PATH];
     struct tri_sink sink;        /* of a sweep: the spool */
     const struct tri_stop *stop; /* asked between steps alone */
     void (*told)(void *user, int64_t triangles); /* called with what is kept from then on; 0: nothing. NULL: nobody */
     void *told_user;
+    void (*time_up)(void);       /* called when the last state before the limit is kept: `stop` says yes from then on */
 };
 
 /* One that is not open. */
@@ -113,6 +117,7 @@ struct par_state_file {
     bool failed;   /* it could not be written or read; whoever walks need not ask */
     int64_t place;
     uint64_t hash; /* of what has been written */
+    double writing; /* seconds that this took */
     char *waiting; /* what is on its way to be */
 };
 
@@ -137,7 +142,7 @@ enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par
 int64_t par_checkpoint_next(const struct par_checkpoint *checkpoint);
 int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh);
 
-/* What has got names in a directory, or lost them, is so after the machine has died, too. */
-bool par_checkpoint_sync(const char *directory);
+/* The new one is complete: it is on the disk, and has its name. */
+bool par_checkpoint_end_piece(const char *directory, const char *path, int file);
 
 #endif

@@ -1,8 +1,11 @@
 /* A file with a second name is refused where it would be added to: that may be another's, which somebody has linked. */
+#define _GNU_SOURCE /* O_TMPFILE */
+
 #include "sched/checkpoint/folder.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,7 +48,22 @@ int par_folder_create(int folder, const char *name)
 {
     if (unlinkat(folder, name, 0) != 0 && errno != ENOENT)
         return -1;
+#ifdef O_TMPFILE
+    const int unnamed = access("/proc/self/fd", X_OK) == 0 ? openat(folder, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)
+                                                           : -1;
+    if (unnamed >= 0)
+        return unnamed;
+#endif
     return openat(folder, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+bool par_folder_end(int folder, const char *name, int file)
+{
+    char path[64];
+    struct stat at;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+    return fsync(file) == 0 && fstat(file, &at) == 0 &&
+           (at.st_nlink > 0 || linkat(AT_FDCWD, path, folder, name, AT_SYMLINK_FOLLOW) == 0);
 }
 
 bool par_folder_sync(int folder) { return fsync(folder) == 0 || errno == EINVAL; }

@@ -2,6 +2,7 @@
 #include "sched/checkpoint/state.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -198,6 +199,24 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 
+/* --- when */
+
+bool par_state_is_last(const struct par_checkpoint *c, double now, double triangles)
+{
+    const double growth = fmax(triangles / fmax(c->size, 1), 1); /* of what is written; room that is empty is read */
+    return c->limit > 0 && c->saved > 0 && c->limit - now <= 2 * (c->cost + (growth - 1) * c->writing);
+}
+
+bool par_state_is_due(const struct par_checkpoint *c, double now, double triangles)
+{
+    static const double EARLY = 0.01; /* of the time: a disk that is slower than the mesher by 30 times is in time */
+    const bool measures = c->limit > 0 && c->saved == 0;
+    const double wait = measures ? fmin(c->seconds, EARLY * (c->limit - c->last)) : c->seconds;
+    return now - c->last >= wait || par_state_is_last(c, now, triangles);
+}
+
+static double live_triangles(const struct par_run *state) { return (double)(par_triangles(state) - state->gone); }
+
 static enum tri_status save(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                             struct tri_error *error)
 {
@@ -207,6 +226,9 @@ static enum tri_status save(struct par_checkpoint *c, struct par_run *state, str
                                                   par_triangles(state), carry, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
+    c->size = live_triangles(state);
+    if (!status && c->time_up && par_state_is_last(c, c->last, c->size))
+        c->time_up();
     return status;
 }
 
@@ -263,31 +285,34 @@ void par_state_let_stop(struct par_checkpoint *c, struct par_run *state) { state
 enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error)
 {
-    const bool asked = tri_stop_is_asked(c->stop), failed = tiles && c->spool.failed;
+    const bool failed = tiles && c->spool.failed, due = par_state_is_due(c, tri_seconds(), live_triangles(state));
     state->mesh->stop = NULL;
-    if (!asked && !surely && !failed && tri_seconds() - c->last < c->seconds)
+    if (!tri_stop_is_asked(c->stop) && !surely && !failed && !due)
         return TRI_OK;
     enum tri_status status = save(c, state, tiles, error);
     if (failed && error) /* whether the state could be saved or not */
         *error = c->spool.failure;
     if (failed)
         return c->spool.failed;
-    return status || !asked ? status : tri_fail_stopped(error);
+    return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
 }
 
 /* Asked by blocks before they begin. It does not stay true: a halt ends. */
 static bool is_halt_due(void *user)
 {
-    const struct par_checkpoint *c = user;
-    const double passed = tri_seconds() - c->last;
-    return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= PAR_STATE_REST * c->cost);
+    const struct par_run *state = user;
+    const struct par_checkpoint *c = state->options->checkpoint;
+    const double now = tri_seconds();
+    const double triangles = (double)(atomic_load_explicit(&state->reached, memory_order_relaxed) - state->gone);
+    return tri_stop_is_asked(c->stop) || par_state_is_last(c, now, triangles) ||
+           (par_state_is_due(c, now, triangles) && now - c->last >= PAR_STATE_REST * c->cost);
 }
 
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *state,
                                 const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
                                 struct tri_error *error)
 {
-    const struct tri_stop halt = {is_halt_due, c};
+    const struct tri_stop halt = {is_halt_due, state};
     enum tri_status status;
     do {
         state->halt = state->options->by_block ? NULL : &halt;

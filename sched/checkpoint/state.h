@@ -19,6 +19,13 @@
 struct par_partition;
 struct par_run;
 
+/* Is a state that begins now the last before the limit of time? It is to begin as long before the limit as it takes
+ * twice over, by what the last one took for its triangles. The first one measures the disk, and comes early. */
+bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, double triangles);
+
+/* Is it time for a state? */
+bool par_state_is_due(const struct par_checkpoint *checkpoint, double now, double triangles);
+
 /* When a run begins, with the mesh as it came. Where there is the state of a mesh as a whole, the mesh, the lists, the
  * cells and the counts become what they were, and what is to be done next. TRI_BAD_INPUT: it is another run's, or
  * damaged, and nothing has changed. TRI_NO_MEMORY, TRI_CANNOT_WRITE. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/checkpoint.h"
+#include "sched/checkpoint/state.h"
 #include "sched/ranks/pieces.h"
 #include "sched/schedule/room.h"
 #include "triangle/base/clock.h"
@@ -119,7 +119,7 @@ enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *
     if (!c)
         return TRI_OK;
     c->stop = r->state->mesh->stop;
-    c->last = tri_seconds();
+    c->last = c->looked = tri_seconds();
     enum tri_status status = check_manifest(r, &m, error);
     if (status || m.state_bytes == 0)
         return status;
@@ -197,12 +197,19 @@ enum tri_status par_keep(struct par_ranks *r, enum tri_status status, struct tri
     if (!c)
         return status;
     r->state->mesh->stop = NULL; /* there is something to lose */
-    asked[0] = tri_stop_is_asked(c->stop);
-    asked[1] = r->carrier->rank == 0 && tri_seconds() - c->last >= c->seconds;
+    const double began = tri_seconds(), step = began - c->looked, triangles = (double)par_triangles(r->state);
+    const bool is_last = r->carrier->rank == 0 && par_state_is_last(c, began + step, triangles);
+    c->looked = began;
+    asked[0] = is_last || tri_stop_is_asked(c->stop);
+    asked[1] = r->carrier->rank == 0 && par_state_is_due(c, began, triangles);
     status = par_sum(r->carrier, asked, 2, sum, status, error);
     if (status || sum[0] + sum[1] == 0)
         return status;
     status = keep(r, error);
     c->last = tri_seconds();
+    c->cost = c->writing = c->last - began;
+    c->size = triangles;
+    if (!status && is_last && c->time_up)
+        c->time_up();
     return par_agree(r->carrier, status || sum[0] == 0 ? status : tri_fail_stopped(error), error);
 }

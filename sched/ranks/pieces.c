@@ -161,8 +161,7 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
         offset[tile + 1] = offset[tile] + (int64_t)bytes.n;
     }
     free(bytes.at);
-    if (!status && !(tri_write_at(file, offset, n, sizeof head) && tri_write_at(file, &head, sizeof head, 0) &&
-                     fsync(file) == 0))
+    if (!status && !(tri_write_at(file, offset, n, sizeof head) && tri_write_at(file, &head, sizeof head, 0)))
         status = cannot_write(path, error);
     return status;
 }
@@ -193,8 +192,9 @@ enum tri_status par_pieces_write(const struct par_ranks *r, int64_t which, uint6
     par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : write_file(&s, file, path, hash, error);
-    if ((close(file) != 0 || !par_checkpoint_sync(directory)) && !status)
+    if (!status && !par_checkpoint_end_piece(directory, path, file))
         status = cannot_write(path, error);
+    close(file);
     free_sorting(&s);
     return status;
 }

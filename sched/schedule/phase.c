@@ -332,11 +332,11 @@ static int64_t least_made_by(const struct par_task *task) { return par_inserted_
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
-    const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
+    const int64_t all = atomic_fetch_add_explicit(&p->state->reached, made, memory_order_relaxed) + made;
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
     const double before = p->state->done_share, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell(p->state, p->phase + 1, before + (1 - before) * share, p->before + all);
+        tell(p->state, p->phase + 1, before + (1 - before) * share, all);
 }
 
 static void run_next(void *context, size_t index)
@@ -513,8 +513,8 @@ enum tri_status par_phase(struct par_run *state, const struct par_partition *par
                           struct tri_error *error)
 {
     size_t n = (size_t)state->worklist.n + 1;
-    struct par_phase_run p = {.state = state, .partition = partition, .phase = phase, .only = only,
-                      .before = par_triangles(state)};
+    struct par_phase_run p = {.state = state, .partition = partition, .phase = phase, .only = only};
+    atomic_store(&state->reached, par_triangles(state));
     assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);

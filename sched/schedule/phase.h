@@ -11,6 +11,8 @@
 #ifndef SCHED_SCHEDULE_PHASE_H
 #define SCHED_SCHEDULE_PHASE_H
 
+#include <stdatomic.h>
+
 #include "sched/schedule/next.h"
 #include "sched/schedule/partition.h"
 #include "sched/schedule/room.h"
@@ -81,6 +83,7 @@ struct par_run {
     int32_t column, n_columns; /* of a sweep, odd ones alone, from 1; 0: it is none */
     struct par_ids done;     /* blocks of phase `phase` that have ended, where it has been halted */
     double done_share;       /* of that phase, to the order */
+    _Atomic(int64_t) reached; /* triangles, while a phase runs, as far as blocks have ended */
     const struct tri_stop *halt; /* asked by the blocks of a phase before they begin; NULL: nobody */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices that there were before refinement */

@@ -55,8 +55,6 @@ struct par_phase_run {
     int32_t *order;     /* [n_tasks] in which tasks are started */
     int64_t expected;   /* triangles of all tasks, to the order */
     _Atomic(int64_t) done; /* of these, in tasks that have ended */
-    int64_t before;     /* triangles there were, */
-    _Atomic(int64_t) made; /* and those that such tasks have made */
     const void *caller; /* address of the own one's `here` */
     int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/owners.h */
     size_t n_marks;

@@ -54,7 +54,7 @@ from() { # from FOLDER CODE PROGRAM WORDS...
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
 }
 amiss() {
-    complains "^$1: the module for MPI and HDF5 cannot be loaded: .*/ptriangle/$1\.so: .*No such file"
+    complains "^$1: the module for MPI and HDF5 cannot be loaded: .*/ptriangle/*: No such file"
     check "one line" test "$(wc -l <.err)" -eq 1
     check "and nothing else" test ! -s .out
 }
@@ -85,6 +85,23 @@ if "$bin/ptriangle" -Qpq30 letter.poly --output whole.h5 2>/dev/null; then
     from alone/bin 0 trianglecheck --quiet LETTER.H5 --poly letter.poly -q 30
     (PATH=$PWD/alone/links:$PATH && rm letter.h5 && ptriangle -Qpq30 letter.poly --output letter.h5)
     check "found by PATH" cmp whole.h5 letter.h5
+fi
+
+# Linked into a folder of somebody else, with a module beside it: not loaded, whichever of folders and module is theirs.
+if [ "$(id -u)" -eq 0 ] && chown 65534 "alone/bin/$far/ptriangle.so" 2>/dev/null; then
+    chown 0 alone/bin/ptriangle
+    for theirs in "alone/bin/$far/ptriangle.so" "alone/bin/$far" alone/bin; do
+        chown 0 "alone/bin/$far/ptriangle.so"
+        chown 65534 "$theirs"
+        from alone/bin 1 ptriangle -Qpq30 letter.poly --output theirs.h5
+        complains '^ptriangle: the module for MPI and HDF5 cannot be loaded: .*/alone/bin/.*: belongs neither to root nor to'
+        check "one line" test "$(wc -l <.err)" -eq 1
+        check "no file" test ! -e theirs.h5
+        chown 0 "$theirs"
+    done
+    chown -R 65534 alone # program and folders of one owner
+    from alone/bin 0 ptriangle -Qpq30 letter.poly --output theirs.h5
+    chown -R 0 alone
 fi
 
 # Of another version: refused.

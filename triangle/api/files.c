@@ -248,6 +248,7 @@ static enum tri_status write_all(const struct writing *w)
     const struct tri_format *format = tri_format_of(w->name);
     tri_outputs_begin(w->set);
     enum tri_status status = format ? write_export(w, format) : write_own(w);
+    status = status ? status : tri_outputs_sync(w->set, w->error);
     status = status ? status : tri_outputs_commit(w->set, w->error);
     tri_outputs_abort(w->set);
     return status;

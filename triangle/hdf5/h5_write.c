@@ -260,8 +260,6 @@ static enum tri_status end(void *user, struct tri_error *error)
         status = status ? status : tri_h5_close(&w->file, error);
     }
     H5E_END_TRY
-    if (!status && w->n_chunks > 0) /* worth hours: not lost with the machine a moment after it has its name */
-        status = tri_output_sync(o->file, error);
     return status ? status : tri_h5_write_xdmf(o->xdmf, o->name, w->arrays, error);
 }
 

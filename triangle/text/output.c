@@ -2,7 +2,7 @@
  *
  * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
  * be replaced gets a second name, by which it can be put back. */
-#define _GNU_SOURCE /* O_DIRECT */
+#define _GNU_SOURCE /* O_DIRECT, sync_file_range */
 
 #include "triangle/text/output.h"
 
@@ -23,6 +23,11 @@
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
+#endif
+#ifndef SYNC_FILE_RANGE_WRITE
+#define SYNC_FILE_RANGE_WRITE 0
+#define SYNC_FILE_RANGE_WAIT_AFTER 0
+#define sync_file_range(file, place, bytes, how) 0
 #endif
 
 enum {
@@ -430,13 +435,56 @@ int tri_output_direct(struct tri_output *output)
     return output->direct >= 0 ? output->direct : output->file;
 }
 
-enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error)
+/* 0, or why not; systems that cannot be asked for it are not. */
+static int sync_to_disk(int file)
 {
     int result;
     do
-        result = fsync(output->file);
+        result = fsync(file);
     while (result != 0 && errno == EINTR);
-    return tri_output_conclude(output, result == 0 || errno == EINVAL || errno == EROFS ? 0 : errno, error);
+    return result == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error)
+{
+    return tri_output_conclude(output, sync_to_disk(output->file), error);
+}
+
+/* The bytes of a file that is open, which are on their way to the disk then, as far as the system can be told; 0: there
+ * is none. */
+static uint64_t send_off(const struct tri_output *output)
+{
+    struct stat status;
+    if (!tri_output_has_places(output) || fstat(output->file, &status) != 0)
+        return 0;
+    (void)sync_file_range(output->file, 0, 0, SYNC_FILE_RANGE_WRITE);
+    return (uint64_t)status.st_size;
+}
+
+/* In pieces, between which whoever asks for the end is heard. */
+static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_error *error)
+{
+    enum { PIECE = 1 << 24 };
+    const uint64_t bytes = send_off(output);
+    for (uint64_t place = 0; place < bytes; place += PIECE) {
+        (void)sync_file_range(output->file, (off_t)place, PIECE, SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+        if (tri_stop_is_asked(output->stop))
+            return tri_fail_stopped(error);
+    }
+    return bytes > 0 ? tri_output_sync(output, error) : TRI_OK;
+}
+
+/* All are sent off before one is waited for: so a journal takes in all of them at once. */
+enum tri_status tri_outputs_sync(struct tri_output_set *set, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    uint64_t bytes = 0;
+    for (int i = 0; i < set->n; i++)
+        bytes += send_off(&set->outputs[i]);
+    set->waits = bytes >= TRI_WAITED_FOR;
+    for (int i = 0; set->waits && !status && i < set->n; i++)
+        status = sync_in_pieces(&set->outputs[i], error);
+    return status;
 }
 
 uint64_t tri_output_reserve(struct tri_output *output, size_t size)
@@ -539,6 +587,18 @@ static void put_back(struct tri_output *output)
     }
 }
 
+/* So the new name is on the disk. A folder that cannot be read is passed over. */
+static enum tri_status sync_folder(const struct tri_output *output, struct tri_error *error)
+{
+    char *name = beside(output->path, ".");
+    const int folder = name ? open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    const int result = folder >= 0 ? sync_to_disk(folder) : 0;
+    if (folder >= 0)
+        close(folder);
+    free(name);
+    return result ? tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", result) : TRI_OK;
+}
+
 enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -548,6 +608,9 @@ enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error 
         keep_old(set, &set->outputs[i]);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
         status = rename_output(&set->outputs[i], error);
+    for (int i = 0; set->waits && status == TRI_OK && i < set->n; i++)
+        if (i == 0 || !is_same_directory(set->outputs[i - 1].path, set->outputs[i].path))
+            status = sync_folder(&set->outputs[i], error);
     for (int i = 0; status != TRI_OK && i < set->n; i++)
         put_back(&set->outputs[i]);
     tri_outputs_abort(set);

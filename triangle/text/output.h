@@ -50,6 +50,7 @@ struct tri_output_set {
     int n;
     struct tri_output outputs[TRI_MAX_OUTPUTS];
     int next_name;               /* number in the next temporary name: those below have been tried */
+    bool waits;                  /* for the disk, when names are given: the files have been synced */
     bool trial;                  /* to see whether all can be opened: devices and pipes are left alone */
     const struct tri_stop *stop; /* asked by tri_output_write; borrowed; NULL: nobody */
 };
@@ -94,9 +95,16 @@ enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *err
  * have places. The bytes between are then to be written. */
 enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error);
 
+enum { TRI_WAITED_FOR = 1 << 23 };
+
+/* All files, once they are complete, are on the disk afterwards, and their names will be when commit returns: so
+ * whenever the machine loses power, a name means the old file or all of the new one. Files of less than TRI_WAITED_FOR
+ * bytes together take a disk longer than they take to be made: their writing is begun and not waited for, which is what
+ * ext4 does itself when a file replaces another. Also TRI_STOPPED. */
+enum tri_status tri_outputs_sync(struct tri_output_set *set, struct tri_error *error);
+
 /* Closes all files, then renames all. If a file could not be written, closed or renamed, every name is as it was before
- * (where the file system knows second names of a file; else files renamed before the failure stay). What is to be on
- * the disk, too, has been synced before. */
+ * (where the file system knows second names of a file; else files renamed before the failure stay). */
 enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error);
 
 /* Closes and removes what is not committed. */
