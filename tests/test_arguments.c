@@ -58,11 +58,11 @@ static void test_words(void **state)
 {
     (void)state;
     struct arguments a = arguments_begin(0, NULL);
-    static const char *const words[] = {"-q", "first.poly", "-", "-I", "second.3", "-a2"};
+    static const char *const words[] = {"-q", "-", "-I", "second.3", "-a2"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         arguments_word(&a, words[i]);
     assert_int_equal(arguments_end(&a, NULL), TRI_OK);
-    assert_string_equal(a.input, "second.3"); /* the last file wins, and the suffix of the first has no effect */
+    assert_string_equal(a.input, "second.3");
     assert_string_equal(a.output, "second.3");
     assert_true(a.switches.angle && a.switches.area && !a.switches.segments);
     arguments_free(&a);
@@ -73,9 +73,29 @@ static void test_words(void **state)
     arguments_free(&a);
 }
 
+/* A second file is an error; a number apart from its switch is named as it is written. */
+static void test_words_too_many(void **state)
+{
+    (void)state;
+    static char *const cases[][5] = {{"t", "-p", "-q", "30", "a.poly"}, {"t", "a.poly", "-pq", "30", "-Q"},
+                                     {"t", "-a", ".5", "-p", "a.poly"}, {"t", "a", "-p", "b.poly", "-q"}};
+    static const char *const texts[] = {"-q 30 is written in one word: -q30", "-pq 30 is written in one word: -pq30",
+                                        "-a .5 is written in one word: -a.5",
+                                        "one input file at a time, not both a and b.poly"};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_error error = {0};
+        struct arguments a = arguments_begin(5, (char **)cases[i]);
+        for (int k = 1; k < 5; k++)
+            arguments_word(&a, a.argv[k]);
+        assert_int_equal(arguments_end(&a, &error), TRI_BAD_INPUT);
+        assert_string_equal(error.text, texts[i]);
+        arguments_free(&a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_iterations), cmocka_unit_test(test_suffixes),
-                                       cmocka_unit_test(test_words)};
+                                       cmocka_unit_test(test_words), cmocka_unit_test(test_words_too_many)};
     return cmocka_run_group_tests_name("arguments", tests, NULL, NULL);
 }
