@@ -172,7 +172,7 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     return TRI_OK;
 }
 
-static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
+static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
 
 /* NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is the base of these where mesh.14.node is
  * there, but no mesh.14. */
@@ -207,6 +207,7 @@ static enum tri_status read_format(struct judged_files *f, const struct judged_a
     if (status != TRI_OK)
         return status;
     f->boundary_alone = !format->inner_segments;
+    f->base = format->base;
     f->n_nodes = f->mesh.n_points;
     f->source = take_arrays(f);
     return TRI_OK;

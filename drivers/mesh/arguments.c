@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "triangle/text/names.h"
 
@@ -31,7 +32,7 @@ char *next_iteration(const char *name)
 
 struct arguments arguments_begin(int argc, char **argv)
 {
-    return (struct arguments){argc, argv, tri_switches_none(), NULL, NULL, NULL, NULL};
+    return (struct arguments){argc, argv, tri_switches_none(), NULL, NULL, NULL, NULL, NULL};
 }
 
 void arguments_word(struct arguments *arguments, const char *word)
@@ -66,9 +67,17 @@ static bool cut_suffix(char *name, const char *suffix)
     return true;
 }
 
-/* A suffix says what the input is. */
-static void apply_suffix(char *name, struct tri_switches *switches)
+/* A suffix says what the input is; mesh.14, if there is no such file, is a base. */
+static void apply_suffix(struct arguments *arguments)
 {
+    char *name = arguments->input;
+    struct tri_switches *switches = &arguments->switches;
+    const struct tri_format *format = tri_format_of(name);
+    if (format && (access(name, F_OK) == 0 || !tri_name_ends(name, ".14"))) {
+        arguments->format = format;
+        name[strlen(name) - strlen(format->suffix)] = 0;
+        switches->mesh = switches->segments = true;
+    }
     if (cut_suffix(name, ".node"))
         return;
     if (cut_suffix(name, ".poly"))
@@ -87,7 +96,7 @@ enum tri_status arguments_end(struct arguments *arguments, struct tri_error *err
         return refuse_further(arguments, error);
     arguments->input = tri_joined(arguments->file, "");
     if (arguments->input) {
-        apply_suffix(arguments->input, &arguments->switches);
+        apply_suffix(arguments);
         arguments->output = arguments->switches.no_iteration ? tri_joined(arguments->input, "")
                                                              : next_iteration(arguments->input);
     }

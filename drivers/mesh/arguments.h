@@ -4,12 +4,14 @@
 
 #include "triangle/base/status.h"
 #include "triangle/dropin/switches.h"
+#include "triangle/text/formats.h"
 
 struct arguments {
     int argc; /* the words as given, for the comment in every file */
     char **argv;
     struct tri_switches switches;
     const char *file, *further; /* the first word that is no switch, and the last of several; NULL: there was none */
+    const struct tri_format *format; /* of the file, a mesh that another program reads as well; NULL: Triangle's */
     char *input;      /* file without its suffix; suffixes are appended to this */
     char *output;     /* the same for what is written */
 };

@@ -22,7 +22,7 @@ const char long_options_help[] =
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on; one of these endings is no\n"
     "                     part of BASE, and any other of a dot and letters (.shp) is refused: run.1 and mesh.v2 are\n"
     "                     names, and mesh.fine.node says that mesh.fine is one\n"
-    "  --output FILE.h5 | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "  --output FILE.h5 | FILE.vtkhdf | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
     "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
     "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
     "                     such files\n"
@@ -191,19 +191,19 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
 static bool is_base(const char *value)
 {
     const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
-    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, STREAM_SUFFIX);
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, ".h5");
 }
 
 static enum tri_status take_output(struct long_options *options, const char *value, struct tri_error *error)
 {
-    if (stream_is_wanted(value))
+    if (tri_name_h5(value) > 0)
         return add_file(options->streams, &options->n_streams, value, error);
     if (tri_format_of(value))
         return add_file(options->exports, &options->n_exports, value, error);
     const char *missing = value[tri_format_base(value)] ? NULL : tri_format_missing(value);
     if (missing)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX
-                        ", " TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are .h5, .vtkhdf, "
+                        TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
     if (!is_base(value))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
                         "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);
