@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -73,22 +74,21 @@ static void test_words(void **state)
     arguments_free(&a);
 }
 
-/* A second file is an error; a number apart from its switch is named as it is written. */
+/* A second file is an error, which says how numbers are written. */
 static void test_words_too_many(void **state)
 {
     (void)state;
-    static char *const cases[][5] = {{"t", "-p", "-q", "30", "a.poly"}, {"t", "a.poly", "-pq", "30", "-Q"},
-                                     {"t", "-a", ".5", "-p", "a.poly"}, {"t", "a", "-p", "b.poly", "-q"}};
-    static const char *const texts[] = {"-q 30 is written in one word: -q30", "-pq 30 is written in one word: -pq30",
-                                        "-a .5 is written in one word: -a.5",
-                                        "one input file at a time, not both a and b.poly"};
+    static const char *const cases[][4] = {{"-p", "-q", "30", "a.poly"}, {"a.poly", "-pq", ".5", "-Q"},
+                                           {"a", "-p", "b.poly", "-q"}};
+    static const char *const both[] = {"not both 30 and a.poly;", "not both a.poly and .5;", "not both a and b.poly;"};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct tri_error error = {0};
-        struct arguments a = arguments_begin(5, (char **)cases[i]);
-        for (int k = 1; k < 5; k++)
-            arguments_word(&a, a.argv[k]);
+        struct arguments a = arguments_begin(0, NULL);
+        for (int k = 0; k < 4; k++)
+            arguments_word(&a, cases[i][k]);
         assert_int_equal(arguments_end(&a, &error), TRI_BAD_INPUT);
-        assert_string_equal(error.text, texts[i]);
+        assert_non_null(strstr(error.text, both[i]));
+        assert_non_null(strstr(error.text, "-q30"));
         arguments_free(&a);
     }
 }

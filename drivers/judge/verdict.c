@@ -53,7 +53,8 @@ void verdict_print_lines(const struct verdict_style *s, const struct judged_file
     print_items(r, s->quiet);
     if (!s->quiet) {
         if (unused_points(f, r) > 0)
-            printf("warn  vertices in no triangle: %" PRId64 " (-j of ptriangle leaves them out)\n", unused_points(f, r));
+            printf("warn  vertices in no triangle: %" PRId64 " (-j of ptriangle leaves them out)\n",
+                   unused_points(f, r));
         print_summary(s, f, r);
         puts(tri_check_passed(r) ? "no fault" : "FAULTS");
     }
@@ -85,7 +86,8 @@ void verdict_print_json(const struct verdict_style *s, const struct judged_files
     printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"unused_vertices\": %" PRId64
            ", \"triangles\": %" PRId64 ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64
            ", \"subsegments\": %" PRId64,
-           f->n_nodes, r->n_used_points, unused_points(f, r), f->source.n_triangles, r->n_edges, r->n_boundary_edges, f->source.n_segments);
+           f->n_nodes, r->n_used_points, unused_points(f, r), f->source.n_triangles, r->n_edges,
+           r->n_boundary_edges, f->source.n_segments);
     print_json_real("smallest_angle", r->smallest_angle);
     print_json_real("largest_angle", r->largest_angle);
     print_json_real("smallest_area", r->smallest_area);

@@ -45,19 +45,6 @@ void arguments_word(struct arguments *arguments, const char *word)
         arguments->file = word;
 }
 
-/* People type -q 30, where Triangle would take 30 for the file, or drop it. */
-static enum tri_status refuse_further(const struct arguments *arguments, struct tri_error *error)
-{
-    for (int i = 2; i < arguments->argc; i++) {
-        const char *switches = arguments->argv[i - 1], *number = arguments->argv[i];
-        if (switches[0] == '-' && switches[1] != '-' && *number && number[strspn(number, "0123456789.")] == 0)
-            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%.40s %.40s is written in one word: %.40s%.40s", switches,
-                            number, switches, number);
-    }
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "one input file at a time, not both %.80s and %.80s",
-                    arguments->file, arguments->further);
-}
-
 static bool cut_suffix(char *name, const char *suffix)
 {
     size_t n = strlen(name), m = strlen(suffix);
@@ -93,7 +80,8 @@ enum tri_status arguments_end(struct arguments *arguments, struct tri_error *err
     if (!arguments->file)
         return TRI_OK;
     if (arguments->further)
-        return refuse_further(arguments, error);
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "one input file at a time, not both %.80s and %.80s; a number "
+                        "follows its switch in one word: -q30", arguments->file, arguments->further);
     arguments->input = tri_joined(arguments->file, "");
     if (arguments->input) {
         apply_suffix(arguments);

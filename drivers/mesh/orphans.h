@@ -7,12 +7,12 @@
 #include "ptriangle/tiles.h"
 
 struct orphans {
-    int64_t n;
-    int64_t *number; /* [n] ascending; malloc'ed. All were there before refinement */
+    int64_t n, n_before; /* of so many points there were before refinement; refinement makes none */
+    int32_t *kept;       /* [n_before + 1] how many of the points before each are none; malloc'ed */
 };
 
 /* The tile without them. Its arrays are those of `all`, or lie in *room, which is to be freed in any case. False: no
- * memory. O(items log orphans) */
+ * memory. */
 bool orphans_leave_out(const struct orphans *orphans, const struct tri_tile *all, int32_t n_attributes,
                        struct tri_tile *tile, void **room);
 

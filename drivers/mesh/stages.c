@@ -109,7 +109,7 @@ static void add_hint(const struct run *r)
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
         snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
-                 " files; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
+                 " files, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
 }
 
 /* Once the .poly has been read it is known whether the .node is, too. */
@@ -278,32 +278,22 @@ static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
     return TRI_OK;
 }
 
-/* Counts the vertices of no triangle while the mesh is small: refinement makes none (tri_count_refined). */
-static enum tri_status count_unused(struct run *r, const struct tri_mesh *mesh, struct tri_error *error)
+/* Finds the vertices of no triangle, by the caller's numbers, while the mesh is small. No number of it is free. */
+static enum tri_status find_unused(struct run *r, const struct tri_mesh *mesh)
 {
-    struct tri_counts before;
-    enum tri_status status = tri_count_mesh(&before, mesh, r->hooks->executor, error);
-    r->unused.n = status ? -1 : mesh->n_vertices - before.vertices;
-    return status;
-}
-
-/* Lists them. No number of the mesh is free. */
-static enum tri_status list_unused(struct run *r, const struct tri_mesh *mesh)
-{
-    const int64_t n = mesh->n_vertices;
-    bool *used = calloc((size_t)n + 1, sizeof *used);
-    int64_t *number = malloc(((size_t)n + 1) * sizeof *number);
-    r->unused = (struct orphans){0, number};
-    for (tri_triangle_id t = 0; used && t < mesh->n_triangles; t++)
+    const int32_t n = mesh->n_vertices;
+    int32_t *kept = calloc((size_t)n + 2, sizeof *kept);
+    if (!kept)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             const tri_vertex_id v = mesh->tri[t].v[k];
-            used[mesh->origin && v < mesh->n_input ? mesh->origin[v] : v] = true;
+            kept[(mesh->origin && v < mesh->n_input ? mesh->origin[v] : v) + 1] = 1;
         }
-    for (int64_t v = 0; used && number && v < n; v++)
-        if (!used[v])
-            number[r->unused.n++] = v;
-    free(used);
-    return used && number ? TRI_OK : tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    for (int32_t v = 0; v < n; v++)
+        kept[v + 1] += kept[v];
+    r->unused = (struct orphans){n - kept[n], n, kept};
+    return TRI_OK;
 }
 
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
@@ -319,9 +309,9 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     interrupt_reached(mesh->n_triangles, " triangles");
     if (r->plan.swept && !hooks->written_elsewhere)
         begin_outputs(r);
-    status = r->plan.swept ? keep_twins(r, mesh) : count_unused(r, mesh, error);
+    status = find_unused(r, mesh);
     if (!status && r->plan.swept)
-        status = list_unused(r, mesh);
+        status = keep_twins(r, mesh);
     if (!status)
         status = hooks->refine ? hooks->refine(hooks->user, r, mesh, quality, report)
                                : tri_refine(mesh, quality, report, error);
@@ -604,7 +594,7 @@ static void free_run(struct run *r)
     tri_elements_free(&r->elements);
     free(r->is_edge);
     free(r->twin);
-    free(r->unused.number);
+    free(r->unused.kept);
     tri_names_free(&r->names);
 }
 
@@ -612,7 +602,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
 {
     const struct tri_switches *s = &arguments->switches;
     struct tri_error error = {0};
-    struct run r = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s), .unused = {-1, NULL},
+    struct run r = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s), .unused.n = -1,
                     .outputs = &outputs, .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)

@@ -63,8 +63,7 @@ struct run {
     int64_t input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
-    struct orphans unused; /* vertices before refinement that are in no triangle, by the caller's numbers, which are
-                              listed where the mesh will be gone; n is -1: not counted */
+    struct orphans unused; /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
     bool built;         /* there is a mesh: what stops now leaves one that is valid */
 };
 

@@ -62,7 +62,7 @@ struct tri_parent {
     tri_vertex_id v[2];
     int32_t segment; /* the input segment that it is a part of, the first of several; TRI_NONE: of the hull alone */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
-    bool reversed;   /* its input segment runs from v[1] to v[0] */
+    bool reversed;   /* its subsegments run against its input segment, until the mesh is finished */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is; the
                                first end: of a mesh that was read */
 };

@@ -115,6 +115,8 @@ static void turn_subs(struct tri_mesh *mesh)
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (mesh->parents[mesh->sub[s].parent].reversed)
             tri_turn_sub(&mesh->sub[s]);
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
+        mesh->parents[p].reversed = false;
 }
 
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,

@@ -199,32 +199,26 @@ static void put_numbers(struct gmsh *g, int64_t curves, int64_t surfaces)
     put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
 }
 
-/* "marker_1", "region_2.5": dimension, tag and name of each group that has a tag. Names have no blanks, which writers of
- * other formats refuse. Returns how many there are; g: NULL: to count them. */
-static int put_names(struct gmsh *g, const struct groups *groups, const char *what)
+/* "marker_1", "region_2.5": dimension, tag and name of each group, without blanks, which some readers do not take. */
+static void put_names(struct gmsh *g, const struct groups *groups, const char *what)
 {
-    int n = 0;
     for (int k = 0; k < groups->n; k++) {
         char line[64 + TRI_REAL_ROOM], value[TRI_REAL_ROOM];
         *tri_print_real(value, groups->all.value[k]) = 0;
         snprintf(line, sizeof line, "%" PRId32 " %" PRId32 " \"%s_%s\"\n", groups->dimension, groups->physical[k], what,
                  value);
-        if (g && groups->physical[k] > 0)
-            put_text(g, line);
-        n += groups->physical[k] > 0;
+        put_text(g, line);
     }
-    return n;
 }
 
 /* By these solvers find regions and boundaries. */
 static void write_names(struct gmsh *g)
 {
     char head[48];
-    snprintf(head, sizeof head, "$PhysicalNames\n%d\n",
-             put_names(NULL, &g->curves, "") + put_names(NULL, &g->surfaces, ""));
+    snprintf(head, sizeof head, "$PhysicalNames\n%d\n", g->curves.n + g->surfaces.n);
     put_text(g, head);
-    (void)put_names(g, &g->curves, "marker");
-    (void)put_names(g, &g->surfaces, "region");
+    put_names(g, &g->curves, "marker");
+    put_names(g, &g->surfaces, "region");
     put_text(g, "$EndPhysicalNames\n");
 }
 

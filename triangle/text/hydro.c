@@ -4,8 +4,8 @@
  * Both take the first attribute of a point for its elevation or depth. In .2dm a triangle's material is its first
  * attribute, if that is a whole number above 0, else 1; a node string carries its marker behind the last node. In
  * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on
- * loops round the mesh, islands round holes, of the type that a marker of 10 to 29 says. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org, "ADCIRC Grid and Boundary
- * Information File".) */
+ * loops round the mesh, islands round holes, of the type that a marker of 10 to 29 says. (xmswiki.com, "2D Mesh Files
+ * *.2dm"; adcirc.org, "ADCIRC Grid and Boundary Information File".) */
 #include <string.h>
 
 #include "triangle/text/boundary.h"
