@@ -256,6 +256,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/joint_files.c
     drivers/mesh/launch.c
     drivers/mesh/long_options.c
+    drivers/mesh/orphans.c
     drivers/mesh/progress.c
     drivers/mesh/rank_report.c
     drivers/mesh/shared_input.c

@@ -43,3 +43,16 @@ void one_line_complain(const char *program, const char *format, va_list argument
     one_line_put(stderr, text);
     fputc('\n', stderr);
 }
+
+void one_line_error(FILE *stream, const char *before, const struct tri_error *error)
+{
+    fputs(before, stream);
+    if (error->file[0])
+        one_line_put(stream, error->file);
+    if (error->file[0] && error->line > 0)
+        fprintf(stream, ":%ld: ", error->line);
+    else if (error->file[0])
+        fputs(": ", stream);
+    one_line_put(stream, error->text);
+    fputc('\n', stream);
+}

@@ -5,6 +5,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "triangle/base/status.h"
+
 /* Control characters are printed as \n or \x1b. */
 void one_line_put(FILE *stream, const char *text);
 
@@ -14,5 +16,8 @@ void one_line_print(FILE *stream, const char *format, va_list arguments);
 
 /* "program: ", the text, which is one line, and its end on standard error; cut likewise. */
 void one_line_complain(const char *program, const char *format, va_list arguments);
+
+/* Some words, the place of an error, and its text. */
+void one_line_error(FILE *stream, const char *before, const struct tri_error *error);
 
 #endif

@@ -3,8 +3,8 @@
 
 #include "drivers/resources.h"
 
+#include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +15,8 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+
+#include "triangle/text/decimal.h"
 
 enum { LINE_BYTES = 512, PATH_BYTES = RESOURCES_PATH };
 
@@ -199,4 +201,38 @@ double resources_disk(const char *path)
     struct statvfs disk;
     resources_folder(path, folder);
     return statvfs(folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
+}
+
+const char *resources_scratch(void)
+{
+    const char *folder = getenv("TMPDIR");
+    return folder && *folder ? folder : "/tmp";
+}
+
+/* --- words of the command line */
+
+bool resources_take_real(const char *text, const char *letters, const double *factor, double low, double high,
+                         double *value)
+{
+    double number;
+    const char *end = tri_scan_real(text, text + strlen(text), &number);
+    const char *letter = *end ? strchr(letters, *end) : NULL;
+    if (end == text || (*end && (!letter || end[1])))
+        return false;
+    number *= letter ? factor[letter - letters] : 1;
+    if (!(number >= low && number <= high))
+        return false;
+    *value = number;
+    return true;
+}
+
+bool resources_take_size(const char *text, double least, double *bytes, double *share)
+{
+    static const double thousands[] = {1e3, 1e6, 1e9, 1e12}, per_cent[] = {0.01};
+    const bool is_share = strchr(text, '%') != NULL;
+    if (is_share ? !resources_take_real(text, "%", per_cent, DBL_TRUE_MIN, 1, share)
+                 : !resources_take_real(text, "KMGT", thousands, least, 0x1p60, bytes))
+        return false;
+    *(is_share ? bytes : share) = 0;
+    return true;
 }

@@ -2,6 +2,7 @@
 #ifndef DRIVERS_RESOURCES_H
 #define DRIVERS_RESOURCES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Bytes of memory that may be used on top of what is: the least that is left under the limits of the machine
@@ -41,5 +42,16 @@ void resources_folder(const char *path, char folder[RESOURCES_PATH]);
 
 /* Bytes free on the file system that holds this folder; HUGE_VAL: not known. */
 double resources_disk(const char *path);
+
+/* The folder for scratch files: TMPDIR, otherwise /tmp. */
+const char *resources_scratch(void);
+
+/* From the command line, a number, and maybe a letter that stands for a factor; the product is from low to high. False:
+ * it is none, and nothing has changed. */
+bool resources_take_real(const char *text, const char *letters, const double *factor, double low, double high,
+                         double *value);
+
+/* Bytes, at least so many: 500M; or a share: 60%. The other one becomes 0. */
+bool resources_take_size(const char *text, double least, double *bytes, double *share);
 
 #endif

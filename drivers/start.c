@@ -27,7 +27,7 @@ static bool needs_module(int argc, char **argv)
     int task;
     bool needed = tasks_started(&task) > 1;
     for (int i = 1; i < argc; i++)
-        needed = needed || tri_name_ends(argv[i], ".h5");
+        needed = needed || tri_name_h5(argv[i]) > 0;
     return needed;
 }
 

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -58,11 +59,11 @@ static void test_words(void **state)
 {
     (void)state;
     struct arguments a = arguments_begin(0, NULL);
-    static const char *const words[] = {"-q", "first.poly", "-", "-I", "second.3", "-a2"};
+    static const char *const words[] = {"-q", "-", "-I", "second.3", "-a2"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         arguments_word(&a, words[i]);
     assert_int_equal(arguments_end(&a, NULL), TRI_OK);
-    assert_string_equal(a.input, "second.3"); /* the last file wins, and the suffix of the first has no effect */
+    assert_string_equal(a.input, "second.3");
     assert_string_equal(a.output, "second.3");
     assert_true(a.switches.angle && a.switches.area && !a.switches.segments);
     arguments_free(&a);
@@ -73,9 +74,28 @@ static void test_words(void **state)
     arguments_free(&a);
 }
 
+/* A second file is an error, which says how numbers are written. */
+static void test_words_too_many(void **state)
+{
+    (void)state;
+    static const char *const cases[][4] = {{"-p", "-q", "30", "a.poly"}, {"a.poly", "-pq", ".5", "-Q"},
+                                           {"a", "-p", "b.poly", "-q"}};
+    static const char *const both[] = {"not both 30 and a.poly;", "not both a.poly and .5;", "not both a and b.poly;"};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_error error = {0};
+        struct arguments a = arguments_begin(0, NULL);
+        for (int k = 0; k < 4; k++)
+            arguments_word(&a, cases[i][k]);
+        assert_int_equal(arguments_end(&a, &error), TRI_BAD_INPUT);
+        assert_non_null(strstr(error.text, both[i]));
+        assert_non_null(strstr(error.text, "-q30"));
+        arguments_free(&a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_iterations), cmocka_unit_test(test_suffixes),
-                                       cmocka_unit_test(test_words)};
+                                       cmocka_unit_test(test_words), cmocka_unit_test(test_words_too_many)};
     return cmocka_run_group_tests_name("arguments", tests, NULL, NULL);
 }

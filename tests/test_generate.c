@@ -108,6 +108,31 @@ static void test_nothing_leaks_on_success(void **state)
 }
 #endif
 
+/* Left and right of a segment are meant by people. Of segments along each other the first tells. */
+static void test_pieces_run_their_segments_way(void **state)
+{
+    (void)state;
+    int32_t pieces = 0;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 40, 30, seed);
+        struct tri_options options = support_quality(seed % 4 < 2 ? 25 : 0, 0);
+        struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+        for (tri_sub_id s = 0; s < mesh.n_subs; s++) {
+            const int32_t segment = mesh.parents[mesh.sub[s].parent].segment;
+            if (segment == TRI_NONE)
+                continue;
+            const int32_t *ends = &pslg.segments[2 * segment];
+            const struct tri_point a = mesh.xy[ends[0]], b = mesh.xy[ends[1]], p = mesh.xy[mesh.sub[s].v[0]],
+                                   q = mesh.xy[mesh.sub[s].v[1]];
+            assert_true((b.x - a.x) * (q.x - p.x) + (b.y - a.y) * (q.y - p.y) > 0);
+            pieces++;
+        }
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+    assert_true(pieces > 1000);
+}
+
 static void test_bad_input_is_refused(void **state)
 {
     (void)state;
@@ -341,6 +366,7 @@ int main(void)
         cmocka_unit_test(test_allocation_fails_in_a_large_refinement),
         cmocka_unit_test(test_nothing_leaks_on_success),
 #endif
+        cmocka_unit_test(test_pieces_run_their_segments_way),
         cmocka_unit_test(test_bad_input_is_refused),
         cmocka_unit_test(test_attributes_are_interpolated),
         cmocka_unit_test(test_markers_of_new_vertices),

@@ -66,11 +66,11 @@ static void test_memory(void **state)
     (void)state;
     struct taken t = nothing();
     assert_int_equal(TAKE(&t, "--memory", "4G"), TRI_OK);
-    assert_true(t.options.memory == 4 * 0x1p30 && t.options.memory_share == 0);
+    assert_true(t.options.memory == 4e9 && t.options.memory_share == 0);
     assert_int_equal(TAKE(&t, "--memory", "60%"), TRI_OK);
     assert_true(t.options.memory == 0 && t.options.memory_share == 0.6);
     assert_int_equal(TAKE(&t, "--memory", "1.5e3K"), TRI_OK);
-    assert_true(t.options.memory == 1536000 && t.options.memory_share == 0);
+    assert_true(t.options.memory == 1500000 && t.options.memory_share == 0);
     assert_int_equal(TAKE(&t, "--memory", "2097152"), TRI_OK);
     assert_true(t.options.memory == 0x1p21);
     char *const wrong[] = {"", "G", "0", "-1G", "1g", "4GB", "0%", "101%", "nan", "1e99T", "1K", "4 G"};

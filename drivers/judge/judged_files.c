@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/size_text.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
 
@@ -16,18 +17,21 @@
 #define UNLISTED_SHARE 14.0 /* without a .poly file, should the mesh be full of holes */
 #define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
 
-bool judged_cut_suffix(char *path, const char *suffix)
+static bool ends_in(const char *path, const char *suffix)
 {
-    size_t n = strlen(path), m = strlen(suffix);
-    if (n <= m || strcmp(path + n - m, suffix) != 0)
-        return false;
-    path[n - m] = '\0';
-    return true;
+    const size_t n = strlen(path), m = strlen(suffix);
+    return n > m && strcmp(path + n - m, suffix) == 0;
 }
 
 bool judged_cut_text_suffix(char *path)
 {
-    return judged_cut_suffix(path, ".node") || judged_cut_suffix(path, ".ele") || judged_cut_suffix(path, ".poly");
+    static const char *const suffixes[] = {".node", ".ele", ".poly"};
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++)
+        if (ends_in(path, suffixes[i])) {
+            path[strlen(path) - strlen(suffixes[i])] = '\0';
+            return true;
+        }
+    return false;
 }
 
 static double size_of(const char *path)
@@ -43,8 +47,8 @@ static enum tri_status check_input_size(const struct judged_ask *ask, struct tri
     if (size < JUDGED_WORTH_A_LOOK || size <= ask->memory)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, ask->input, 0,
-                    "has %.3g MB of text, which is read into memory; %.3g MB may be used", 1e-6 * size,
-                    1e-6 * ask->memory);
+                    "has %s of text, which is read into memory; %s may be used", tri_size_text(size).text,
+                    tri_size_text(ask->memory).text);
 }
 
 static enum tri_status read_input(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
@@ -57,20 +61,14 @@ static enum tri_status read_input(struct judged_files *f, const struct judged_as
                                        .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;
-    char *stem = tri_joined(path, "");
-    if (stem == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    if (judged_cut_suffix(stem, ".node")) {
-        free(stem);
-        return tri_read_node(path, &options, &f->input, &base, error);
-    }
-    (void)judged_cut_suffix(stem, ".poly");
-    char *node = tri_joined(stem, ".node");
-    free(stem);
-    if (node == NULL)
-        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    enum tri_status status = tri_read_poly(path, node, &options, &f->input, &base, &points_in_poly, error);
-    free(node);
+    struct tri_names names;
+    const bool is_node = ends_in(path, ".node");
+    const size_t length = strlen(path) - (is_node || ends_in(path, ".poly") ? strlen(".poly") : 0);
+    enum tri_status status = tri_names_make(&names, path, length, error);
+    if (status == TRI_OK)
+        status = is_node ? tri_read_node(path, &options, &f->input, &base, error)
+                         : tri_read_poly(path, names.node, &options, &f->input, &base, &points_in_poly, error);
+    tri_names_free(&names);
     return status;
 }
 
@@ -144,19 +142,18 @@ static enum tri_status read_texts(struct judged_files *f, const struct judged_as
 
 static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    char *node = tri_joined(ask->base, ".node"), *ele = tri_joined(ask->base, ".ele");
-    char *poly = tri_joined(ask->base, ".poly"), *neigh = tri_joined(ask->base, ".neigh");
-    enum tri_status status = TRI_OK;
-    if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
-        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    } else {
-        struct judged_names names = {node, ask->may_lack_triangles && access(ele, F_OK) != 0 ? NULL : ele,
-                                     access(poly, F_OK) == 0 ? poly : NULL, access(neigh, F_OK) == 0 ? neigh : NULL};
+    struct tri_names own;
+    char *neigh = tri_joined(ask->base, ".neigh");
+    enum tri_status status = neigh != NULL ? tri_names_make(&own, ask->base, strlen(ask->base), error)
+                                           : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    if (status == TRI_OK) {
+        struct judged_names names = {own.node,
+                                     ask->may_lack_triangles && access(own.ele, F_OK) != 0 ? NULL : own.ele,
+                                     access(own.poly, F_OK) == 0 ? own.poly : NULL,
+                                     access(neigh, F_OK) == 0 ? neigh : NULL};
         status = read_texts(f, ask, &names, error);
+        tri_names_free(&own);
     }
-    free(node);
-    free(ele);
-    free(poly);
     free(neigh);
     return status;
 }
@@ -172,7 +169,7 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     return TRI_OK;
 }
 
-static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
+static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
 
 /* NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is the base of these where mesh.14.node is
  * there, but no mesh.14. */
@@ -193,9 +190,9 @@ static enum tri_status check_size(const char *path, double memory, struct tri_er
     const double size = size_of(path);
     if (size < JUDGED_WORTH_A_LOOK || TEXT_SHARE * size <= memory)
         return TRI_OK;
-    return tri_fail(error, TRI_NO_MEMORY, path, 0, "has %.3g MB, which are read into memory and take %.3g MB there; "
-                    "%.3g MB may be used: a mesh of any size is read of .h5 and of .node, .ele and .poly",
-                    1e-6 * size, 1e-6 * TEXT_SHARE * size, 1e-6 * memory);
+    return tri_fail(error, TRI_NO_MEMORY, path, 0, "has %s, which are read into memory and take %s there; "
+                    "%s may be used: a mesh of any size is read of .h5 and of .node, .ele and .poly",
+                    tri_size_text(size).text, tri_size_text(TEXT_SHARE * size).text, tri_size_text(memory).text);
 }
 
 /* Where a format keeps the boundary alone, which segments there are is not known. */
@@ -207,6 +204,7 @@ static enum tri_status read_format(struct judged_files *f, const struct judged_a
     if (status != TRI_OK)
         return status;
     f->boundary_alone = !format->inner_segments;
+    f->base = format->base;
     f->n_nodes = f->mesh.n_points;
     f->source = take_arrays(f);
     return TRI_OK;

@@ -48,8 +48,7 @@ struct judged_ask {
 enum tri_status judged_read(struct judged_files *files, const struct judged_ask *ask, struct tri_error *error);
 void judged_files_free(struct judged_files *files);
 
-/* Cuts the suffix off, if it is there; one of those of text files of a mesh. */
-bool judged_cut_suffix(char *path, const char *suffix);
+/* Cuts the suffix off, if it is one of those of text files of a mesh. */
 bool judged_cut_text_suffix(char *path);
 
 #endif

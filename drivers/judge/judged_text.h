@@ -21,7 +21,7 @@ struct judged_text {
     bool stale_neighbors;      /* the .neigh file is of another mesh, and was not read */
 };
 
-/* A few MiB of memory; and, in scratch files in that folder (NULL: in memory), 20 bytes a point and 24 a triangle, 8
+/* A few MB of memory; and, in scratch files in that folder (NULL: in memory), 20 bytes a point and 24 a triangle, 8
  * more for each attribute, and 24 each where a triangle has six nodes, and neighbours. Errors: as triangle/text/read.h,
  * TRI_CANNOT_WRITE. */
 enum tri_status judged_text_read(struct judged_text *text, const struct judged_names *names, const char *folder,

@@ -1,6 +1,6 @@
 /* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
-#include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,6 +16,7 @@
 #include "sched/schedule/threads.h"
 #include "triangle/base/size_text.h"
 #include "triangle/check/check.h"
+#include "triangle/text/decimal.h"
 
 enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 
@@ -24,10 +25,10 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
-    "that in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or .grd, where BASE is its name. The\n"
-    "last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared. Of\n"
-    "triangles with six nodes each edge has one node, half the way along it, with its subsegment's marker and half\n"
-    "the way between the attributes of its ends.\n"
+    "that in one file that ptriangle has written, .h5, .vtkhdf, .vtu, .msh, .2dm, .14 or .grd, where BASE is its\n"
+    "name. The last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared.\n"
+    "Vertices in no triangle are a warning, not a fault. Of triangles with six nodes each edge has one node, half\n"
+    "the way along it, with its subsegment's marker and half the way between the attributes of its ends.\n"
     "\n"
     "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
     "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
@@ -54,7 +55,7 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
     "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
     "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
-    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what is free (default:\n"
+    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1000), or 60% of what is free (default:\n"
     "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
     "                       part, its boundary, segments and input, and a byte for each vertex stay in memory:\n"
     "                       what takes too much of that is refused\n"
@@ -85,13 +86,6 @@ static int fail(const char *format, ...)
     one_line_complain(PTRIANGLE_NAME, format, arguments);
     va_end(arguments);
     return TROUBLE;
-}
-
-static int fail_with(const struct tri_error *e)
-{
-    if (e->file[0] == '\0')
-        return fail("%s", e->text);
-    return e->line > 0 ? fail("%s:%ld: %s", e->file, e->line, e->text) : fail("%s: %s", e->file, e->text);
 }
 
 /* --- judging */
@@ -189,79 +183,40 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-static bool parse_real(const char *text, double *value)
+/* A whole number from 0 on. */
+static bool take_count(const char *text, int64_t *value)
 {
-    char *end;
-    *value = strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*value) && *value >= 0;
+    const char *end = text + strlen(text);
+    return end != text && tri_scan_integer(text, end, value) == end && *value >= 0;
 }
 
-static bool parse_count(const char *text, int64_t *value)
+static bool take_real(const char *text, double *value)
 {
-    char *end;
-    errno = 0;
-    *value = strtoll(text, &end, 10);
-    return end != text && *end == '\0' && errno == 0 && *value >= 0;
-}
-
-/* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
-static bool parse_size(const char *text, double *bytes, double *share)
-{
-    static const char units[] = "KMGT";
-    char *end;
-    double value = strtod(text, &end);
-    const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
-    if (end == text || !(value > 0) || !isfinite(value) || (*end != '\0' && end[1] != '\0'))
-        return false;
-    *share = *end == '%' ? value / 100 : 0;
-    *bytes = *end == '%' ? 0 : unit != NULL ? ldexp(value, 10 * (int)(unit - units + 1)) : value;
-    return *end == '\0' || unit != NULL || (*end == '%' && value <= 100);
+    return resources_take_real(text, "", NULL, 0, DBL_MAX, value);
 }
 
 /* Applies an option without value; false: it is none. */
 static bool apply_flag(struct settings *s, int option)
 {
     switch (option) {
-    case 'D':
-        s->check.delaunay = TRI_CHECK_CONFORMING;
-        return true;
-    case NO_DELAUNAY:
-        s->check.delaunay = TRI_CHECK_NOT_DELAUNAY;
-        return true;
-    case 'c':
-        s->check.convex = true;
-        return true;
-    case 'j':
-        s->check.renumbered = true;
-        return true;
-    case KEEP_HOLES:
-        s->check.ignore_holes = true;
-        return true;
+    case 'D': s->check.delaunay = TRI_CHECK_CONFORMING; break;
+    case NO_DELAUNAY: s->check.delaunay = TRI_CHECK_NOT_DELAUNAY; break;
+    case 'c': s->check.convex = true; break;
+    case 'j': s->check.renumbered = true; break;
+    case KEEP_HOLES: s->check.ignore_holes = true; break;
+    case ANY_HOLES: s->check.any_holes = true; break;
+    case KEEP_HULL: s->check.border = TRI_CHECK_BORDER_HULL; break;
+    case NO_MARKERS: s->ignore_markers = true; break;
+    case NO_REGIONS: s->ignore_regions = true; break;
+    case JSON: s->json = true; break;
+    case QUIET: s->quiet = true; break;
     case 'r':
         s->check.ignore_holes = s->check.ignore_lost = true;
         s->check.border = TRI_CHECK_BORDER_ANY;
-        return true;
-    case ANY_HOLES:
-        s->check.any_holes = true;
-        return true;
-    case KEEP_HULL:
-        s->check.border = TRI_CHECK_BORDER_HULL;
-        return true;
-    case NO_MARKERS:
-        s->ignore_markers = true;
-        return true;
-    case NO_REGIONS:
-        s->ignore_regions = true;
-        return true;
-    case JSON:
-        s->json = true;
-        return true;
-    case QUIET:
-        s->quiet = true;
-        return true;
-    default:
-        return false;
+        break;
+    default: return false;
     }
+    return true;
 }
 
 /* Applies one option; false: not an option, or no value for it. */
@@ -269,26 +224,15 @@ static bool apply(void *settings, int option)
 {
     struct settings *s = settings;
     switch (option) {
-    case 'p':
-        s->input = optarg;
-        return true;
-    case 'q':
-        return parse_real(optarg, &s->check.min_angle);
-    case 'b':
-        return parse_count(optarg, &s->check.max_bad);
-    case 'a':
-        return parse_real(optarg, &s->check.max_area);
-    case SMALL_INPUT_ANGLE:
-        return parse_real(optarg, &s->check.small_input_angle);
-    case THREADS:
-        return parse_count(optarg, &s->threads) && s->threads > 0;
-    case MEMORY:
-        return parse_size(optarg, &s->memory, &s->memory_share);
-    case SCRATCH:
-        s->scratch = optarg;
-        return true;
-    default:
-        return apply_flag(s, option);
+    case 'p': s->input = optarg; return true;
+    case 'q': return take_real(optarg, &s->check.min_angle);
+    case 'b': return take_count(optarg, &s->check.max_bad);
+    case 'a': return take_real(optarg, &s->check.max_area);
+    case SMALL_INPUT_ANGLE: return take_real(optarg, &s->check.small_input_angle);
+    case THREADS: return take_count(optarg, &s->threads) && s->threads > 0;
+    case MEMORY: return resources_take_size(optarg, 1, &s->memory, &s->memory_share);
+    case SCRATCH: s->scratch = optarg; return true;
+    default: return apply_flag(s, option);
     }
 }
 
@@ -306,19 +250,13 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     return 0;
 }
 
-static const char *usual_scratch(void)
-{
-    const char *folder = getenv("TMPDIR");
-    return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
-}
-
 static int run(const struct settings *s, struct judged_files *f)
 {
     struct tri_error error = {0};
     struct tri_check_report report;
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
-    const char *scratch = s->scratch != NULL ? s->scratch : usual_scratch();
+    const char *scratch = s->scratch != NULL ? s->scratch : resources_scratch();
     struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
                              .scratch = scratch, .executor = &executor};
     enum tri_status status = judged_read(f, &ask, &error);
@@ -327,8 +265,10 @@ static int run(const struct settings *s, struct judged_files *f)
              s->base);
     if (status == TRI_OK)
         status = judge(s, f, &executor, threads, &report, &error);
-    if (status != TRI_OK)
-        return fail_with(&error);
+    if (status != TRI_OK) {
+        one_line_error(stderr, PTRIANGLE_NAME ": ", &error);
+        return TROUBLE;
+    }
     struct verdict_style style = {s->base, s->check.min_angle, s->quiet};
     (s->json ? verdict_print_json : verdict_print_lines)(&style, f, &report);
     if (fflush(stdout) != 0 || ferror(stdout))

@@ -42,10 +42,19 @@ static void print_summary(const struct verdict_style *s, const struct judged_fil
     }
 }
 
+/* Points that can be corners, and are not: the matrix of a solver is singular there. 0 where there are no triangles. */
+static int64_t unused_points(const struct judged_files *f, const struct tri_check_report *r)
+{
+    return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;
+}
+
 void verdict_print_lines(const struct verdict_style *s, const struct judged_files *f, const struct tri_check_report *r)
 {
     print_items(r, s->quiet);
     if (!s->quiet) {
+        if (unused_points(f, r) > 0)
+            printf("warn  vertices in no triangle: %" PRId64 " (-j of ptriangle leaves them out)\n",
+                   unused_points(f, r));
         print_summary(s, f, r);
         puts(tri_check_passed(r) ? "no fault" : "FAULTS");
     }
@@ -74,9 +83,11 @@ void verdict_print_json(const struct verdict_style *s, const struct judged_files
     static const char *const states[] = {"skipped", "ok", "failed"};
     printf("{\"passed\": %s, \"base\": ", tri_check_passed(r) ? "true" : "false");
     print_json_string(s->base);
-    printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"triangles\": %" PRId64
-           ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64 ", \"subsegments\": %" PRId64,
-           f->n_nodes, r->n_used_points, f->source.n_triangles, r->n_edges, r->n_boundary_edges, f->source.n_segments);
+    printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"unused_vertices\": %" PRId64
+           ", \"triangles\": %" PRId64 ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64
+           ", \"subsegments\": %" PRId64,
+           f->n_nodes, r->n_used_points, unused_points(f, r), f->source.n_triangles, r->n_edges,
+           r->n_boundary_edges, f->source.n_segments);
     print_json_real("smallest_angle", r->smallest_angle);
     print_json_real("largest_angle", r->largest_angle);
     print_json_real("smallest_area", r->smallest_area);

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "triangle/text/names.h"
 
@@ -31,13 +32,15 @@ char *next_iteration(const char *name)
 
 struct arguments arguments_begin(int argc, char **argv)
 {
-    return (struct arguments){argc, argv, tri_switches_none(), NULL, NULL, NULL};
+    return (struct arguments){argc, argv, tri_switches_none(), NULL, NULL, NULL, NULL, NULL};
 }
 
 void arguments_word(struct arguments *arguments, const char *word)
 {
     if (word[0] == '-')
         tri_switches_add(&arguments->switches, word);
+    else if (arguments->file)
+        arguments->further = word;
     else
         arguments->file = word;
 }
@@ -51,9 +54,17 @@ static bool cut_suffix(char *name, const char *suffix)
     return true;
 }
 
-/* A suffix says what the input is. */
-static void apply_suffix(char *name, struct tri_switches *switches)
+/* A suffix says what the input is; mesh.14, if there is no such file, is a base. */
+static void apply_suffix(struct arguments *arguments)
 {
+    char *name = arguments->input;
+    struct tri_switches *switches = &arguments->switches;
+    const struct tri_format *format = tri_format_of(name);
+    if (format && (access(name, F_OK) == 0 || !tri_name_ends(name, ".14"))) {
+        arguments->format = format;
+        name[strlen(name) - strlen(format->suffix)] = 0;
+        switches->mesh = switches->segments = true;
+    }
     if (cut_suffix(name, ".node"))
         return;
     if (cut_suffix(name, ".poly"))
@@ -68,9 +79,12 @@ enum tri_status arguments_end(struct arguments *arguments, struct tri_error *err
 {
     if (!arguments->file)
         return TRI_OK;
+    if (arguments->further)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "one input file at a time, not both %.80s and %.80s; a number "
+                        "follows its switch in one word: -q30", arguments->file, arguments->further);
     arguments->input = tri_joined(arguments->file, "");
     if (arguments->input) {
-        apply_suffix(arguments->input, &arguments->switches);
+        apply_suffix(arguments);
         arguments->output = arguments->switches.no_iteration ? tri_joined(arguments->input, "")
                                                              : next_iteration(arguments->input);
     }

@@ -4,22 +4,25 @@
 
 #include "triangle/base/status.h"
 #include "triangle/dropin/switches.h"
+#include "triangle/text/formats.h"
 
 struct arguments {
     int argc; /* the words as given, for the comment in every file */
     char **argv;
     struct tri_switches switches;
-    const char *file; /* the last word that is no switch; NULL: there was none */
+    const char *file, *further; /* the first word that is no switch, and the last of several; NULL: there was none */
+    const struct tri_format *format; /* of the file, a mesh that another program reads as well; NULL: Triangle's */
     char *input;      /* file without its suffix; suffixes are appended to this */
     char *output;     /* the same for what is written */
 };
 
 struct arguments arguments_begin(int argc, char **argv);
 
-/* Takes one word: switches if it begins with a dash, else the input file. */
+/* Takes one word: switches if it begins with a dash, otherwise the input file. */
 void arguments_word(struct arguments *arguments, const char *word);
 
-/* Once all words are in: lets the file's suffix set its switches, and makes the names. TRI_NO_MEMORY. */
+/* Once all words are in: lets the file's suffix set its switches, and makes the names. TRI_BAD_INPUT: a second file, or
+ * a number apart from its switch. TRI_NO_MEMORY. */
 enum tri_status arguments_end(struct arguments *arguments, struct tri_error *error);
 
 void arguments_free(struct arguments *arguments);

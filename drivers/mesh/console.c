@@ -56,29 +56,16 @@ static bool are_one_place(int a, int b)
     return fstat(a, &at_a) == 0 && fstat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
 }
 
-static void print_error(FILE *stream, const char *before, const struct tri_error *error)
-{
-    fputs(before, stream);
-    if (error->file[0])
-        one_line_put(stream, error->file);
-    if (error->file[0] && error->line > 0)
-        fprintf(stream, ":%ld: ", error->line);
-    else if (error->file[0])
-        fputs(": ", stream);
-    one_line_put(stream, error->text);
-    fputc('\n', stream);
-}
-
 void console_error(const struct console *console, const struct tri_error *error)
 {
-    print_error(stdout, "Error:  ", error);
+    one_line_error(stdout, "Error:  ", error);
     fflush(stdout);
     told = true;
     if (are_one_place(STDOUT_FILENO, STDERR_FILENO))
         return;
     if (!error->file[0])
         fprintf(stderr, "%s: ", console->program);
-    print_error(stderr, "", error);
+    one_line_error(stderr, "", error);
 }
 
 /* Has the reader of standard output closed the pipe? */

@@ -12,6 +12,7 @@ static const char *const paragraphs[] = {
     "  file.poly  points, segments, holes, regions (sets -p)\n"
     "  file.ele   triangles (sets -r)\n"
     "  file.area  area bound of each triangle (sets -r and -a)\n"
+    "  file.msh   a mesh and its segments, as ptriangle writes them (sets -r and -p); also .vtu, .2dm, .14, .grd\n"
     "Output goes to file.1.node, file.1.ele and so on; the next run of file.1 writes file.2.\n",
 
     "What to make\n"

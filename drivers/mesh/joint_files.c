@@ -155,6 +155,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     j->total[0] = stream->first_vertex[stream->n_ranks];
     j->total[1] = stream->first_triangle[stream->n_ranks];
     j->total[2] = stream->first_segment[stream->n_ranks];
+    j->n_attributes = stream->n_attributes;
     j->bounds[0] = j->bounds[1] = HUGE_VAL;
     j->bounds[2] = j->bounds[3] = -HUGE_VAL;
     enum tri_status status = is_first(j) ? begin_first(j, stream, error) : begin_spools(j, stream, error);
@@ -171,11 +172,18 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     struct joint_files *j = user;
     const struct tri_sink *text = is_first(j) ? &j->text : &j->to_spool;
     enum tri_status status = text->take ? text->take(text->user, tile, error) : TRI_OK;
+    struct tri_tile used;
+    void *room;
+    if (!status && !orphans_leave_out(&j->orphans, tile, j->n_attributes, &used, &room))
+        status = no_memory(error);
+    if (status)
+        return status;
     for (int i = 0; i < JOINT_H5 && !status; i++)
         if (j->h5[i].part)
-            status = tri_h5_part_take(j->h5[i].part, tile, error);
-    tri_h5_extend_bounds(j->bounds, tile);
-    j->n_input += tile->column < 0 ? tile->n_vertices : 0;
+            status = tri_h5_part_take(j->h5[i].part, &used, error);
+    tri_h5_extend_bounds(j->bounds, &used);
+    j->n_input += used.column < 0 ? used.n_vertices : 0;
+    free(room);
     return status;
 }
 

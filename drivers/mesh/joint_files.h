@@ -13,6 +13,7 @@
 #ifndef DRIVERS_MESH_JOINT_FILES_H
 #define DRIVERS_MESH_JOINT_FILES_H
 
+#include "drivers/mesh/orphans.h"
 #include "ptriangle/tiles.h"
 #include "sched/ranks/carrier.h"
 #include "triangle/hdf5/h5_write.h"
@@ -35,6 +36,8 @@ struct joint_files {
         struct tri_h5_layout layout;      /* the rest is ours, on all ranks */
         struct tri_h5_part *part;
     } h5[JOINT_H5];
+    struct orphans orphans;               /* which HDF5 files leave out */
+    int32_t n_attributes;                 /* of a point */
     bool together;                        /* all ranks write */
     struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files */
     struct tri_output file[JOINT_FILES];  /* where others than rank 0 have joined in */

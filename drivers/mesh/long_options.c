@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "drivers/mesh/streams.h"
+#include "drivers/resources.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
@@ -22,7 +23,7 @@ const char long_options_help[] =
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on; one of these endings is no\n"
     "                     part of BASE, and any other of a dot and letters (.shp) is refused: run.1 and mesh.v2 are\n"
     "                     names, and mesh.fine.node says that mesh.fine is one\n"
-    "  --output FILE.h5 | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "  --output FILE.h5 | FILE.vtkhdf | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
     "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
     "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
     "                     such files\n"
@@ -35,7 +36,7 @@ const char long_options_help[] =
     "                     curve: new vertices and triangles are numbered along a space-filling curve, which\n"
     "                     makes solvers faster (the default); blocks, quicker: as the blocks of the schedule\n"
     "                     made them\n"
-    "  --memory SIZE      memory that the program may take: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what\n"
+    "  --memory SIZE      memory that the program may take: 500M, 4G (K, M, G, T: powers of 1000), or 60% of what\n"
     "                     the machine has. Default: what is left, by limits of batch systems too. The program keeps\n"
     "                     within, by files where a mesh does not fit, or refuses before it costs time\n"
     "  --scratch DIR      folder for what does not fit into memory. Default: TMPDIR, else that of the output\n"
@@ -115,41 +116,11 @@ static bool take_whole(const char *text, int most, int *value)
     return true;
 }
 
-/* A number, and maybe a letter that stands for a factor; the product is from low to high. */
-static bool take_real(const char *text, const char *letters, const double *factor, double low, double high,
-                      double *value)
-{
-    double number;
-    const char *end = tri_scan_real(text, text + strlen(text), &number);
-    const char *letter = *end ? strchr(letters, *end) : NULL;
-    if (end == text || (*end && (!letter || end[1])))
-        return false;
-    number *= letter ? factor[letter - letters] : 1;
-    if (!(number >= low && number <= high))
-        return false;
-    *value = number;
-    return true;
-}
-
 static bool take_word(const char *text, const char *off, const char *on, bool *value)
 {
     const bool is_on = strcmp(text, on) == 0, known = is_on || strcmp(text, off) == 0;
     *value = known ? is_on : *value;
     return known;
-}
-
-/* Bytes, or a share of what the machine has. */
-static bool take_memory(struct long_options *options, const char *text)
-{
-    static const double binary[] = {0x1p10, 0x1p20, 0x1p30, 0x1p40}, per_cent[] = {1};
-    double bytes = 0, share = 0;
-    const bool is_share = strchr(text, '%') != NULL;
-    if (is_share ? !take_real(text, "%", per_cent, DBL_TRUE_MIN, 100, &share)
-                 : !take_real(text, "KMGT", binary, 0x1p20, 0x1p60, &bytes))
-        return false;
-    options->memory = bytes;
-    options->memory_share = share / 100;
-    return true;
 }
 
 static bool take_value(struct long_options *options, struct tri_switches *switches, enum id id, const char *text)
@@ -159,11 +130,12 @@ static bool take_value(struct long_options *options, struct tri_switches *switch
     case THREADS: return take_whole(text, LONG_OPTIONS_MAX_THREADS, &options->threads);
     case PARTS: return take_whole(text, TRI_MOST_PARTS, &options->n_parts);
     case MAX_AREA:
-        return take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) && (switches->area = true);
-    case MIN_ANGLE: return take_real(text, "", NULL, 0, 60, &switches->min_angle) && (switches->angle = true);
-    case EVERY: return take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
-    case TIME_LIMIT: return take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
-    case MEMORY: return take_memory(options, text);
+        return resources_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) &&
+               (switches->area = true);
+    case MIN_ANGLE: return resources_take_real(text, "", NULL, 0, 60, &switches->min_angle) && (switches->angle = true);
+    case EVERY: return resources_take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
+    case TIME_LIMIT: return resources_take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
+    case MEMORY: return resources_take_size(text, 1e6, &options->memory, &options->memory_share);
     case HOLES: return take_word(text, "points", "auto", &switches->even_odd);
     case NUMBERING: return take_word(text, "curve", "blocks", &options->by_block);
     default: return false;
@@ -195,19 +167,19 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
 static bool is_base(const char *value)
 {
     const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
-    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, STREAM_SUFFIX);
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, ".h5");
 }
 
 static enum tri_status take_output(struct long_options *options, const char *value, struct tri_error *error)
 {
-    if (stream_is_wanted(value))
+    if (tri_name_h5(value) > 0)
         return add_file(options->streams, &options->n_streams, value, error);
     if (tri_format_of(value))
         return add_file(options->exports, &options->n_exports, value, error);
     const char *missing = value[tri_format_base(value)] ? NULL : tri_format_missing(value);
     if (missing)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX
-                        ", " TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are .h5, .vtkhdf, "
+                        TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
     if (!is_base(value))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
                         "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);

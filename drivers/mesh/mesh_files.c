@@ -149,9 +149,8 @@ static enum tri_status write_export(const struct run *run, const struct tri_grid
     return status ? status : export_write(&export, grid, run->hooks->executor, run->error);
 }
 
-static enum tri_status write_all(const struct run *run, const struct tri_grid *grid)
+static enum tri_status write_own(const struct run *run, const struct tri_grid *grid)
 {
-    const struct long_options *o = run->hooks->options;
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS && !status; k++) {
         enum plan plan = plan_of(run, k);
@@ -159,26 +158,40 @@ static enum tri_status write_all(const struct run *run, const struct tri_grid *g
             console_say(&run->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
         status = plan == WRITTEN ? write_file(run, grid, &kinds[k]) : TRI_OK;
     }
+    return status;
+}
+
+static enum tri_status write_exports(const struct run *run, const struct tri_grid *grid)
+{
+    const struct long_options *o = run->hooks->options;
+    enum tri_status status = TRI_OK;
     for (int i = 0; i < o->n_exports && !status; i++)
         status = write_export(run, grid, o->exports[i]);
     return status;
 }
 
-struct tri_grid_options mesh_files_grid(const struct run *run)
+struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers)
 {
     const struct tri_switches *s = &run->arguments->switches;
     struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
     options.is_edge = s->segments ? run->is_edge : NULL;
     options.base = run->base;
+    options.jettison = options.jettison || (for_solvers && run->unused.n != 0);
     return options;
+}
+
+static enum tri_status write_from_grid(const struct run *run, bool for_solvers)
+{
+    const struct tri_grid_options options = mesh_files_grid(run, for_solvers);
+    struct tri_grid grid;
+    enum tri_status status = tri_grid_make(&grid, &options, run->error);
+    status = status ? status : for_solvers ? write_exports(run, &grid) : write_own(run, &grid);
+    tri_grid_free(&grid);
+    return status;
 }
 
 enum tri_status mesh_files_write(const struct run *run)
 {
-    const struct tri_grid_options options = mesh_files_grid(run);
-    struct tri_grid grid;
-    enum tri_status status = tri_grid_make(&grid, &options, run->error);
-    status = status ? status : write_all(run, &grid);
-    tri_grid_free(&grid);
-    return status;
+    enum tri_status status = write_from_grid(run, false);
+    return status || run->hooks->options->n_exports == 0 ? status : write_from_grid(run, true);
 }

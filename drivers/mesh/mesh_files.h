@@ -27,8 +27,8 @@ bool mesh_files_has(const struct run *run, const char *suffix);
  * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status mesh_files_check(const struct run *run, const struct file_names *read);
 
-/* The mesh as its files show it. */
-struct tri_grid_options mesh_files_grid(const struct run *run);
+/* The mesh as Triangle's files show it, or as those of solvers do, which hold no point that no triangle uses. */
+struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers);
 
 /* Writes the mesh, which has no free numbers, into run->outputs, whoever fails: its caller commits or aborts. Input
  * points are written bit by bit as they were read. Says a line for each file, and one for all parts of a mesh. */

@@ -184,7 +184,7 @@ static void suggest(const struct run *run, double needed, char *text, size_t siz
 {
     *text = 0;
     if (run->hooks->options->memory > 0 && needed <= system_memory_left(run))
-        snprintf(text, size, "; --memory %.0fM would do", ceil((resources_memory_used() + needed) / 0x1p20) + 1);
+        snprintf(text, size, "; --memory %.0fM would do", ceil(1e-6 * (resources_memory_used() + needed)) + 1);
 }
 
 static enum tri_status fail_memory(const struct run *run, const struct needs *n, bool sure, double needed, double left,

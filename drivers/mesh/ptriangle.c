@@ -137,10 +137,10 @@ static enum tri_status refine_with(struct program *p, const struct par_options *
 
 /* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
  * boundary is a subsegment. */
-static void count_streamed(const struct program *p, const struct tri_counts *before, int64_t unused)
+static void count_streamed(const struct program *p, const struct tri_counts *before)
 {
     struct tri_counts *c = &p->run->counts;
-    c->vertices = handed_out(p, 0) - unused;
+    c->vertices = handed_out(p, 0) - p->run->unused.n;
     c->triangles = handed_out(p, 1);
     c->subsegments = handed_out(p, 2);
     c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
@@ -171,7 +171,7 @@ static enum tri_status join_files(struct program *p, enum tri_status status)
 {
     const bool ends_at_once = !p->options.write_partial && !long_options_state(&p->options);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
-                                    .no_sync = p->options.no_sync,
+                                    .no_sync = p->options.no_sync, .orphans = p->run->unused,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
                                     .text_options = {.base = p->run->base, .figure = &p->run->pslg,
                                                      .markers = !p->run->arguments->switches.no_markers}};
@@ -237,7 +237,6 @@ static enum tri_status sweep(struct program *p)
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
     enum tri_status status = tri_count_mesh(&before, p->mesh, NULL, p->run->error);
-    int64_t unused = p->mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, run);
     status = status ? status : streams_open_text(&p->streams, run);
     status = status ? status : streams_open_exports(&p->streams, run);
@@ -248,7 +247,7 @@ static enum tri_status sweep(struct program *p)
     streams_close(&p->streams);
     tell_of_parking(p);
     if (!status)
-        count_streamed(p, &before, unused);
+        count_streamed(p, &before);
     run->remain_known = !status && p->schedule.remain_known;
     memcpy(run->remain, p->schedule.remain, sizeof run->remain);
     return status;

@@ -66,6 +66,12 @@ static void warn_of_input(void *user, const char *file, long line, const char *t
 static enum tri_status read_pslg(struct run *r, const struct tri_read_options *options)
 {
     const struct tri_names *names = &r->names;
+    const struct tri_format *format = r->arguments->format;
+    if (format) {
+        console_say(&r->console, "Opening %s.\n", r->arguments->file);
+        r->base = options->default_base;
+        return format->read(r->arguments->file, &r->pslg, &r->elements, options->executor, r->error);
+    }
     if (!r->arguments->switches.segments) {
         console_say(&r->console, "Opening %s.\n", names->node);
         return tri_read_node(names->node, options, &r->pslg, &r->base, r->error);
@@ -82,8 +88,11 @@ static enum tri_status read_pslg(struct run *r, const struct tri_read_options *o
 static enum tri_status read_mesh(struct run *r, const struct tri_read_options *options)
 {
     const struct tri_names *names = &r->names;
-    console_say(&r->console, "Opening %s.\n", names->ele);
-    enum tri_status status = tri_read_ele(names->ele, options, r->base, r->pslg.n_points, &r->elements, r->error);
+    enum tri_status status = TRI_OK;
+    if (!r->arguments->format) {
+        console_say(&r->console, "Opening %s.\n", names->ele);
+        status = tri_read_ele(names->ele, options, r->base, r->pslg.n_points, &r->elements, r->error);
+    }
     if (status || !r->arguments->switches.area_lists)
         return status;
     console_say(&r->console, "Opening %s.\n", names->area);
@@ -100,19 +109,22 @@ static void add_hint(const struct run *r)
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
         snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
-                 " files; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
+                 " files, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
 }
 
 /* Once the .poly has been read it is known whether the .node is, too. */
 static struct file_names files_read(const struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
+    const bool is_own = !r->arguments->format;
     struct file_names read = {0};
-    if (s->segments)
+    if (!is_own)
+        read.name[read.n++] = r->arguments->file;
+    if (is_own && s->segments)
         read.name[read.n++] = r->names.poly;
-    if (!r->points_in_poly)
+    if (is_own && !r->points_in_poly)
         read.name[read.n++] = r->names.node;
-    if (s->mesh)
+    if (is_own && s->mesh)
         read.name[read.n++] = r->names.ele;
     if (s->mesh && s->area_lists)
         read.name[read.n++] = r->names.area;
@@ -266,13 +278,22 @@ static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
     return TRI_OK;
 }
 
-/* Counts the vertices of no triangle while the mesh is small: refinement makes none (tri_count_refined). */
-static enum tri_status count_unused(struct run *r, const struct tri_mesh *mesh, struct tri_error *error)
+/* Finds the vertices of no triangle, by the caller's numbers, while the mesh is small. No number of it is free. */
+static enum tri_status find_unused(struct run *r, const struct tri_mesh *mesh)
 {
-    struct tri_counts before;
-    enum tri_status status = tri_count_mesh(&before, mesh, r->hooks->executor, error);
-    r->unused = status ? -1 : mesh->n_vertices - before.vertices;
-    return status;
+    const int32_t n = mesh->n_vertices;
+    int32_t *kept = calloc((size_t)n + 2, sizeof *kept);
+    if (!kept)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+        for (int k = 0; k < 3; k++) {
+            const tri_vertex_id v = mesh->tri[t].v[k];
+            kept[(mesh->origin && v < mesh->n_input ? mesh->origin[v] : v) + 1] = 1;
+        }
+    for (int32_t v = 0; v < n; v++)
+        kept[v + 1] += kept[v];
+    r->unused = (struct orphans){n - kept[n], n, kept};
+    return TRI_OK;
 }
 
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
@@ -288,7 +309,9 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     interrupt_reached(mesh->n_triangles, " triangles");
     if (r->plan.swept && !hooks->written_elsewhere)
         begin_outputs(r);
-    status = r->plan.swept ? keep_twins(r, mesh) : count_unused(r, mesh, error);
+    status = find_unused(r, mesh);
+    if (!status && r->plan.swept)
+        status = keep_twins(r, mesh);
     if (!status)
         status = hooks->refine ? hooks->refine(hooks->user, r, mesh, quality, report)
                                : tri_refine(mesh, quality, report, error);
@@ -315,11 +338,11 @@ static enum tri_status generate(struct run *r)
     options.stop = interrupt_stop();
     options.elements = s->mesh ? &r->elements : NULL;
     options.is_edge = r->is_edge;
-    options.base = r->base;
+    options.base = r->arguments->format ? r->arguments->format->base : r->base;
     enum tri_status status = tri_generate(&r->mesh, &r->pslg, &options, &r->report, r->error);
     if (r->built) /* not the input's fault */
         return notice_stop(r, status);
-    if (status == TRI_BAD_INPUT && s->mesh)
+    if (status == TRI_BAD_INPUT && s->mesh && !r->arguments->format)
         snprintf(r->error->file, sizeof r->error->file, "%s.ele", r->arguments->input);
     else if (status == TRI_BAD_INPUT)
         snprintf(r->error->file, sizeof r->error->file, "%s", r->arguments->file);
@@ -409,10 +432,10 @@ static enum tri_status make_room(struct run *r, double bytes)
 
 /* Lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and 12 a triangle for the
  * nodes amid them; 8 a vertex where those without triangles are left out. */
-static double list_bytes(const struct tri_switches *s, const struct tri_mesh *mesh)
+static double list_bytes(const struct tri_switches *s, const struct tri_mesh *mesh, bool leaves_out)
 {
     const bool edges = s->edges || s->voronoi || s->off;
-    return ((s->second_order ? 18 : edges ? 6 : 0) + (s->jettison ? 4 : 0)) * (double)mesh->n_triangles;
+    return ((s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0)) * (double)mesh->n_triangles;
 }
 
 static enum tri_status write_mesh(struct run *r)
@@ -422,7 +445,7 @@ static enum tri_status write_mesh(struct run *r)
     console_say(&r->console, "\n");
     r->mark = tri_seconds();
     const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)r->mesh.n_triangles);
-    enum tri_status status = make_room(r, waiting + list_bytes(&r->arguments->switches, &r->mesh));
+    enum tri_status status = make_room(r, waiting + list_bytes(&r->arguments->switches, &r->mesh, mesh_files_grid(r, true).jettison));
     status = status ? status : mesh_files_write(r);
     end_stage(r, RUN_WRITE);
     if (status)
@@ -445,10 +468,12 @@ static enum tri_status tell(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
     enum tri_status status = TRI_OK;
-    if (!r->plan.swept && r->unused >= 0)
-        tri_count_refined(&r->counts, &r->mesh, r->unused);
+    if (!r->plan.swept && r->unused.n >= 0)
+        tri_count_refined(&r->counts, &r->mesh, r->unused.n);
     else if (!r->plan.swept)
         status = tri_count_mesh(&r->counts, &r->mesh, r->hooks->executor, r->error);
+    if (!r->plan.swept)
+        r->unused.n = r->mesh.n_vertices - r->counts.vertices;
     r->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
@@ -569,6 +594,7 @@ static void free_run(struct run *r)
     tri_elements_free(&r->elements);
     free(r->is_edge);
     free(r->twin);
+    free(r->unused.kept);
     tri_names_free(&r->names);
 }
 
@@ -576,7 +602,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
 {
     const struct tri_switches *s = &arguments->switches;
     struct tri_error error = {0};
-    struct run r = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s), .unused = -1,
+    struct run r = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s), .unused.n = -1,
                     .outputs = &outputs, .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)

@@ -10,6 +10,7 @@
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/long_options.h"
 #include "drivers/mesh/mesh_files.h"
+#include "drivers/mesh/orphans.h"
 #include "triangle/base/executor.h"
 #include "triangle/refine/generate.h"
 #include "triangle/refine/stats.h"
@@ -62,7 +63,7 @@ struct run {
     int64_t input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
-    int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
+    struct orphans unused; /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
     bool built;         /* there is a mesh: what stops now leaves one that is valid */
 };
 

@@ -18,10 +18,13 @@ static const char *without_folder(const char *name)
 
 /* --- opening and closing */
 
-static enum tri_status open_stream(struct stream *s, const char *name, bool markers, struct tri_sink *sink,
-                                   struct tri_output_set *set, struct tri_error *error)
+static enum tri_status open_stream(struct stream *s, const char *name, const struct run *run, struct tri_sink *sink)
 {
-    s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
+    struct tri_output_set *set = run->outputs;
+    struct tri_error *error = run->error;
+    s->options = (struct tri_h5_options){.program = program, .name = without_folder(name),
+                                         .markers = !run->arguments->switches.no_markers,
+                                         .n_orphans = run->unused.n};
     char *xdmf = stream_xdmf(name);
     if (!xdmf)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
@@ -37,8 +40,7 @@ enum tri_status streams_open(struct streams *streams, const struct run *run)
     enum tri_status status = TRI_OK;
     *streams = (struct streams){.run = run};
     for (int i = 0; !status && i < o->n_streams; i++)
-        status = open_stream(&streams->stream[streams->n++], o->streams[i], !run->arguments->switches.no_markers,
-                             &streams->sink[streams->n_sinks++], run->outputs, run->error);
+        status = open_stream(&streams->stream[streams->n++], o->streams[i], run, &streams->sink[streams->n_sinks++]);
     return status;
 }
 
@@ -103,15 +105,24 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].begin(streams->sink[i].user, stream, error);
     memset(streams->taken, 0, sizeof streams->taken);
+    streams->n_attributes = stream->n_attributes;
     return status;
 }
 
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct streams *streams = user;
+    const struct run *run = streams->run;
+    struct tri_tile used = *tile; /* what a mesh that is in memory hands out is used */
+    void *room = NULL;
     enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < streams->n_sinks; i++)
-        status = streams->sink[i].take(streams->sink[i].user, tile, error);
+    if (run->plan.swept && !orphans_leave_out(&run->unused, tile, streams->n_attributes, &used, &room))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a tile");
+    for (int i = 0; !status && i < streams->n_sinks; i++) {
+        const bool is_text = streams->text && i == streams->n;
+        status = streams->sink[i].take(streams->sink[i].user, is_text ? tile : &used, error);
+    }
+    free(room);
     streams->taken[0] += tile->n_vertices;
     streams->taken[1] += tile->n_triangles;
     streams->taken[2] += tile->n_segments;
@@ -242,7 +253,7 @@ static enum tri_status hand_out(struct piece *p, const double *columns, struct t
 
 enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink)
 {
-    const struct tri_grid_options options = mesh_files_grid(run);
+    const struct tri_grid_options options = mesh_files_grid(run, true);
     struct tri_grid grid;
     enum tri_status status = tri_grid_make(&grid, &options, run->error);
     if (status)

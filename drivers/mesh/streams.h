@@ -30,22 +30,12 @@ struct streams {
     const struct run *run;
     int n_sinks;
     struct tri_sink sink[LONG_OPTIONS_MOST_EXPORTS + 2]; /* of the HDF5 files, of the texts, of the store */
-    int64_t taken[3]; /* vertices, triangles, segments so far */
+    int64_t taken[3]; /* vertices, triangles, segments so far, orphans included */
+    int32_t n_attributes; /* of a point */
 };
 
-#define STREAM_SUFFIX ".h5"
-
-/* Does this name ask for such a file? */
-static inline bool stream_is_wanted(const char *name)
-{
-    return strlen(name) > strlen(STREAM_SUFFIX) && tri_name_ends(name, STREAM_SUFFIX);
-}
-
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
-static inline char *stream_xdmf(const char *name)
-{
-    return tri_name(name, strlen(name) - strlen(STREAM_SUFFIX), ".xdmf");
-}
+static inline char *stream_xdmf(const char *name) { return tri_name(name, tri_name_h5(name), ".xdmf"); }
 
 /* Opens the HDF5 files of the run in run->outputs. To be closed in any case, before the set is committed. */
 enum tri_status streams_open(struct streams *streams, const struct run *run);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "triangle/refine/census.h"
+#include "triangle/refine/disk.h"
 
 /* --- what went otherwise */
 
@@ -29,6 +30,22 @@ void summary_notes(const struct run *run)
         console_remark(&run->console, "warning: %s\n", notes->empty);
 }
 
+/* A Voronoi vertex lies beyond a subsegment whose diametral circle holds the apex of its triangle. Without segments the
+ * mesh ends at the convex hull, and beyond that no vertex is. */
+static void warn_of_voronoi(const struct run *run)
+{
+    const struct tri_mesh *mesh = &run->mesh;
+    const struct tri_switches *s = &run->arguments->switches;
+    int64_t n = 0;
+    for (tri_sub_id i = 0; s->voronoi && (s->segments || s->mesh) && i < mesh->n_subs; i++)
+        for (int side = 0; side < 2; side++)
+            n += mesh->sub[i].side[side] != TRI_NONE &&
+                 tri_is_in_diametral_disk(mesh, &mesh->sub[i], mesh->sub[i].side[side]);
+    if (n > 0)
+        console_warn(&run->console, "Voronoi vertices beyond a segment, perhaps nearer to other sites than to their own: "
+                     "%" PRId64 ". -D prevents that.\n", n);
+}
+
 void summary_input(const struct run *run)
 {
     const struct console *console = &run->console;
@@ -43,6 +60,7 @@ void summary_input(const struct run *run)
     if (report->carve.between > 0)
         console_warn(console, "hole points on segments, which empty nothing: %" PRId32 ".\n", report->carve.between);
     summary_notes(run);
+    warn_of_voronoi(run);
 }
 
 static const char *reason_of(const struct run *run, enum tri_excuse excuse)
@@ -113,11 +131,21 @@ void summary_bounds(struct run *run)
 
 /* --- Statistics */
 
+/* Nodes amid edges that were read with -r are not written again. */
+static void warn_of_unused(const struct run *run)
+{
+    const int64_t n = run->unused.n;
+    if (n > 0 && run->counts.triangles > 0 && !run->arguments->switches.jettison && !run->elements.extra)
+        console_warn(&run->console, "%" PRId64 " point%s in no triangle: %s.\n", n, n == 1 ? " is" : "s are",
+                     long_options_exports_alone(run->hooks->options) ? "left out" : "-j leaves them out");
+}
+
 void summary_counts(const struct run *run)
 {
     const struct console *console = &run->console;
     const struct tri_switches *switches = &run->arguments->switches;
     const struct tri_counts *counts = &run->counts;
+    warn_of_unused(run);
     console_say(console, "\nStatistics:\n\n  Input vertices: %" PRId32 "\n", run->pslg.n_points);
     if (switches->mesh)
         console_say(console, "  Input triangles: %" PRId32 "\n", run->elements.n);

@@ -28,10 +28,10 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or\n"
-    ".grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or that has more\n"
-    "than 16.7 million triangles, what lies in the window is drawn; if that is more than so many triangles, densities\n"
-    "are.\n"
+    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtkhdf, .vtu, .msh,\n"
+    ".2dm, .14 or .grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or\n"
+    "that has more than 16.7 million triangles, what lies in the window is drawn; if that is more than so many\n"
+    "triangles, densities are.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
     "  -c, --color quality|area|region|block|none|density\n"
@@ -76,14 +76,6 @@ static int fail(int code, const char *format, ...)
     one_line_complain(PTRIANGLE_NAME, format, arguments);
     va_end(arguments);
     return code;
-}
-
-static int fail_with(const struct tri_error *e)
-{
-    if (e->file[0] == '\0')
-        return fail(TROUBLE, "%s", e->text);
-    return e->line > 0 ? fail(TROUBLE, "%s:%ld: %s", e->file, e->line, e->text)
-                       : fail(TROUBLE, "%s: %s", e->file, e->text);
 }
 
 /* --- reading */
@@ -222,10 +214,8 @@ static enum tri_status take_part(struct settings *s, struct files *f, const stru
 
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
-    const char *folder = getenv("TMPDIR");
     const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .may_lack_triangles = true,
-                                   .memory = 0.8 * resources_memory(),
-                                   .scratch = folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+                                   .memory = 0.8 * resources_memory(), .scratch = resources_scratch()};
     struct judged_files judged = {0};
     enum tri_status status = judged_read(&judged, &ask, error);
     if (status == TRI_OK)
@@ -368,13 +358,6 @@ static bool parse_word(const char *text, const char *words, int *value)
     return false;
 }
 
-static bool parse_size(const char *text, double *value)
-{
-    char *end;
-    *value = floor(strtod(text, &end));
-    return end != text && *end == '\0' && *value >= 64 && *value <= 12000;
-}
-
 static bool parse_box(const char *text, struct plot_box *box)
 {
     double *const value[4] = {&box->x0, &box->y0, &box->x1, &box->y1};
@@ -395,19 +378,16 @@ static bool apply(void *settings, int option)
     int word = 0;
     bool known = true;
     switch (option) {
-    case 'o':
-        s->output = optarg;
-        return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
+    case 'o': s->output = optarg; return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
+    case 's': return resources_take_real(optarg, "", NULL, 64, 12000, &s->style.width);
+    case 'w': return s->has_window = parse_box(optarg, &s->style.window);
+    case 'm': return s->style.has_mark = parse_box(optarg, &s->style.mark);
+    case 't': s->style.title = optarg; break;
+    case 'b': s->blocks = optarg; break;
     case 'c':
         known = parse_word(optarg, "quality|region|area|block|none|density", &word);
         s->colour = (enum colouring)word;
         break;
-    case 's':
-        return parse_size(optarg, &s->style.width);
-    case 'w':
-        return s->has_window = parse_box(optarg, &s->style.window);
-    case 'm':
-        return s->style.has_mark = parse_box(optarg, &s->style.mark);
     case 'e':
         known = parse_word(optarg, "auto|on|off", &word);
         s->style.edges = (enum plot_edges)word;
@@ -420,14 +400,7 @@ static bool apply(void *settings, int option)
         known = parse_word(optarg, "off|on", &word);
         s->style.legend = word == 1;
         break;
-    case 't':
-        s->style.title = optarg;
-        break;
-    case 'b':
-        s->blocks = optarg;
-        break;
-    default:
-        return false;
+    default: return false;
     }
     return known;
 }
@@ -447,6 +420,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     }
     if (s->colour == BY_BLOCK && s->blocks == NULL)
         return fail(MISUSE, "--color block needs --blocks FILE");
+    s->style.width = floor(s->style.width);
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     return 0;
@@ -470,10 +444,10 @@ int program_main(int argc, char **argv)
     if (status == TRI_STOPPED)
         interrupt_tell();
     if (status != TRI_OK)
-        code = fail_with(&error);
+        one_line_error(stderr, PTRIANGLE_NAME ": ", &error);
     if (status == TRI_STOPPED)
         interrupt_told();
-    code = status == TRI_STOPPED ? interrupt_code() : code;
+    code = status == TRI_STOPPED ? interrupt_code() : status != TRI_OK ? TROUBLE : EXIT_SUCCESS;
     tri_pslg_free(&files.mesh);
     tri_elements_free(&files.elements);
     free(files.block_phase);

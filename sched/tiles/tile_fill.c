@@ -278,7 +278,8 @@ static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mes
     if (item && n > 1)
         qsort(item, (size_t)n, sizeof *item, compare_subs);
     for (int32_t i = 0; item && i < n; i++) {
-        memcpy(job->copy.ends[i], item[i].end, sizeof item[i].end);
+        for (int k = 0; k < 2; k++)
+            job->copy.ends[i][k ^ mesh->parents[item[i].parent].reversed] = item[i].end[k];
         job->copy.segment_markers[i] = item[i].marker;
     }
     bool memory = item;

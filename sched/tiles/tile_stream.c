@@ -132,7 +132,7 @@ static void copy_items(const struct tri_mesh *mesh, const struct tri_tile *tile,
         const struct tri_subsegment *s = &mesh->sub[tile->first_segment + i];
         copy->segment_markers[i] = s->marker;
         for (int k = 0; k < 2; k++)
-            copy->ends[i][k] = par_shown(mesh, s->v[k]);
+            copy->ends[i][k ^ mesh->parents[s->parent].reversed] = par_shown(mesh, s->v[k]);
     }
 }
 

@@ -121,7 +121,7 @@ rm -f .said
 # A name is no format without a word about it.
 fresh letter.poly
 program 1 -p --output x.shp letter.poly
-complains '--output: there is no format \.shp: there are \.h5, \.vtu, '
+complains '--output: there is no format \.shp: there are \.h5, \.vtkhdf, \.vtu, '
 program 1 -p --output mesh.fine letter.poly
 complains 'no format \.fine: .*for a name with a dot add \.node$'
 program 0 -pQ --output mesh.fine.poly letter.poly
@@ -134,3 +134,122 @@ program 0 -pQ --output mesh.v2 letter.poly
 wrote mesh.v2.node mesh.v2.ele mesh.v2.poly
 program 0 -pQ --output mesh.14.node letter.poly
 check "a base that looks like ADCIRC's" "$bin/trianglecheck" --quiet mesh.14
+rm -f mesh.14.*
+
+# --- points that no triangle uses: in no file for solvers, however the mesh is made; Triangle's files keep them
+fresh
+orphans >two.poly
+PTRIANGLE_TEST_BLOCK=60
+export PTRIANGLE_TEST_BLOCK
+program 0 -pq30a0.002 two.poly --output x --output x.vtu --output x.msh --output x.2dm --output x.14
+says "Warning:  3 points are in no triangle: -j leaves them out."
+for file in x.vtu x.msh x.2dm x.14 x; do
+    what="trianglecheck $file"
+    "$bin/trianglecheck" "$file" >.out 2>.err || fault "a fault"
+    case $file in
+    x) says "warn  vertices in no triangle: 3 (-j of ptriangle leaves them out)" ;;
+    *) matches '^vertices ([0-9]+) \(\1 used\)' ;;
+    esac
+done
+what="trianglecheck --json"
+"$bin/trianglecheck" --json x >.out
+matches '"unused_vertices": 3,'
+program 0 -pq30a0.002o2 two.poly --output y.msh
+says "Warning:  3 points are in no triangle: left out."
+what="trianglecheck y.msh"
+"$bin/trianglecheck" y.msh >.out 2>.err || fault "a fault"
+silent_on "^(warn|FAIL)"
+program 0 -pj two.poly --output z
+silent_on "in no triangle"
+program 0 -p two.poly --output z.vtu
+check "one that is not refined" sh -c '"$1" z.vtu | grep -q "^vertices 8 (8 used)"' sh "$bin/trianglecheck"
+PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 two.poly --output s --output s.vtu --output s.msh --output s.2dm --output s.14
+says "Warning:  3 points are in no triangle: -j leaves them out."
+for suffix in vtu msh 2dm 14; do
+    check "the same .$suffix, swept" cmp x.$suffix s.$suffix
+done
+for suffix in node ele poly; do
+    check "the same .$suffix, swept" sh -c 'grep -v "^#" "x.$1" >.found; grep -v "^#" "s.$1" | cmp -s - .found' sh $suffix
+done
+if "$bin/ptriangle" -pq30a0.002Q two.poly --output x.h5 2>.err; then
+    check "x.h5" sh -c '"$1" x.h5 | grep -q "^vertices \([0-9]*\) (\1 used)"' sh "$bin/trianglecheck"
+    PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002Q two.poly --output s.h5
+    check "the same .h5, swept" cmp x.h5 s.h5
+    program 0 -pq30a0.002Q two.poly --output v.vtkhdf
+    check "the same .vtkhdf" cmp x.h5 v.vtkhdf
+    check "trianglecheck reads it" "$bin/trianglecheck" --quiet v.vtkhdf
+fi
+unset PTRIANGLE_TEST_BLOCK
+
+# --- pieces of a segment run its way
+runs_its_way() { # runs_its_way BASE POLY: by the markers, of which each segment of POLY that is meant has its own
+    check "pieces of $1 run their segments' way" awk '/^#/ { next } FNR == 1 { file++; n = $1; next }
+        file == 1 { if (FNR <= n + 1) { x[$1] = $2; y[$1] = $3 } else if (NF == 4) { a[$4] = $2; b[$4] = $3 } }
+        file == 2 { X[$1] = $2; Y[$1] = $3 }
+        file == 3 && NF == 4 && ($4 in a) { p = a[$4]; q = b[$4]; k++
+            if ((x[q] - x[p]) * (X[$3] - X[$2]) + (y[q] - y[p]) * (Y[$3] - Y[$2]) <= 0) bad++ }
+        END { exit k < 20 || bad > 0 }' "$2" "$1.node" "$1.poly"
+}
+fresh
+orphans >two.poly
+sed 's/^8 8 5 2$/8 8 5 0/' two.poly >own.poly # of segments along each other the first tells
+program 0 -Qpq30a0.002 own.poly --output x
+runs_its_way x own.poly
+run 0 -Qpq30a0.002 own.poly
+runs_its_way own.1 own.poly
+run 0 -Qrpq33a0.001 own.1
+runs_its_way own.2 own.poly
+
+# --- a mesh in a format of another program is refined: the same bounds, markers, attributes
+fresh section.poly
+program 0 -pq20aAQ section.poly --output x --output x.vtu --output x.msh --output x.2dm --output x.grd
+for suffix in msh vtu 2dm grd; do
+    program 0 -q30 x.$suffix --output r
+    says "Opening x.$suffix."
+    case $suffix in
+    msh | vtu) judge --refined --poly section.poly -q 30 r ;;
+    *) judge -q 30 r ;; # segments inside are not kept
+    esac
+    [ $suffix = grd ] || check "regions of x.$suffix" test "$(awk 'NR == 1 { print $3 }' r.ele)" -eq 1
+done
+program 0 -rpq30Q x --output own
+program 0 -q30Q x.vtu --output again
+for suffix in node ele poly; do # holes are those of the input: the format has none
+    check "the same .$suffix as of .node and .ele" \
+        sh -c 'grep -v "^#" "again.$1" | sed "\$d" >.found; grep -v "^#" "own.$1" | head -n "$(wc -l <.found)" |
+            cmp -s - .found' sh $suffix
+done
+program 1 -q30 x.msh --output x.msh
+complains '^x\.msh: would be overwritten, a file of the input'
+program 1 -q30 absent.msh
+complains '^absent\.msh: '
+
+# --- names of regions and boundaries; types of land
+fresh section.poly
+program 0 -pq20aAQ section.poly --output x.msh
+check "names without blanks" sh -c 'grep -aq "^2 1 \"region_1\"$" x.msh && grep -aq "^1 1 \"marker_1\"$" x.msh &&
+    grep -aq "^\"attribute_0\"$" x.msh'
+fresh
+printf '%s\n' "8 2 0 0" "1 0 0" "2 9 0" "3 9 9" "4 0 9" "5 3 3" "6 6 3" "7 6 6" "8 3 6" "8 1" "1 1 2 2" "2 2 3 20" \
+    "3 3 4 22" "4 4 1 7" "5 5 6 20" "6 6 7 20" "7 7 8 20" "8 8 5 20" 1 "1 4 4" >sea.poly
+program 0 -pQ sea.poly --output fort.14
+check "types of land" test "$(sed -n '/land boundaries/,$p' fort.14 | awk 'NF == 2 { print $2 }' | sort -n | tr '\n' ' ')" \
+    = "0 20 21 22 "
+
+# --- faults by the file's own numbers
+awk 'NF == 5 && $2 == 3 && !done { t = $3; $3 = $4; $4 = t; done = $1 } { print }' fort.14 >turned.14
+what="trianglecheck turned.14"
+"$bin/trianglecheck" turned.14 >.out 2>.err && fault "no fault"
+matches '^FAIL  orientation: 1, first: triangle 1 '
+
+# --- a Voronoi diagram of triangles that are not Delaunay
+fresh
+printf '%s\n' "6 2 0 0" "1 0 0" "2 8 0" "3 8 6" "4 0 6" "5 4 2.9" "6 4 3.1" "5 0" "1 1 2" "2 2 3" "3 3 4" "4 4 1" \
+    "5 1 3" 0 >thin.poly
+run 0 -pv thin
+matches '^Warning:  Voronoi vertices beyond a segment, .*: [1-9][0-9]*\. -D prevents that\.$'
+run 0 -pvD thin
+silent_on "Voronoi vertices beyond"
+sed -n 1,7p thin.poly >bare.node
+run 0 -v bare
+silent_on "Voronoi vertices beyond"

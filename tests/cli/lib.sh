@@ -94,3 +94,11 @@ counts() { # counts V T E EXTERIOR INTERIOR SUBSEGMENTS: the statistics; a dot: 
         for (k = 1; k <= n; k++) if (e[k] != "." && e[k] != $k) { print "no"; exit } print "yes" }')
     [ "$same" = yes ] || fault "counts $found instead of $*"
 }
+
+# Two squares side by side, each with corners of its own, a point outside, and a segment in the first that runs to the
+# left; rings run both ways. Markers of segments from 1.
+orphans() {
+    printf '%s\n' "11 2 1 0" "1 0 0 1" "2 1 0 2" "3 1 1 3" "4 0 1 4" "5 1 0 5" "6 2 0 6" "7 2 1 7" "8 1 1 8" "9 5 5 9" \
+        "10 .3 .4 10" "11 .7 .6 11" "9 1" "1 1 2 1" "2 2 3 2" "3 3 4 3" "4 4 1 4" "5 6 5 5" "6 7 6 6" "7 8 7 7" \
+        "8 8 5 2" "9 11 10 9" 0
+}

@@ -91,6 +91,26 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
     rm -f one.* two.*
 done
 
+# --- points that no triangle uses are in no HDF5 file, and in Triangle's files
+fresh
+orphans >pair.poly
+program 0 -Qpq30a0.0005 pair.poly --output one
+ranks 0 3 -pq30a0.0005 pair.poly --output two
+says "Warning:  3 points are in no triangle: -j leaves them out."
+for suffix in node ele poly; do
+    check "the same .$suffix" same_but_for_comments one.$suffix two.$suffix
+done
+program 0 -Qpq30a0.0005 pair.poly --output one.msh
+ranks 0 3 -Qpq30a0.0005 pair.poly --output two.msh
+check "the same .msh" cmp one.msh two.msh
+if "$bin/ptriangle" -Qpq30a0.0005 pair.poly --output one.h5 2>.err; then
+    ranks 0 3 -Qpq30a0.0005 pair.poly --output two.h5
+    check "the same .h5" cmp one.h5 two.h5
+    ranks 0 3 -Qpq30a0.0005 pair.poly --output three.h5 --output three.vtu
+    check "the same .h5, of one rank" cmp one.h5 three.h5
+fi
+fresh section.poly
+
 # --- what moved, by reason and rank
 ranks 0 3 -Qpq30a0.01 section.poly --output one.vtu --report report.json
 for word in '"borders": [1-9]' '"tiles": [1-9]' '"input": [1-9]'; do

@@ -230,8 +230,11 @@ fresh letter.poly
 run 0 "-{pXlRUk%59}" - -i -F -s letter
 counts 57 57 114
 fresh letter.poly square.poly
-run 0 letter.poly square.poly # the last file wins
-wrote square.1.node square.1.ele square.1.poly
+run 1 letter.poly square.poly
+complains '^triangle: one input file at a time, not both letter\.poly and square\.poly; .* -q30$'
+run 1 -p -q 30 letter.poly
+complains 'not both 30 and letter\.poly; a number follows its switch in one word: -q30$'
+wrote
 run 0 -u square.poly
 counts 4 2
 

@@ -62,6 +62,18 @@ def by_meshio(name, attribute):
     return mesh
 
 
+def names_by_meshio(mesh):
+    """Groups by name: so scikit-fem finds boundaries. Names have no blanks, which meshio's writer of .vtk refuses."""
+    for kind, dim, values in (("marker", 1, segments[:, 2]), ("region", 2, regions)):
+        for value in set(values):
+            name = "%s_%.17g" % (kind, value)
+            assert mesh.field_data[name][1] == dim
+            n = sum(len(rows) for rows in mesh.cell_sets[name] if rows is not None)
+            assert n == sum(values == value), name
+    meshio.write("names.vtk", mesh)
+    os.remove("names.vtk")
+
+
 def by_vtk():
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -247,7 +259,7 @@ def by_vtkhdf():
 
 
 by_meshio(stem + ".vtu", "attributes")
-by_meshio(stem + ".msh", "attribute 0")
+names_by_meshio(by_meshio(stem + ".msh", "attribute_0"))
 by_vtk()
 by_gmsh()
 for n in (1, 3, 40) if order == 1 else (3,):

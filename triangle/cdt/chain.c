@@ -144,18 +144,7 @@ static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
     return cut;
 }
 
-/* All subsegments of a parent run its way. */
-static void turn(struct tri_subsegment *s)
-{
-    tri_vertex_id v = s->v[0];
-    tri_halfedge side = s->side[0];
-    s->v[0] = s->v[1];
-    s->v[1] = v;
-    s->side[0] = s->side[1];
-    s->side[1] = side;
-}
-
-/* From its vertex i to its vertex k. */
+/* From its vertex i to its vertex k. All subsegments of a parent run its way; the first tells which way they came. */
 static void unite(const struct chains *c, int32_t i, int32_t k)
 {
     struct tri_mesh *mesh = c->mesh;
@@ -163,10 +152,11 @@ static void unite(const struct chains *c, int32_t i, int32_t k)
     mesh->parents[parent].v[0] = c->vertex[i];
     mesh->parents[parent].v[1] = c->vertex[k];
     mesh->parents[parent].guard = mesh->xy[c->vertex[i]];
+    mesh->parents[parent].reversed = mesh->sub[c->sub[i]].v[0] != c->vertex[i];
     for (int32_t j = i; j < k; j++) {
         struct tri_subsegment *s = &mesh->sub[c->sub[j]];
         if (s->v[0] != c->vertex[j])
-            turn(s);
+            tri_turn_sub(s);
         s->parent = parent;
         if (j > i)
             mesh->on[c->vertex[j]] = parent;

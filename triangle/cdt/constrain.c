@@ -677,7 +677,10 @@ static void settle(struct layer *l)
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
-        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
+        const int32_t segment = l->course[s].first;
+        const bool reversed = segment != TRI_NONE &&
+                              advance(l, segment, mesh->xy[sub->v[0]], mesh->xy[sub->v[1]]) < 0;
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, segment, l->course[s].odd, reversed,
                                                          {NAN, NAN}};
     }
 }

@@ -164,7 +164,7 @@ static enum tri_status write_rest(struct tri_h5_writer *w, struct tri_error *err
 
 static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
-    w->n_points = stream->first_vertex[stream->n_ranks];
+    w->n_points = stream->first_vertex[stream->n_ranks] - w->options.n_orphans;
     w->n_triangles = stream->first_triangle[stream->n_ranks];
     w->segments.n = stream->first_segment[stream->n_ranks];
     const enum tri_status status = allocate(w, w->n_points, error);

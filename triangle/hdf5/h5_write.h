@@ -16,6 +16,7 @@ struct tri_h5_options {
     const char *name;      /* of the file, as the XDMF text beside it calls it */
     bool markers;          /* they are written */
     struct tri_output *file, *xdmf; /* opened, and the caller's; the first has places */
+    int64_t n_orphans;     /* points of a stream on several ranks that are left out */
     int64_t most_narrow;   /* so many points have 32-bit numbers; <= 0: as many as can */
 };
 

@@ -397,7 +397,7 @@ tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_verte
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
-    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, segment != TRI_NONE, {NAN, NAN}};
+    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, segment != TRI_NONE, false, {NAN, NAN}};
     mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
     return s;
 }

@@ -62,6 +62,7 @@ struct tri_parent {
     tri_vertex_id v[2];
     int32_t segment; /* the input segment that it is a part of, the first of several; TRI_NONE: of the hull alone */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
+    bool reversed;   /* its subsegments run against its input segment, until the mesh is finished */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is; the
                                first end: of a mesh that was read */
 };
@@ -247,6 +248,12 @@ static inline bool tri_is_boundary(const struct tri_subsegment *s)
 
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
 static inline int tri_side(const struct tri_subsegment *s, tri_vertex_id from) { return s->v[0] == from ? 0 : 1; }
+
+/* Its record from the other end. */
+static inline void tri_turn_sub(struct tri_subsegment *s)
+{
+    *s = (struct tri_subsegment){{s->v[1], s->v[0]}, {s->side[1], s->side[0]}, s->marker, s->parent};
+}
 
 /* The same edge as its other triangle sees it, subsegment or not; TRI_NONE at the boundary. */
 static inline tri_halfedge tri_across(const struct tri_mesh *mesh, tri_halfedge code)

@@ -109,6 +109,16 @@ static enum tri_status refine(struct tri_mesh *mesh, const struct tri_options *o
                : tri_refine(mesh, &options->quality, &report->quality, error);
 }
 
+/* The mesh is finished: subsegments run the way of their input segments. */
+static void turn_subs(struct tri_mesh *mesh)
+{
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        if (mesh->parents[mesh->sub[s].parent].reversed)
+            tri_turn_sub(&mesh->sub[s]);
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
+        mesh->parents[p].reversed = false;
+}
+
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error)
 {
@@ -130,6 +140,7 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
         tri_mesh_free(mesh);
         return restored;
     }
+    turn_subs(mesh);
     assert(!mesh->origin && tri_mesh_is_sound(mesh));
     announce(options, TRI_STAGE_DONE);
     return status;

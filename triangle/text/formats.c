@@ -6,11 +6,11 @@
 #include "triangle/text/names.h"
 
 static const struct tri_format formats[] = {
-    {".vtu", "VTK", true, true, tri_write_vtu, NULL, tri_read_vtu},
-    {".msh", "Gmsh", true, true, tri_write_msh, tri_write_msh_parts, tri_read_msh},
-    {".2dm", "SMS", true, false, tri_write_2dm, NULL, tri_read_2dm},
-    {".14", "ADCIRC", false, false, tri_write_14, NULL, tri_read_14},
-    {".grd", "ADCIRC", false, false, tri_write_14, NULL, tri_read_14},
+    {".vtu", "VTK", true, true, 0, tri_write_vtu, NULL, tri_read_vtu},
+    {".msh", "Gmsh", true, true, 1, tri_write_msh, tri_write_msh_parts, tri_read_msh},
+    {".2dm", "SMS", true, false, 1, tri_write_2dm, NULL, tri_read_2dm},
+    {".14", "ADCIRC", false, false, 1, tri_write_14, NULL, tri_read_14},
+    {".grd", "ADCIRC", false, false, 1, tri_write_14, NULL, tri_read_14},
 };
 
 const struct tri_format *tri_format_of(const char *name)

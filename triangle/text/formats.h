@@ -38,6 +38,7 @@ struct tri_format {
     const char *name;   /* whose format */
     bool second_order;   /* it can hold second-order triangles, */
     bool inner_segments; /* and segments that are not on the boundary */
+    int32_t base;        /* what numbers of its nodes and elements count from, in files of its writer */
     tri_write_call *write;
     tri_write_parts_call *write_parts; /* NULL: it has no parts */
     tri_read_call *read;

@@ -3,7 +3,7 @@
  * Triangles lie on a surface for each value of their first attribute, segments on a curve for each marker; where
  * that value is a whole number above 0 it is also the physical tag, by which solvers know regions and boundaries.
  * Others get tags above these, since some readers want a tag for each or for none. The exact values are data of
- * their own: "marker" and "attribute 0" and so on, of nodes and elements. Nodes are numbered from 1 as they are,
+ * their own: "marker" and "attribute_0" and so on, of nodes and elements. Nodes are numbered from 1 as they are,
  * elements from 1 as they stand in the file, since some readers rely on that. Sections have text around them and
  * numbers in bytes in them: sizes and tags of nodes and elements are 64 bits wide, those in data 32. (Gmsh reference
  * manual, "MSH file format".)
@@ -19,6 +19,7 @@
 #include <stdlib.h>
 
 #include "triangle/text/binary.h"
+#include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/grouping.h"
 #include "triangle/text/parts.h"
@@ -196,6 +197,29 @@ static void put_numbers(struct gmsh *g, int64_t curves, int64_t surfaces)
 {
     char bytes[32], *at = tri_put_i64(tri_put_u64(bytes, 0), curves);
     put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
+}
+
+/* "marker_1", "region_2.5": dimension, tag and name of each group, without blanks, which some readers do not take. */
+static void put_names(struct gmsh *g, const struct groups *groups, const char *what)
+{
+    for (int k = 0; k < groups->n; k++) {
+        char line[64 + TRI_REAL_ROOM], value[TRI_REAL_ROOM];
+        *tri_print_real(value, groups->all.value[k]) = 0;
+        snprintf(line, sizeof line, "%" PRId32 " %" PRId32 " \"%s_%s\"\n", groups->dimension, groups->physical[k], what,
+                 value);
+        put_text(g, line);
+    }
+}
+
+/* By these solvers find regions and boundaries. */
+static void write_names(struct gmsh *g)
+{
+    char head[48];
+    snprintf(head, sizeof head, "$PhysicalNames\n%d\n", g->curves.n + g->surfaces.n);
+    put_text(g, head);
+    put_names(g, &g->curves, "marker");
+    put_names(g, &g->surfaces, "region");
+    put_text(g, "$EndPhysicalNames\n");
 }
 
 static void write_entities(struct gmsh *g)
@@ -471,7 +495,7 @@ static void begin_data(struct gmsh *g, const char *section, int64_t n)
 {
     char head[192], name[32] = "marker";
     if (g->k != MARKER)
-        snprintf(name, sizeof name, "attribute %" PRId32, g->k);
+        snprintf(name, sizeof name, "attribute_%" PRId32, g->k);
     snprintf(head, sizeof head, "$%s\n1\n\"%s\"\n1\n0\n3\n0\n1\n%" PRId64 "\n", section, name, n);
     put_text(g, head);
 }
@@ -515,6 +539,7 @@ static enum tri_status write_all(struct gmsh *g)
     put_text(g, "$MeshFormat\n4.1 1 8\n");
     put_bytes(g, one, tri_put_i32(one, 1)); /* tells the order of bytes */
     put_text(g, "\n$EndMeshFormat\n");
+    write_names(g);
     write_entities(g);
     write_pieces(g);
     write_nodes(g);

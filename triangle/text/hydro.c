@@ -4,8 +4,8 @@
  * Both take the first attribute of a point for its elevation or depth. In .2dm a triangle's material is its first
  * attribute, if that is a whole number above 0, else 1; a node string carries its marker behind the last node. In
  * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on
- * loops round the mesh, islands round holes. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org, "ADCIRC Grid and Boundary
- * Information File".) */
+ * loops round the mesh, islands round holes, of the type that a marker of 10 to 29 says. (xmswiki.com, "2D Mesh Files
+ * *.2dm"; adcirc.org, "ADCIRC Grid and Boundary Information File".) */
 #include <string.h>
 
 #include "triangle/text/boundary.h"
@@ -131,6 +131,13 @@ static char *element_line(const void *user, int64_t i, char *at)
     return put(at, "\n");
 }
 
+/* Mainland 0 or island 1; 10 and 20 more with a marker of 10 to 29, and 12 or 22, a river, where that is the marker. */
+static int64_t land_type(const struct tri_boundary_piece *piece)
+{
+    const int64_t tens = piece->marker >= 10 && piece->marker < 30 ? piece->marker / 10 * 10 : 0;
+    return tens + (tens > 0 && piece->outer && piece->marker == tens + 2 ? 2 : !piece->outer);
+}
+
 static bool is_open(const struct tri_boundary_piece *piece)
 {
     return piece->outer && piece->marker == TRI_OPEN_BOUNDARY;
@@ -169,7 +176,7 @@ static enum tri_status write_pieces(struct hydro *h, bool open)
         h->piece = &h->boundary.pieces[p];
         if (is_open(h->piece) != open)
             continue;
-        status = put_numbers(h, shown_nodes(h->piece), open ? 0 : !h->piece->outer, "");
+        status = put_numbers(h, shown_nodes(h->piece), open ? 0 : land_type(h->piece), "");
         status = status ? status : put_rows(h, shown_nodes(h->piece), INTEGER_BYTES + 1, boundary_line);
     }
     return status;

@@ -17,6 +17,13 @@ static inline char *tri_joined(const char *first, const char *second) { return t
  * their letters get names from such as do not. (The endings of Triangle's own files are in small letters alone.) */
 bool tri_name_ends(const char *name, const char *ending);
 
+/* How long a name is without its ending .h5 or .vtkhdf, of HDF5; 0: it has neither. */
+static inline size_t tri_name_h5(const char *name)
+{
+    const size_t ending = tri_name_ends(name, ".h5") ? 3 : tri_name_ends(name, ".vtkhdf") ? 7 : strlen(name);
+    return strlen(name) - ending;
+}
+
 /* The input files of a mesh: stem.node, and so on. */
 struct tri_names {
     char *node, *poly, *ele, *area;

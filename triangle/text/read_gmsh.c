@@ -1,5 +1,5 @@
 /* Reading Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, parts included: nodes, triangles and
- * lines, and of the data those that it names, "marker" and "attribute 0" and so on. Other sections are passed. Nodes
+ * lines, and of the data those that it names, "marker" and "attribute_0" and so on. Other sections are passed. Nodes
  * and elements keep the order of the file. */
 #include <inttypes.h>
 #include <math.h>
@@ -248,6 +248,8 @@ static bool take_data_head(struct reading *r, struct data *data)
     if (!take_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
         return false;
     snprintf(data->name, sizeof data->name, "%.*s", length < MOST_NAME ? (int)length : 0, line);
+    for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* as older files have it */
+        *blank = '_';
     return skip_lines(r, names - 1) && take_count(r, &reals) && skip_lines(r, reals) && take_count(r, &numbers) &&
            numbers >= 3 && skip_lines(r, 1) && take_count(r, &components) && components == 1 &&
            take_count(r, &data->n) && skip_lines(r, numbers - 3);
@@ -301,7 +303,7 @@ static bool take_data(struct reading *r, const struct data *data)
 {
     char next[MOST_NAME];
     int32_t *width = data->of_nodes ? &r->to.mesh->n_attributes : &r->to.elements->n_attributes;
-    snprintf(next, sizeof next, "\"attribute %" PRId32 "\"", *width);
+    snprintf(next, sizeof next, "\"attribute_%" PRId32 "\"", *width);
     if (strcmp(data->name, "\"marker\"") == 0)
         return take_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
                             data->of_nodes ? &r->to.mesh->markers : &r->to.mesh->segment_markers);

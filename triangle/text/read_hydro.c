@@ -1,8 +1,8 @@
 /* Reading SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. Both number nodes in any way.
  *
  * What stands for nothing is taken for nothing: elevations that are all 0, and materials that are all 1, are no
- * attributes. Of fort.14 the marker of a segment is 2 on open boundaries, else 1; whoever wrote the mesh may have had
- * others. Segments are those of the boundary: neither format has any inside. */
+ * attributes. Of fort.14 the marker of a segment is 2 on open boundaries, the type of land from 10 on, otherwise 1;
+ * whoever wrote the mesh may have had others. Segments are those of the boundary: neither format has any inside. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -140,7 +140,8 @@ static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool o
         int64_t type = 0;
         if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
             return FAIL(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
-        if (!read_string(r, cursor, n_nodes, !open && goes_round(type), open ? TRI_OPEN_BOUNDARY : 1))
+        const int32_t marker = open ? TRI_OPEN_BOUNDARY : type >= 10 && type < 100 ? (int32_t)type : 1;
+        if (!read_string(r, cursor, n_nodes, !open && goes_round(type), marker))
             return false;
     }
     return true;

@@ -17,7 +17,7 @@
 
 enum { DEFAULT_CHUNK = 1 << 18 };
 
-static const size_t largest_pipe = (size_t)1 << 30; /* what has no size may have no end either: /dev/zero */
+static const size_t largest_pipe = 1000000000; /* what has no size may have no end either: /dev/zero */
 
 #define J TRI_IS_JUNK
 #define S TRI_IS_START
@@ -154,7 +154,7 @@ static enum tri_status read_stream(struct tri_text *text, int file, struct tri_e
         if (got > 0)
             text->size += (size_t)got;
         if (text->size > largest_pipe)
-            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GiB from what is no regular file");
+            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GB from what is no regular file");
     }
 }
 

@@ -41,7 +41,7 @@ struct tri_text {
     size_t lines_before; /* of a text that is a stretch of a file (window.h) */
 };
 
-/* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GiB.
+/* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GB.
  * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY,
  * TRI_STOPPED. O(size). */
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
