@@ -90,8 +90,8 @@ static void test_acute_vertices(void **state)
     }
 }
 
-/* A segment in a square, and so many vertices 64 resolutions beside it. */
-static double shortest_beside(int vertices)
+/* What is nearer is no feature: in a square with a segment, and so many vertices 64 resolutions beside that. */
+static double rounding_beside(int vertices)
 {
     struct tri_pslg pslg = support_pslg(6 + vertices, 5, 0, 0);
     for (int k = 0; k < 4; k++)
@@ -105,19 +105,20 @@ static double shortest_beside(int vertices)
         support_add_point(&pslg, 0.4 + 0.2 * k, 0.5 + (k > 0 ? -0x1p-46 : 0x1p-46));
     struct tri_options options = support_quality(20, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    double shortest = sqrt(mesh.limits.shortest2);
+    assert_true(mesh.limits.finest2 == 0x1p-94);
+    double rounding = sqrt(mesh.limits.shortest2);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
-    return shortest;
+    return rounding;
 }
 
 /* 32 resolutions of the largest coordinate; 256 where more than one vertex has something nearer than that. */
-static void test_the_shortest_edge(void **state)
+static void test_what_is_rounding(void **state)
 {
     (void)state;
-    assert_true(shortest_beside(0) == 0x1p-47);
-    assert_true(shortest_beside(1) == 0x1p-47);
-    assert_true(shortest_beside(2) == 0x1p-44);
+    assert_true(rounding_beside(0) == 0x1p-47);
+    assert_true(rounding_beside(1) == 0x1p-47);
+    assert_true(rounding_beside(2) == 0x1p-44);
 }
 
 int main(void)
@@ -126,7 +127,7 @@ int main(void)
         cmocka_unit_test(test_turns_before_is_the_order_of_angles),
         cmocka_unit_test(test_parents_at_each_vertex),
         cmocka_unit_test(test_acute_vertices),
-        cmocka_unit_test(test_the_shortest_edge),
+        cmocka_unit_test(test_what_is_rounding),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,7 +113,7 @@ static void test_centroids_are_inside(void **state)
                                  {2 + support_unit(&random), flat * support_unit(&random)},
                                  {support_unit(&random), flat * (1 + support_unit(&random))}};
         struct tri_triangle t = {.v = {0, 1, 2}};
-        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_triangles = 1, .limits.shortest2 = 0x1p-88};
+        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_triangles = 1, .limits.finest2 = 0x1p-88};
         struct tri_shape shape = tri_shape_of(xy, t.v);
         struct tri_point p;
         if (shape.area2 <= 0)

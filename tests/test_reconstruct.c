@@ -878,7 +878,7 @@ static void what_was_given_up_stays_given_up(void **state)
     }
     struct tri_options options = support_quality(28, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_in_range(mesh.n_triangles, 500, 2000);
+    assert_in_range(mesh.n_triangles, 2 * N - 2, 2000);
     struct input in = input_of(&mesh);
     struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
     assert_int_equal(back.n_parents, 2 * N);

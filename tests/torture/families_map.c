@@ -107,7 +107,7 @@ static void make_shifted_copy(struct figure *f)
     draw_cells(f, &map, 0, 0.2);
 }
 
-/* Lines side by side, every second one across the others if it is a grid, each drawn so often, a little out of place. */
+/* Lines side by side, each drawn so often, a little out of place; in a grid every second one crosses the others. */
 static void draw_hatching(struct figure *f, bool grid, int32_t copies, double shift)
 {
     struct tri_point turn = figure_on_circle(figure_chance(f, 0.3) ? 0 : figure_real(f, 0, 1));

@@ -77,7 +77,8 @@ struct tri_incidence {
 
 /* Where refinement leaves a bad triangle as it is (triangle/size/groundwork.h). */
 struct tri_limits {
-    double shortest2;   /* square of the shortest edge that coordinates of this size can carry */
+    double finest2;     /* square of the shortest edge that coordinates of this size can carry */
+    double shortest2;   /* the same where rounding reaches further: what is nearer than its root is no feature */
     double dearest_gap; /* narrow spaces between parents that would cost more points than this are not filled */
     double gap_points;  /* about so many points those that are filled take */
 };

@@ -36,7 +36,7 @@ tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *
 static struct tri_point lowest_apex(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b,
                                     struct tri_point apex, double height)
 {
-    const double share = fmin(3 * sqrt(mesh->limits.shortest2) / height, 1);
+    const double share = fmin(3 * sqrt(mesh->limits.finest2) / height, 1);
     const struct tri_point m = tri_point_between(a, b, 0.5);
     return (struct tri_point){m.x + share * (apex.x - m.x), m.y + share * (apex.y - m.y)};
 }
@@ -63,7 +63,7 @@ bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const s
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);
     p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
-    if (shape->area2 * shape->area2 < 9 * mesh->limits.shortest2 * tri_longest2(shape))
+    if (shape->area2 * shape->area2 < 9 * mesh->limits.finest2 * tri_longest2(shape))
         return false;
     return tri_is_inside(a, b, c, *p);
 }

@@ -6,9 +6,9 @@
  *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
  *   features    how far each vertex is from what is around it, by all of the above (feature_size.h)
  *
- * RULE (rounding). Distances of 32 to 256 resolutions are features if one vertex alone is so near to another one or to a
- * segment. If more are, lines were computed twice, or points that belong on them: then such distances are rounding, and
- * each that counted as a feature would take some 400 triangles.
+ * RULE (rounding). Distances of 32 to 256 resolutions are features if one vertex alone is so near to another one or to
+ * a segment. If more are, lines were computed twice, or points that belong on them: then such distances are rounding.
+ * Each that counted as a feature would take some 400 triangles.
  *
  * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
 #include "triangle/size/groundwork.h"
@@ -59,16 +59,16 @@ static double largest_coordinate(const struct tri_mesh *mesh)
     return size;
 }
 
-/* Limits and sizes with this shortest edge. Returns how many vertices have features up to TRI_BLUR times as long (what
- * no triangle uses has the least size). */
-static int32_t measure(struct tri_mesh *mesh, double shortest, const struct tri_executor *executor)
+/* Gaps and sizes, if what is nearer than this is no feature. Returns how many vertices have features up to TRI_BLUR times as far
+ * (what no triangle uses has the least size). */
+static int32_t find_features(struct tri_mesh *mesh, double rounding, const struct tri_executor *executor)
 {
     int32_t n = 0;
-    mesh->limits.shortest2 = shortest * shortest;
+    mesh->limits.shortest2 = rounding * rounding;
     tri_choose_gaps(mesh, executor);
     tri_estimate_features(mesh, executor);
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
-        n += mesh->feature[v] > shortest && mesh->feature[v] < TRI_BLUR * shortest;
+        n += mesh->feature[v] > rounding && mesh->feature[v] < TRI_BLUR * rounding;
     return n;
 }
 
@@ -81,7 +81,8 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
     if (status)
         return status;
     const double shortest = TRI_SHORTEST_EDGE * largest_coordinate(mesh);
-    if (measure(mesh, shortest, executor) > 1)
-        measure(mesh, TRI_BLUR * shortest, executor);
+    mesh->limits.finest2 = shortest * shortest;
+    if (find_features(mesh, shortest, executor) > 1)
+        find_features(mesh, TRI_BLUR * shortest, executor);
     return TRI_OK;
 }
