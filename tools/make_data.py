@@ -784,6 +784,19 @@ def touching_squares():
     return poly
 
 
+@case("regress/within_rounding.poly", "segments along each other but for rounding (github Stoeoef/spade issue 111)",
+      "two crossings; the flat triangles between them are not lost", ("-pc",))
+def within_rounding():
+    poly = Poly(0, False)
+    for x, y in ((18.69314193725586, 19.589109420776367), (18.69314193725586, 20.40362548828125),
+                 (19.507659912109375, 20.40362548828125), (17.878625869750977, 18.774595260620117),
+                 (20.322175979614258, 21.218143463134766), (15.435077667236328, 16.331045150756836)):
+        poly.new_point(x, y)
+    for a, b in ((0, 1), (2, 3), (4, 5)):
+        poly.segment(a, b)
+    return poly
+
+
 @case("regress/pentagon_repeat.poly", "pentagon whose last two vertices are the same point (github drufat/triangle "
       "issue 4)", "2 triangles, 4 subsegments; the original may crash")
 def pentagon_repeat():

@@ -91,8 +91,8 @@ def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
         return
     inlay = _inlay_of(polygons) if len(polygons) > 1 else None
     if inlay:
-        text = "polygon %d lies in polygon %d (counted from 0) and is a hole of it by the even-odd rule. A hole that is " \
-               "meant is a ring of its polygon: [outline, hole]" % inlay
+        text = "polygon %d lies in polygon %d (counted from 0) and is a hole of it by the even-odd rule. If you mean " \
+               "a hole, make it a ring of its polygon: [outline, hole]" % inlay
     elif len(polygons) > 1:
         text = "polygons overlap, or their rings are not those of valid polygons"
     else:

@@ -174,7 +174,7 @@ def test_numbers_of_the_corners_of_polygons():
 
 def test_crossings_outside_are_dropped():
     cross = [[5, 5], [6, 6], [5, 6], [6, 5]]
-    m = ptriangle.mesh(np.vstack([PLATE, cross]), np.vstack([RINGS, [[8, 9], [10, 11]]]), holes=[[1.5, 1.5]], min_angle=30)
+    m = ptriangle.mesh(np.vstack([PLATE, cross]), np.vstack([RINGS, [[8, 9], [10, 11]]]), holes=[[1.5, 1.5]])
     assert m.counts["crossings"] == 1 and np.array_equal(np.unique(m.triangles), np.arange(len(m.points)))
 
 
@@ -190,7 +190,8 @@ def test_interpolation_of_measurements():
     assert depths.shape == (len(m.points),) and np.allclose(depths[inside], plane[inside])
     two = m.interpolate(places, np.column_stack([places, places[:, :1] ** 2]), outside=np.nan)
     assert two.shape == (len(m.points), 3) and np.isnan(two[m.points[:, 0] == 4]).all()
-    assert np.allclose(two[inside, :2], m.points[inside]) and np.abs(two[inside, 2] - m.points[inside, 0] ** 2).max() < 0.05
+    assert np.allclose(two[inside, :2], m.points[inside])
+    assert np.abs(two[inside, 2] - m.points[inside, 0] ** 2).max() < 0.05
 
 
 def test_interpolation_outside_takes_the_nearest_place_of_the_hull():
@@ -205,7 +206,8 @@ def test_interpolation_outside_takes_the_nearest_place_of_the_hull():
 
 def test_interpolation_walks_through_flat_triangles():
     x = np.linspace(0, 4, 400)
-    places = np.vstack([np.column_stack([x, 1e-9 * np.sin(9 * x)]), np.column_stack([x, 3 + 1e-13 * x * x]), [[2, 1.5]]])
+    wavy, bent = np.column_stack([x, 1e-9 * np.sin(9 * x)]), np.column_stack([x, 3 + 1e-13 * x * x])
+    places = np.vstack([wavy, bent, [[2, 1.5]]])
     m = plate(min_angle=30, max_area=0.01)
     assert np.allclose(m.interpolate(places, places @ [1, 1]), m.points @ [1, 1], atol=1e-8)
 
