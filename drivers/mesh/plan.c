@@ -21,7 +21,7 @@
 /* By how many times a mesh in memory may exceed its estimate: in general; where it must not; and where, as well, angles
  * above 31 degrees or diametral circles without vertices are asked for, of which an estimate knows least. Memory below
  * WORTH_A_LOOK bytes is not looked for. */
-static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
+static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 2e7;
 
 /* Areas decide on a mesh that has hardly more triangles than they ask for beyond doubt: 1.14 times as many, as a rule.
  * Up to such a share of what a mesh holds it surely fits in one: blocks have room that they do not use. */

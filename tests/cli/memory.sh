@@ -205,3 +205,19 @@ for budget in 20 40 60 100; do
 done
 check "with much memory trials are kept within ($kept), with little refused ($refused)" \
     test $kept -ge 1 -a $refused -ge 1
+
+# --- the bound of a group of processes (a container), of less than 100 MB: kept, or refused; the kernel kills nobody
+group=/sys/fs/cgroup/memory/ptriangle-test-$$
+if (ulimit -v 400000 && "$bin/ptriangle" -h) >/dev/null 2>&1 && mkdir "$group" 2>/dev/null; then
+    for bound in 40 60; do
+        fresh letter.poly
+        what="ptriangle in a group of $bound MB"
+        echo ${bound}M >"$group/memory.limit_in_bytes"
+        sh -c 'echo $$ >"$1/cgroup.procs" && exec "$2/ptriangle" -Qpq30a0.0001 letter --output o' sh "$group" "$bin" \
+            >.out 2>.err
+        found=$?
+        check "exit code $found" test $found -le 1
+        [ $found -eq 0 ] || complains 'triangles, which take [0-9.]+ MB of memory; [0-9.]+ MB are left'
+    done
+    rmdir "$group"
+fi
