@@ -109,7 +109,8 @@ static void add_hint(const struct run *r)
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
         snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
-                 " files, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
+                 " files, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\", makes a .poly of"
+                 " GeoJSON, shapefiles and others)");
 }
 
 /* Once the .poly has been read it is known whether the .node is, too. */
@@ -432,10 +433,12 @@ static enum tri_status make_room(struct run *r, double bytes)
 
 /* Lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and 12 a triangle for the
  * nodes amid them; 8 a vertex where those without triangles are left out. */
-static double list_bytes(const struct tri_switches *s, const struct tri_mesh *mesh, bool leaves_out)
+static double list_bytes(const struct run *r)
 {
+    const struct tri_switches *s = &r->arguments->switches;
+    const bool leaves_out = mesh_files_grid(r, r->hooks->options->n_exports > 0).jettison;
     const bool edges = s->edges || s->voronoi || s->off;
-    return ((s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0)) * (double)mesh->n_triangles;
+    return ((s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0)) * (double)r->mesh.n_triangles;
 }
 
 static enum tri_status write_mesh(struct run *r)
@@ -445,7 +448,7 @@ static enum tri_status write_mesh(struct run *r)
     console_say(&r->console, "\n");
     r->mark = tri_seconds();
     const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)r->mesh.n_triangles);
-    enum tri_status status = make_room(r, waiting + list_bytes(&r->arguments->switches, &r->mesh, mesh_files_grid(r, true).jettison));
+    enum tri_status status = make_room(r, waiting + list_bytes(r));
     status = status ? status : mesh_files_write(r);
     end_stage(r, RUN_WRITE);
     if (status)

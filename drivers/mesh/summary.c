@@ -42,8 +42,8 @@ static void warn_of_voronoi(const struct run *run)
             n += mesh->sub[i].side[side] != TRI_NONE &&
                  tri_is_in_diametral_disk(mesh, &mesh->sub[i], mesh->sub[i].side[side]);
     if (n > 0)
-        console_warn(&run->console, "Voronoi vertices beyond a segment, perhaps nearer to other sites than to their own: "
-                     "%" PRId64 ". -D prevents that.\n", n);
+        console_warn(&run->console, "Voronoi vertices beyond a segment, perhaps nearer to other sites than their own:"
+                     " %" PRId64 ". -D prevents that.\n", n);
 }
 
 void summary_input(const struct run *run)

@@ -38,7 +38,7 @@ struct tri_tile {
     const double *attributes;         /* [n_vertices][n_attributes] */
     const int64_t (*corners)[3];      /* [n_triangles] counter-clockwise */
     const int32_t *regions;           /* [n_triangles] below n_regions */
-    const int64_t (*ends)[2];         /* [n_segments] subsegments */
+    const int64_t (*ends)[2];         /* [n_segments] subsegments, each the way of its segment */
     const int32_t *segment_markers;   /* [n_segments] */
 };
 

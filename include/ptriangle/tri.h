@@ -203,7 +203,7 @@ void tri_mesh_delete(struct tri_mesh *mesh);
  *   triangles          [n][3] corners, counter-clockwise
  *   triangle_attributes [triangles][1] those of regions, 0 where there is none; of a figure with triangles as given; n
  *                      is 0 where none were given
- *   segments           [n][2] pieces of segments and of the boundary
+ *   segments           [n][2] pieces of segments, each the way of its segment, and of the boundary
  *   segment_markers    [segments][1] as given, else 1 on the boundary */
 struct tri_reals tri_mesh_points(const struct tri_mesh *mesh);
 struct tri_reals tri_mesh_point_attributes(const struct tri_mesh *mesh);
