@@ -1,5 +1,6 @@
 /* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
  *
+ *   surface     of the attributes of vertices (surface.h)
  *   limits      the shortest edge that coordinates can carry
  *   features    how far each vertex is from what is around it (feature_size.h)
  *   acute       input vertices at which two subsegments meet at less than 60 degrees
@@ -10,6 +11,7 @@
 #include "triangle/size/groundwork.h"
 
 #include "triangle/mesh/parents.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/size/feature_size.h"
 #include "triangle/size/gap.h"
 #include "triangle/tunables.h"
@@ -61,10 +63,11 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
 {
     if (mesh->incidence.start)
         return TRI_OK;
+    enum tri_status status = tri_surface_keep(mesh, executor, error);
     mesh->limits.shortest2 = tri_shortest_edge2(mesh);
     tri_estimate_features(mesh, executor);
     find_acute(mesh);
-    enum tri_status status = tri_incidence_list(mesh, error);
+    status = status ? status : tri_incidence_list(mesh, error);
     if (!status)
         tri_choose_gaps(mesh, executor);
     return status;
