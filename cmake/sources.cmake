@@ -32,7 +32,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/chain.c
     triangle/cdt/reconstruct.c
     triangle/mesh/cavity.c
-    triangle/mesh/interpolate.c
+    triangle/mesh/surface.c
     triangle/geometry/degrees.c
     triangle/refine/place.c
     triangle/refine/petal.c

@@ -156,7 +156,7 @@ done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh/(mesh|owners|fence)|refine/(refine|pause|census|generate)|size/estimate|api/opaque_mesh|dropin/(triangle|call)'
+hooks='mesh/(mesh|owners|fence|surface)|refine/(refine|pause|census|generate)|size/estimate|api/opaque_mesh|dropin/(triangle|call)'
 tools='base/[a-z_]+|geometry/(degrees|hilbert|point)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)

@@ -93,6 +93,64 @@ void support_add_attributes(struct tri_pslg *pslg)
             attribute_at(i % 2, (struct tri_point){pslg->points[i / 2 * 2], pslg->points[i / 2 * 2 + 1]});
 }
 
+void support_add_heights(struct tri_pslg *pslg, int32_t n, uint64_t seed)
+{
+    struct support_random random = {seed};
+    free(pslg->attributes);
+    pslg->n_attributes = n;
+    pslg->attributes = malloc(((size_t)n * (size_t)pslg->n_points + 1) * sizeof *pslg->attributes);
+    assert_non_null(pslg->attributes);
+    for (int32_t i = 0; i < n * pslg->n_points; i++)
+        pslg->attributes[i] = support_unit(&random);
+}
+
+/* How far p lies inside of each edge, negative: outside, as a share of the height over it. */
+static long double weigh(const struct tri_point corner[3], struct tri_point p, long double weight[3])
+{
+    long double least = HUGE_VALL, sum = 0;
+    for (int e = 0; e < 3; e++) {
+        const struct tri_point a = corner[tri_next[e]], b = corner[tri_prev[e]];
+        weight[e] = ((long double)b.x - a.x) * ((long double)p.y - a.y) -
+                    ((long double)b.y - a.y) * ((long double)p.x - a.x);
+        sum += weight[e];
+    }
+    for (int e = 0; e < 3; e++) {
+        weight[e] /= sum;
+        least = weight[e] < least ? weight[e] : least;
+    }
+    return least;
+}
+
+/* On a crack of a mesh that was read there may be several triangles at a vertex that hold other values: any will do. */
+static bool is_on_surface(const struct tri_mesh *before, struct tri_point p, const double *value)
+{
+    const int32_t n = before->n_attributes;
+    for (int32_t t = 0; t < before->n_triangles; t++) {
+        const int32_t *v = before->tri[t].v;
+        const struct tri_point corner[3] = {before->xy[v[0]], before->xy[v[1]], before->xy[v[2]]};
+        long double weight[3];
+        bool good = weigh(corner, p, weight) > -1e-9L;
+        for (int32_t k = 0; good && k < n; k++) {
+            const double *a = before->attributes;
+            const long double is = weight[0] * a[n * v[0] + k] + weight[1] * a[n * v[1] + k] +
+                                   weight[2] * a[n * v[2] + k];
+            good = fabsl(is - value[k]) <= 1e-8L;
+        }
+        if (good)
+            return true;
+    }
+    return false;
+}
+
+void support_assert_on_surface(const struct tri_mesh *before, const struct tri_mesh *mesh)
+{
+    const int32_t n = mesh->n_attributes, first = before->n_vertices;
+    const int32_t step = 1 + (int32_t)(((int64_t)mesh->n_vertices - first) * before->n_triangles / 10000000);
+    for (int32_t v = first; v < mesh->n_vertices; v += step)
+        if (!is_on_surface(before, mesh->xy[v], mesh->attributes + (size_t)n * (size_t)v))
+            fail_msg("vertex %d at (%.17g, %.17g) lies off the surface of the input", v, mesh->xy[v].x, mesh->xy[v].y);
+}
+
 bool support_has_its_attributes(const struct tri_mesh *mesh, int32_t v)
 {
     const double *has = mesh->attributes + 2 * v;

@@ -42,6 +42,13 @@ void support_add_segment(struct tri_pslg *pslg, int32_t a, int32_t b);
 void support_add_attributes(struct tri_pslg *pslg);
 bool support_has_its_attributes(const struct tri_mesh *mesh, int32_t v);
 
+/* In place of those that it has, n random attributes for every point, as rough as can be. */
+void support_add_heights(struct tri_pslg *pslg, int32_t n, uint64_t seed);
+
+/* Lie the attributes of all new vertices of a mesh on the surface over the triangles of what it was before? A naive
+ * search for each, or, where that would take too long, for some. */
+void support_assert_on_surface(const struct tri_mesh *before, const struct tri_mesh *mesh);
+
 enum support_kind {
     SUPPORT_RANDOM,    /* in the unit square */
     SUPPORT_LATTICE,   /* drawn from a small lattice: duplicates, collinear and cocircular quadruples */

@@ -5,6 +5,7 @@
 #include "sched/schedule/room.h"
 #include "sched/tiles/numbering.h"
 #include "sched/schedule/threads.h"
+#include "triangle/mesh/surface.h"
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
 
@@ -206,7 +207,7 @@ static int64_t refine_in_view(struct tri_mesh *shared, struct par_view *view, in
 
 /* After closing: no gap, valid links, the same triangles at the same places, and what belongs to a vertex came with
  * it. */
-static void assert_closed(const struct tri_mesh *mesh, const struct support_places *before, int64_t vertices)
+static void assert_closed(struct tri_mesh *mesh, const struct support_places *before, int64_t vertices)
 {
     struct tri_error error = {0};
     struct support_places after = support_places(mesh);
@@ -217,6 +218,7 @@ static void assert_closed(const struct tri_mesh *mesh, const struct support_plac
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
     support_assert_cdt(mesh, false);
+    tri_surface_settle(mesh, NULL);
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         assert_true(support_has_its_attributes(mesh, v));
         if (mesh->on[v] < 0)

@@ -155,7 +155,9 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
         print_message("  %s\n", trials[i].file);
-        struct tri_mesh first = refine(&start, &options, &first_report);
+        struct tri_mesh first = refine(&start, &options, &first_report), before = trials_coarse_mesh(&start);
+        support_assert_on_surface(&before, &first);
+        tri_mesh_free(&before);
         for (int k = 0; k < (i < N_USUAL ? 3 : 1); k++) {
             options.threads = runs[k].threads;
             options.shuffle = runs[k].shuffle;

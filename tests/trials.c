@@ -22,6 +22,7 @@ struct start trials_start_of(const struct trial *trial)
     struct start start = {.options = support_quality(trial->angle, 0)};
     if (!support_read(trial->file, &start.pslg))
         fail_msg("cannot read %s", trial->file);
+    support_add_heights(&start.pslg, 2, 1);
     start.options.keep_hull = start.pslg.n_segments == 0;
     start.options.spread_regions = start.options.quality.region_areas = trial->regions;
     start.options.quality.conforming = trial->conforming;

@@ -86,7 +86,7 @@ static inline struct tri_ints tri_ints_of(const int32_t *at, int64_t n, int64_t 
 struct tri_figure {
     size_t size; /* sizeof(struct tri_figure) */
     struct tri_reals points;           /* [n][2] x, y; at least 3 */
-    struct tri_reals point_attributes; /* [points.n][any]: interpolated at new points */
+    struct tri_reals point_attributes; /* [points.n][any]; new points: linear over the input's triangulation */
     struct tri_ints point_markers;     /* [points.n][1]; not given: 0 */
     struct tri_ints segments;          /* [n][2] points; one that names no point, or the same twice, is skipped, and
                                           noted. Without segments the convex hull is meshed, else what they enclose */

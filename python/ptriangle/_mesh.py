@@ -123,7 +123,8 @@ class Mesh:
 
     @property
     def point_attributes(self) -> Reals:
-        """Attributes of the points, [n, k], interpolated at new points; k is 0 where none were given."""
+        """Attributes of the points, [n, k]; k is 0 if none were given. New points lie on the surface that is linear in
+        each triangle of the input's own triangulation."""
         return self._nodes[1]
 
     @property

@@ -26,7 +26,7 @@ static uint64_t hash_options(uint64_t hash, const struct par_options *o)
     return par_hash(par_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
-static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
+static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m, int32_t n_kept)
 {
     const int64_t counts[] = {m->n_vertices, m->n_triangles, m->n_subs, m->n_regions, m->n_columns, m->n_attributes};
     size_t v = (size_t)m->n_vertices;
@@ -35,7 +35,7 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
     hash = par_hash(hash, m->xy, v * sizeof *m->xy);
     hash = par_hash(hash, m->on, v * sizeof *m->on);
     hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
-    hash = par_hash(hash, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
+    hash = par_hash(hash, m->attributes, (size_t)n_kept * (size_t)m->n_attributes * sizeof *m->attributes);
     hash = par_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
     hash = par_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
     hash = par_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
@@ -46,7 +46,7 @@ uint64_t par_state_run(const struct par_run *state)
 {
     uint64_t hash = hash_bounds(0, state->quality);
     hash = state->then ? hash_bounds(hash, state->then) : hash;
-    return hash_mesh(hash_options(hash, state->options), state->mesh);
+    return hash_mesh(hash_options(hash, state->options), state->mesh, state->n_kept);
 }
 
 /* --- what is carried, to a file and from there */
@@ -150,7 +150,6 @@ static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
     par_carry(f, m->on, v * sizeof *m->on);
     par_carry(f, m->vertex_markers, v * sizeof *m->vertex_markers);
     par_carry(f, m->feature, v * sizeof *m->feature);
-    par_carry(f, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
     par_carry(f, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
     par_carry(f, m->sub, (size_t)m->n_subs * sizeof *m->sub);
 }

@@ -220,14 +220,11 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
 {
     struct tri_mesh *mesh = p->mesh;
     const struct par_told_vertex *told = &p->message->vertex[i];
-    size_t n = (size_t)mesh->n_attributes;
     tri_vertex_id v = take_id(p->ranks->state, PAR_VERTICES);
     mesh->xy[v] = told->xy;
     mesh->feature[v] = told->feature;
     mesh->on[v] = told->on;
     mesh->vertex_markers[v] = told->marker;
-    if (n > 0)
-        memcpy(mesh->attributes + (size_t)v * n, p->message->attribute + (size_t)i * n, n * sizeof *mesh->attributes);
     p->is_new[i] = true;
     return v;
 }

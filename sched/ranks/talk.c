@@ -87,7 +87,6 @@ void par_message_free(struct par_message *m)
     free(m->gone.item);
     free(m->gone_subs.item);
     free(m->vertex);
-    free(m->attribute);
     free(m->triangle);
     free(m->side);
     free(m->entry);
@@ -97,15 +96,11 @@ void par_message_free(struct par_message *m)
 static bool tell_vertex(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
                         tri_vertex_id v)
 {
-    int32_t n = mesh->n_attributes, end = par_values_of((int64_t)m->n_vertices + 1, n);
-    if (end < 0 || !tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices + 1, sizeof *m->vertex) ||
-        !tri_grow(&m->attribute, &m->attribute_capacity, end, sizeof *m->attribute) ||
+    if (!tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices + 1, sizeof *m->vertex) ||
         !par_talk_add_vertex(talk, v))
         return false;
     m->vertex[m->n_vertices++] = (struct par_told_vertex){v < n_common ? v : TRI_NONE, mesh->xy[v], mesh->feature[v],
                                                           mesh->on[v], mesh->vertex_markers[v]};
-    if (n > 0)
-        memcpy(m->attribute + (end - n), mesh->attributes + (size_t)v * (size_t)n, (size_t)n * sizeof *m->attribute);
     return true;
 }
 

@@ -85,20 +85,12 @@ struct par_message {
     int32_t first;                  /* to tell of: the talk's triangles from this number on */
     struct par_ids gone, gone_subs; /* numbers of triangles and subsegments that are no more */
     struct par_told_vertex *vertex;
-    double *attribute;
     struct par_told_triangle *triangle;
     struct par_told_side *side;
     struct par_told_entry *entry;
     int32_t n_vertices, n_triangles, n_sides, n_entries, n_new_subs;
-    int32_t vertex_capacity, attribute_capacity, triangle_capacity, side_capacity, entry_capacity;
+    int32_t vertex_capacity, triangle_capacity, side_capacity, entry_capacity;
 };
-
-/* The attributes of so many vertices: how many values; -1: more than are counted here. */
-static inline int32_t par_values_of(int64_t n_vertices, int32_t n_attributes)
-{
-    int64_t n = n_vertices * n_attributes;
-    return n <= INT32_MAX ? (int32_t)n : -1;
-}
 
 void par_message_free(struct par_message *message);
 

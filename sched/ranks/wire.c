@@ -184,7 +184,7 @@ static void code_place(struct coder *c, struct par_told_vertex *v, struct reals 
     v->feature = real[2];
 }
 
-static void code_vertex(struct coder *c, struct par_told_vertex *v, struct reals *last, double *attribute)
+static void code_vertex(struct coder *c, struct par_told_vertex *v, struct reals *last)
 {
     struct reals differing = {{0}};
     int32_t header = COMMON;
@@ -203,14 +203,13 @@ static void code_vertex(struct coder *c, struct par_told_vertex *v, struct reals
         code_int(c, &v->on);
         code_int(c, &v->marker);
     }
-    code_bytes(c, attribute, (size_t)c->mesh->n_attributes * sizeof *attribute);
 }
 
 static void code_vertices(struct coder *c, struct par_message *m)
 {
     struct reals last = {{0}};
     for (int32_t i = 0; !c->failed && i < m->n_vertices; i++)
-        code_vertex(c, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)c->mesh->n_attributes);
+        code_vertex(c, &m->vertex[i], &last);
 }
 
 /* --- triangles */
@@ -377,13 +376,11 @@ bool par_message_write(struct par_message *m, const struct par_talk *talk, const
     return !c.failed;
 }
 
-static bool reserve(struct par_message *m, int32_t n_attributes)
+static bool reserve(struct par_message *m)
 {
-    int32_t values = par_values_of(m->n_vertices, n_attributes);
-    return values >= 0 && tri_grow(&m->gone.item, &m->gone.capacity, m->gone.n, sizeof *m->gone.item) &&
+    return tri_grow(&m->gone.item, &m->gone.capacity, m->gone.n, sizeof *m->gone.item) &&
            tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, m->gone_subs.n, sizeof *m->gone_subs.item) &&
            tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices, sizeof *m->vertex) &&
-           tri_grow(&m->attribute, &m->attribute_capacity, values, sizeof *m->attribute) &&
            tri_grow(&m->triangle, &m->triangle_capacity, m->n_triangles, sizeof *m->triangle) &&
            tri_grow(&m->side, &m->side_capacity, m->n_sides, sizeof *m->side) &&
            tri_grow(&m->entry, &m->entry_capacity, m->n_entries, sizeof *m->entry);
@@ -419,7 +416,7 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
     *m = (struct par_message){0};
     begin_reading(&c, from);
     code_counts(&c, m);
-    if (!c.failed && !reserve(m, mesh->n_attributes))
+    if (!c.failed && !reserve(m))
         return par_ranks_no_memory(error);
     if (!c.failed)
         code_all(&c, m);

@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
@@ -324,13 +323,10 @@ static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
 /* Where the vertex was it leaves where it is now. */
 static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to)
 {
-    size_t n = (size_t)mesh->n_attributes;
     mesh->xy[to] = mesh->xy[from];
     mesh->on[to] = mesh->on[from];
     mesh->vertex_markers[to] = mesh->vertex_markers[from];
     mesh->feature[to] = mesh->feature[from];
-    if (n)
-        memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
     mesh->on[from] = to;
 }
 

@@ -22,6 +22,7 @@
 #include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/size_text.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
 
@@ -538,6 +539,7 @@ static enum tri_status hand_out(struct par_run *state, struct tri_error *error)
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
+    tri_surface_settle(state->mesh, &state->executor);
     if (state->options->count_remaining && !state->options->carrier)
         par_remain_count_all(state);
     if (state->options->carrier)
@@ -645,6 +647,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     if (checkpoint_of(&state))
         status = par_state_begin(options->checkpoint, &state, error);
     status = status ? status : refine_and_deliver(&state, quality, sequential, error);
+    if (!options->sink)
+        tri_surface_settle(mesh, &state.executor);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
     assert(options->sink || tri_mesh_is_sound(mesh));

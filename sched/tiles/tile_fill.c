@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "sched/tunables.h"
+#include "triangle/mesh/surface.h"
 
 /* --- final triangles */
 
@@ -300,6 +301,7 @@ bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const 
         !par_tile_copy_reserve(&job->copy, mesh, tile->n_vertices, tile->n_triangles, tile->n_segments))
         return false;
     par_tile_copy_show(&job->copy, tile);
+    tri_surface_set(mesh, vertices, tile->n_vertices);
     for (int32_t i = 0; i < tile->n_vertices; i++) {
         if (i + PAR_HANDED_AHEAD < tile->n_vertices) {
             __builtin_prefetch(&mesh->xy[vertices[i + PAR_HANDED_AHEAD]]);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "triangle/api/figure.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
@@ -354,7 +355,9 @@ static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mes
 {
     (void)way;
     (void)settings;
-    return tri_refine_with(mesh, quality, hooks, report, error);
+    enum tri_status status = tri_refine_with(mesh, quality, hooks, report, error);
+    tri_surface_settle(mesh, NULL);
+    return status;
 }
 
 enum tri_status tri_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,

@@ -29,8 +29,8 @@
 #include "triangle/cdt/rotation.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/cavity.h"
-#include "triangle/mesh/interpolate.h"
 #include "triangle/mesh/locate.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/tunables.h"
 
 enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
@@ -317,13 +317,10 @@ static enum tri_status add_crossing(struct layer *l, struct tri_point p, const s
     if (status)
         return status;
     tri_vertex_id v = *vertex = mesh->n_vertices++;
-    struct tri_point from = mesh->xy[along->from], to = mesh->xy[along->to];
-    double x = to.x - from.x, y = to.y - from.y;
     mesh->xy[v] = p;
     mesh->on[v] = TRI_VERTEX_INPUT;
     mesh->vertex_markers[v] = marker_of(l, along->course);
-    tri_interpolate_edge(mesh, along->from, along->to,
-                         ((p.x - from.x) * x + (p.y - from.y) * y) / (x * x + y * y), v);
+    tri_interpolate_edge(mesh, along->from, along->to, p, mesh->attributes + (size_t)v * (size_t)mesh->n_attributes);
     tri_cavity_fill(&l->cavity, mesh, v);
     l->report->crossings++;
     return keep_corners(l, v) ? TRI_OK : no_memory(l);

@@ -18,6 +18,7 @@
 #include "triangle/cdt/chain.h"
 #include "triangle/cdt/flip.h"
 #include "triangle/geometry/predicates.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/mesh/topology.h"
 
 enum { LOOSE = INT32_MAX };
@@ -526,8 +527,9 @@ static enum tri_status build(struct matcher *m)
     tri_mark_boundary(mesh);
     if (!m->options->refine)
         return TRI_OK;
-    status = tri_flip_to_delaunay(mesh, m->options->executor, m->error);
-    return status ? status : tri_unite_chains(mesh, m->error);
+    status = tri_unite_chains(mesh, m->error);
+    status = status ? status : tri_surface_keep(mesh, m->options->executor, m->error); /* as it was read */
+    return status ? status : tri_flip_to_delaunay(mesh, m->options->executor, m->error);
 }
 
 static void tell_edges(const struct matcher *m)

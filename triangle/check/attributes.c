@@ -1,5 +1,5 @@
-/* Attributes of vertices: those of the input keep theirs; those of others are interpolated, in triangles that nobody
- * knows any more, so that all that can be said of them is between which numbers they lie.
+/* Attributes of vertices: those of the input keep theirs. Those of others lie on a surface over the triangulation of
+ * the input, which is not made here: so they are judged by the range of the input's alone.
  *
  * Interpolation rounds, the more the thinner the triangle is: hence the tolerance. */
 #include <math.h>

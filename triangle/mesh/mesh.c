@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "triangle/base/grow.h"
+#include "triangle/mesh/surface.h"
 
 enum { LINE = 64 };
 
@@ -177,6 +178,7 @@ void tri_mesh_drop(struct tri_mesh *mesh)
 void tri_mesh_free(struct tri_mesh *mesh)
 {
     tri_mesh_drop(mesh);
+    tri_surface_free(mesh->surface);
     free(mesh->parents);
     free(mesh->incidence.start);
     free(mesh->incidence.parent);

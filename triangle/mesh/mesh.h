@@ -110,6 +110,7 @@ struct tri_storage {
 };
 
 struct tri_mesh;
+struct tri_surface;
 
 /* A bound on the memory that these arrays take. */
 struct tri_bound {
@@ -126,7 +127,8 @@ struct tri_mesh {
     int32_t *vertex_markers;  /* [n_vertices] */
     double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h):
                                  what each new vertex inherits, and takes along wherever it goes */
-    double *attributes;       /* [n_vertices][n_attributes] */
+    double *attributes;       /* [n_vertices][n_attributes]; those of new vertices are set last */
+    struct tri_surface *surface; /* where they come from (surface.h); NULL: no attributes, or nothing refined yet */
     int32_t n_attributes;
     int32_t n_vertices, vertex_capacity;
     int32_t n_input;          /* the first n_input vertices are the caller's points, in the caller's order .. */

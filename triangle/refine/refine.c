@@ -15,6 +15,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/mesh/surface.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
@@ -196,5 +197,7 @@ enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
                            struct tri_error *error)
 {
-    return tri_refine_with(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
+    enum tri_status status = tri_refine_with(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
+    tri_surface_settle(mesh, NULL);
+    return status;
 }

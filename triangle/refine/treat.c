@@ -16,7 +16,6 @@
 #include <assert.h>
 
 #include "triangle/geometry/predicates.h"
-#include "triangle/mesh/interpolate.h"
 #include "triangle/refine/disk.h"
 #include "triangle/refine/inside.h"
 #include "triangle/refine/petal.h"
@@ -62,18 +61,6 @@ static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32
     return v;
 }
 
-/* The corners of the cavity's triangle that holds the new point, for interpolation. */
-static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct tri_point p)
-{
-    for (int32_t i = 0; i < r->cavity.n_tri; i++) {
-        const tri_vertex_id *v = r->mesh->tri[r->cavity.tri[i]].v;
-        struct tri_point a = r->mesh->xy[v[0]], b = r->mesh->xy[v[1]], c = r->mesh->xy[v[2]];
-        if (tri_orient2d(a, b, p) >= 0 && tri_orient2d(b, c, p) >= 0 && tri_orient2d(c, a, p) >= 0)
-            return v;
-    }
-    return r->mesh->tri[r->cavity.tri[0]].v;
-}
-
 static void tell_changes(const struct tri_refiner *r)
 {
     if (r->hooks->part)
@@ -91,8 +78,6 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
     const tri_vertex_id *corner = r->mesh->tri[triangle].v;
     r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
                                              corner[tri_prev[shape->shortest]], p, r->sized);
-    if (r->mesh->n_attributes)
-        tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     bool room = tri_fill_and_feed(r, v);
     tell_changes(r);
     r->report->inserted_free++;
@@ -218,7 +203,6 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     assert(r->cavity.n_edges > n_left || boundary);
     tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
-    tri_interpolate_edge(m, old.v[0], old.v[1], split.fraction, v);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
     r->report->inserted_on_segments++;

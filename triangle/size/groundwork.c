@@ -1,5 +1,6 @@
 /* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
  *
+ *   surface     of the attributes of vertices (surface.h)
  *   acute       input vertices at which two subsegments meet at less than 60 degrees
  *   incidence   the parents that end at each vertex, in order of direction where they are many
  *   limits      the shortest edge that coordinates can carry
@@ -14,6 +15,7 @@
 #include "triangle/size/groundwork.h"
 
 #include "triangle/mesh/parents.h"
+#include "triangle/mesh/surface.h"
 #include "triangle/size/feature_size.h"
 #include "triangle/size/gap.h"
 #include "triangle/tunables.h"
@@ -76,8 +78,9 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
 {
     if (mesh->incidence.start)
         return TRI_OK;
+    enum tri_status status = tri_surface_keep(mesh, executor, error);
     find_acute(mesh);
-    enum tri_status status = tri_incidence_list(mesh, error);
+    status = status ? status : tri_incidence_list(mesh, error);
     if (status)
         return status;
     const double shortest = TRI_SHORTEST_EDGE * largest_coordinate(mesh);

@@ -5,9 +5,10 @@
 
 #include "triangle/mesh/mesh.h"
 
-/* Makes the mesh ready for refinement: lists the parents at each vertex, estimates feature sizes, sets the limits, and
- * marks the input vertices at which two subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE).
- * Call it after carving, before the first point; a mesh that is ready stays as it is. O(triangles). */
+/* Makes the mesh ready for refinement: keeps the surface of the attributes, lists the parents at each vertex, estimates
+ * feature sizes, sets the limits, and marks the input vertices at which two subsegments meet at less than 60 degrees
+ * inside the mesh (TRI_VERTEX_ACUTE). Call it after carving, before the first point; a mesh that is ready stays as it
+ * is. O(triangles). */
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 #endif

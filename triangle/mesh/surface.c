@@ -1,0 +1,235 @@
+/* A vertex is located by a walk from the triangle that held the one before. If that meets the boundary, a search
+ * through a tree of boxes finds the triangle: they are sorted along a Hilbert curve, and the two parts of a box hold
+ * the halves of its range of triangles.
+ *
+ * INVARIANT. The result does not depend on the way: triangles share no more than edges, on which all at them give the
+ * same bits, and the search alone decides on what lies outside by rounding. */
+#include "triangle/mesh/surface.h"
+
+#include <stdlib.h>
+
+#include "triangle/geometry/expansion.h"
+#include "triangle/geometry/hilbert.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/mesh/locate.h"
+
+enum { FEW = 8, AT_ONCE = 4096, SIDES = 4 };
+
+struct box {
+    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices that rounding may have put beside them */
+};
+
+struct tri_surface {
+    struct tri_mesh mesh;   /* its arrays alone */
+    tri_triangle_id *order; /* [mesh.n_triangles] along the curve */
+    struct box *box;        /* [1] the whole, [2 i] and [2 i + 1] the parts of [i]; FEW triangles or less have none */
+    bool has_chains;        /* parents may be chains of several subsegments */
+    int32_t n_settled;      /* the first vertices, which have their attributes */
+};
+
+static double within(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
+
+static double *attributes_of(const struct tri_mesh *mesh, tri_vertex_id v)
+{
+    return mesh->attributes + (size_t)v * (size_t)mesh->n_attributes;
+}
+
+void tri_interpolate_edge(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, double *to)
+{
+    const struct tri_point from = mesh->xy[a], end = mesh->xy[b];
+    const double x = end.x - from.x, y = end.y - from.y;
+    const double fraction = ((p.x - from.x) * x + (p.y - from.y) * y) / (x * x + y * y);
+    for (int32_t k = 0; k < mesh->n_attributes; k++) {
+        const double at_a = attributes_of(mesh, a)[k], at_b = attributes_of(mesh, b)[k];
+        to[k] = within(at_a + fraction * (at_b - at_a), tri_lesser(at_a, at_b), tri_larger(at_a, at_b));
+    }
+}
+
+/* On the plane through the corners of a triangle. Weights are areas, each right to the last places however small it is;
+ * on an edge the triangles on both sides do the same. */
+static void interpolate(const struct tri_mesh *mesh, const tri_vertex_id corners[3], struct tri_point p, double *to)
+{
+    const int first = corners[1] < corners[0] && corners[1] < corners[2] ? 1 : corners[2] < corners[0] ? 2 : 0;
+    const tri_vertex_id v[3] = {corners[first], corners[tri_next[first]], corners[tri_prev[first]]};
+    double area[3];
+    for (int e = 0; e < 3; e++) {
+        const tri_vertex_id a = v[tri_next[e]], b = v[tri_prev[e]];
+        area[e] = tri_orient2d_pair(mesh->xy[a], mesh->xy[b], p).head;
+        if (!(area[e] > 0)) {
+            tri_interpolate_edge(mesh, a < b ? a : b, a < b ? b : a, p, to);
+            return;
+        }
+    }
+    const double sum = area[0] + area[1] + area[2];
+    for (int32_t k = 0; k < mesh->n_attributes; k++) {
+        const double a = attributes_of(mesh, v[0])[k];
+        const double b = attributes_of(mesh, v[1])[k], c = attributes_of(mesh, v[2])[k];
+        const double value = a + (area[1] / sum * (b - a) + area[2] / sum * (c - a));
+        to[k] = within(value, tri_lesser(a, tri_lesser(b, c)), tri_larger(a, tri_larger(b, c)));
+    }
+}
+
+/* Vertices keep within 2^-49 of the coordinates to their segments (docs/guarantees.md). */
+static void make_box(const struct tri_surface *s, size_t i, int32_t first, int32_t end)
+{
+    double *most = s->box[i].most;
+    for (int side = 0; side < SIDES; side++)
+        most[side] = -HUGE_VAL;
+    if (end - first > FEW) {
+        make_box(s, 2 * i, first, first + (end - first) / 2);
+        make_box(s, 2 * i + 1, first + (end - first) / 2, end);
+        for (int side = 0; side < SIDES; side++)
+            most[side] = tri_larger(s->box[2 * i].most[side], s->box[2 * i + 1].most[side]);
+        return;
+    }
+    for (int32_t k = 3 * first; k < 3 * end; k++) {
+        const struct tri_point p = s->mesh.xy[s->mesh.tri[s->order[k / 3]].v[k % 3]];
+        const double at[SIDES] = {p.x, p.y, -p.x, -p.y}, more = 0x1p-48 * tri_larger(fabs(p.x), fabs(p.y));
+        for (int side = 0; side < SIDES; side++)
+            most[side] = tri_larger(most[side], at[side] + more);
+    }
+}
+
+/* center: [triangles], scratch: [2 triangles]. */
+static void sort_triangles(struct tri_surface *s, struct tri_point *center, uint64_t *scratch,
+                           const struct tri_executor *executor)
+{
+    const int32_t n = s->mesh.n_triangles;
+    for (tri_triangle_id t = 0; t < n; t++) {
+        const tri_vertex_id *v = s->mesh.tri[t].v;
+        const struct tri_point a = s->mesh.xy[v[0]], b = s->mesh.xy[v[1]], c = s->mesh.xy[v[2]];
+        center[t] = (struct tri_point){a.x + b.x + c.x, a.y + b.y + c.y};
+        s->order[t] = t;
+    }
+    tri_hilbert_order(center, s->order, n, scratch, executor);
+    make_box(s, 1, 0, n);
+}
+
+enum tri_status tri_surface_keep(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
+{
+    if (mesh->n_attributes == 0 || mesh->surface || mesh->n_triangles == 0)
+        return TRI_OK;
+    const size_t n = (size_t)mesh->n_triangles;
+    struct tri_point *center = malloc(n * sizeof *center);
+    uint64_t *scratch = malloc(2 * n * sizeof *scratch);
+    struct tri_surface *s = calloc(1, sizeof *s);
+    bool memory = s && center && scratch && !tri_mesh_copy(&s->mesh, mesh, error);
+    if (memory) {
+        *s = (struct tri_surface){s->mesh, malloc(n * sizeof *s->order), malloc((n / 2 + 2) * sizeof *s->box),
+                                  mesh->n_parents < mesh->n_subs, mesh->n_vertices};
+        memory = s->order && s->box;
+    }
+    if (memory)
+        sort_triangles(s, center, scratch, executor);
+    else
+        tri_surface_free(s);
+    mesh->surface = memory ? s : NULL;
+    free(center);
+    free(scratch);
+    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the attributes' surface");
+}
+
+void tri_surface_free(struct tri_surface *s)
+{
+    if (!s)
+        return;
+    tri_mesh_drop(&s->mesh);
+    free(s->order);
+    free(s->box);
+    free(s);
+}
+
+/* --- locating */
+
+struct search {
+    const struct tri_surface *surface;
+    struct tri_point p;
+    tri_parent_id parent; /* TRI_NONE, or triangles that have no edge on it do not count */
+    tri_triangle_id best; /* the one that p is least outside of */
+    double depth;         /* how far, below 0; HUGE_VAL: it holds p */
+};
+
+static void try_triangle(struct search *search, tri_triangle_id t)
+{
+    const struct tri_mesh *mesh = &search->surface->mesh;
+    const struct tri_triangle *at = &mesh->tri[t];
+    bool counts = search->parent == TRI_NONE;
+    double depth = HUGE_VAL;
+    for (int e = 0; e < 3; e++) {
+        const struct tri_point a = mesh->xy[at->v[tri_next[e]]], b = mesh->xy[at->v[tri_prev[e]]];
+        const double side = tri_orient2d(a, b, search->p);
+        if (side < 0)
+            depth = tri_lesser(depth, side / sqrt(tri_distance2(a, b)));
+        counts = counts || (at->n[e] < 0 && mesh->sub[~at->n[e]].parent == search->parent);
+    }
+    if (counts && depth > search->depth) {
+        search->best = t;
+        search->depth = depth;
+    }
+}
+
+static void search_box(struct search *search, size_t i, int32_t first, int32_t end)
+{
+    const double *most = search->surface->box[i].most;
+    const struct tri_point p = search->p;
+    if (p.x > most[0] || p.y > most[1] || -p.x > most[2] || -p.y > most[3] || search->depth > 0)
+        return;
+    if (end - first > FEW) {
+        search_box(search, 2 * i, first, first + (end - first) / 2);
+        search_box(search, 2 * i + 1, first + (end - first) / 2, end);
+        return;
+    }
+    for (int32_t k = first; k < end; k++)
+        try_triangle(search, search->surface->order[k]);
+}
+
+/* Sets those of vertex v, beginning at triangle `near` (TRI_NONE: anywhere). Returns the triangle that v lies in. */
+static tri_triangle_id set_one(const struct tri_mesh *mesh, tri_vertex_id v, tri_triangle_id near)
+{
+    const struct tri_surface *s = mesh->surface;
+    assert(mesh->on[v] >= 0 || mesh->on[v] == TRI_VERTEX_FREE);
+    const struct tri_parent *parent = mesh->on[v] >= 0 ? &mesh->parents[mesh->on[v]] : NULL;
+    if (parent && !s->has_chains) {
+        tri_interpolate_edge(mesh, parent->v[0], parent->v[1], mesh->xy[v], attributes_of(mesh, v));
+        return near;
+    }
+    tri_triangle_id at = parent || near == TRI_NONE ? TRI_NONE : tri_walk_to(&s->mesh, near, mesh->xy[v]);
+    if (at == TRI_NONE) {
+        struct search search = {s, mesh->xy[v], parent ? mesh->on[v] : TRI_NONE, s->order[0], -HUGE_VAL};
+        search_box(&search, 1, 0, s->mesh.n_triangles);
+        at = search.best;
+    }
+    interpolate(&s->mesh, s->mesh.tri[at].v, mesh->xy[v], attributes_of(mesh, v));
+    return at;
+}
+
+void tri_surface_set(const struct tri_mesh *mesh, const tri_vertex_id *vertices, int32_t n)
+{
+    tri_triangle_id near = TRI_NONE;
+    for (int32_t i = 0; mesh->surface && i < n; i++)
+        near = set_one(mesh, vertices[i], near);
+}
+
+/* Part by part along a curve, since vertices may have any order. */
+static void settle_share(void *context, size_t share)
+{
+    const struct tri_mesh *mesh = context;
+    const tri_vertex_id first = mesh->surface->n_settled;
+    const struct tri_range range = tri_share(share, mesh->n_vertices - first);
+    tri_vertex_id part[AT_ONCE];
+    uint64_t scratch[2 * AT_ONCE];
+    for (int32_t i = range.first, n; i < range.last; i += n) {
+        for (n = 0; n < AT_ONCE && i + n < range.last; n++)
+            part[n] = first + i + n;
+        tri_hilbert_order_coarse(mesh->xy, part, n, scratch);
+        tri_surface_set(mesh, part, n);
+    }
+}
+
+void tri_surface_settle(struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    if (!mesh->surface || mesh->n_vertices <= mesh->surface->n_settled)
+        return;
+    tri_execute(executor, tri_shares(mesh->n_vertices - mesh->surface->n_settled), settle_share, mesh);
+    mesh->surface->n_settled = mesh->n_vertices;
+}
