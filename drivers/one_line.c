@@ -35,15 +35,6 @@ void one_line_print(FILE *stream, const char *format, va_list arguments)
     fputs(format + length - after, stream);
 }
 
-void one_line_complain(const char *program, const char *format, va_list arguments)
-{
-    char text[LENGTH];
-    vsnprintf(text, sizeof text, format, arguments);
-    fprintf(stderr, "%s: ", program);
-    one_line_put(stderr, text);
-    fputc('\n', stderr);
-}
-
 void one_line_error(FILE *stream, const char *before, const struct tri_error *error)
 {
     fputs(before, stream);

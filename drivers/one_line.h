@@ -14,9 +14,6 @@ void one_line_put(FILE *stream, const char *text);
  * control characters come out of texts. What is longer than several names is cut. */
 void one_line_print(FILE *stream, const char *format, va_list arguments);
 
-/* "program: ", the text, which is one line, and its end on standard error; cut likewise. */
-void one_line_complain(const char *program, const char *format, va_list arguments);
-
 /* Some words, the place of an error, and its text. */
 void one_line_error(FILE *stream, const char *before, const struct tri_error *error);
 

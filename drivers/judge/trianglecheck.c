@@ -2,7 +2,6 @@
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,15 +77,6 @@ struct settings {
     double memory, memory_share; /* one of them, or 0: not given */
     const char *scratch;         /* NULL: not given */
 };
-
-static int fail(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    one_line_complain(PTRIANGLE_NAME, format, arguments);
-    va_end(arguments);
-    return TROUBLE;
-}
 
 /* --- judging */
 
@@ -260,9 +250,11 @@ static int run(const struct settings *s, struct judged_files *f)
     struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
                              .scratch = scratch, .executor = &executor};
     enum tri_status status = judged_read(f, &ask, &error);
-    if (f->stale_neighbors)
-        fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
-             s->base);
+    if (f->stale_neighbors) {
+        fputs(PTRIANGLE_NAME ": ", stderr);
+        one_line_put(stderr, s->base);
+        fputs(".neigh is of another mesh than .ele, by their numbers of triangles: it is not judged\n", stderr);
+    }
     if (status == TRI_OK)
         status = judge(s, f, &executor, threads, &report, &error);
     if (status != TRI_OK) {
@@ -271,9 +263,10 @@ static int run(const struct settings *s, struct judged_files *f)
     }
     struct verdict_style style = {s->base, s->check.min_angle, s->quiet};
     (s->json ? verdict_print_json : verdict_print_lines)(&style, f, &report);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        return fail("cannot write to standard output");
-    return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
+    fputs(PTRIANGLE_NAME ": cannot write to standard output\n", stderr);
+    return TROUBLE;
 }
 
 const int program_trouble = TROUBLE;

@@ -2,7 +2,6 @@
  * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,15 +67,6 @@ struct files {
     struct plot_density density;
     int64_t all_points, all_triangles; /* of the whole mesh, where that is but a part */
 };
-
-static int fail(int code, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    one_line_complain(PTRIANGLE_NAME, format, arguments);
-    va_end(arguments);
-    return code;
-}
 
 /* --- reading */
 
@@ -186,8 +176,8 @@ static enum tri_status take_triangles(const struct plot_box *window, struct file
 
 static void say_densities(struct settings *s)
 {
-    fail(0, "there are more than %d triangles to show: a picture of densities; --window shows those of a part",
-         (int)plot_most_triangles());
+    fprintf(stderr, PTRIANGLE_NAME ": there are more than %d triangles to show: a picture of densities; --window shows "
+                                   "those of a part\n", (int)plot_most_triangles());
     s->colour = BY_DENSITY;
 }
 
@@ -418,8 +408,10 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
         fputs(usage, stderr);
         return MISUSE;
     }
-    if (s->colour == BY_BLOCK && s->blocks == NULL)
-        return fail(MISUSE, "--color block needs --blocks FILE");
+    if (s->colour == BY_BLOCK && s->blocks == NULL) {
+        fputs(PTRIANGLE_NAME ": --color block needs --blocks FILE\n", stderr);
+        return MISUSE;
+    }
     s->style.width = floor(s->style.width);
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
@@ -438,8 +430,10 @@ int program_main(int argc, char **argv)
     if (code != 0)
         return code < 0 ? EXIT_SUCCESS : code;
     interrupt_stage("reading");
-    if (!interrupt_start(PTRIANGLE_NAME, 0, 0))
-        return fail(TROUBLE, "the system does not take a handler for the end");
+    if (!interrupt_start(PTRIANGLE_NAME, 0, 0)) {
+        fputs(PTRIANGLE_NAME ": the system does not take a handler for the end\n", stderr);
+        return TROUBLE;
+    }
     enum tri_status status = plot(&settings, &files, &error);
     if (status == TRI_STOPPED)
         interrupt_tell();
