@@ -1,6 +1,7 @@
 #!/bin/sh
-# Builds the programs (installing what is missing first) and meshes a real coastline: the sea off Norway, with no angle
-# below 30 degrees but where the coast itself is sharper. Then the checker judges the mesh, and it is drawn.
+# Builds the programs and meshes a real coastline: the sea off Norway, with no angle below 30 degrees except where the
+# coast itself is sharper. Then the checker judges the mesh, and it is drawn. What is missing of compiler, make, CMake
+# and cairo is installed first (tools/setup.sh says how to go without).
 # Usage: tools/mesh-coast.sh [OUTPUT_FOLDER]     default: out
 set -eu
 here=$(pwd)
@@ -13,7 +14,7 @@ esac
 angle=30
 programs=${PTRIANGLE_BUILD:-build}/release/bin
 
-tools/setup.sh build
+tools/setup.sh coast
 tools/build.sh release
 mkdir -p "$out"
 cp data/coast/norway_sea.poly "$out/"

@@ -1,16 +1,18 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
-# Usage: tools/setup.sh [build|tests|ci|ports]
-#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot), jansson (for
-#          ptriangle --report), HDF5 (for .h5 files) and pkg-config (for programs that call the libraries), which can
-#          be done without
+# Usage: tools/setup.sh [coast|build|tests|ci|ports]
+#   coast  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot)
+#   build  and jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the libraries)
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (what
 #          .ci/run needs)
 #   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
-# Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
+# Works as root or with sudo, asks nothing, says what it installs and for what, and does not touch a machine that has
+# everything. cairo, jansson, HDF5 and, for `build`, pkg-config can be done without: PTRIANGLE_SETUP=least leaves them
+# out; PTRIANGLE_SETUP=no installs nothing.
 set -eu
 wanted=${1:-build}
+how=${PTRIANGLE_SETUP:-all}
 missing=""
 
 need() { # need PACKAGE CHECK...: PACKAGE is missing unless the check succeeds
@@ -71,18 +73,25 @@ cmake_is_new_enough() {
         awk '{ split($3, v, "."); exit !(v[1] > 3 || (v[1] == 3 && v[2] >= 22)) }'
 }
 
-compilers() { command -v cc && command -v c++ && command -v make; }
+compilers() { command -v cc && command -v c++ && links stdio.h c; }
+
+wish() { # wish PACKAGE CHECK...: as need, of what can be done without
+    package=$1
+    shift
+    [ "$how" = least ] || "$@" >/dev/null 2>&1 || wished="${wished:+$wished }$package"
+}
 
 list_missing() {
     missing=""
     wished=""
-    links cairo/cairo.h cairo >/dev/null 2>&1 || wished=libcairo2-dev
-    links jansson.h jansson >/dev/null 2>&1 || wished="${wished:+$wished }libjansson-dev"
-    hdf5 >/dev/null 2>&1 || wished="${wished:+$wished }libhdf5-dev"
-    [ "$wanted" != build ] || command -v pkg-config >/dev/null || wished="${wished:+$wished }pkg-config"
-    need build-essential compilers
+    wish libcairo2-dev links cairo/cairo.h cairo
+    [ "$wanted" = coast ] || wish libjansson-dev links jansson.h jansson
+    [ "$wanted" = coast ] || wish libhdf5-dev hdf5
+    [ "$wanted" != build ] || wish pkg-config command -v pkg-config
+    need "gcc g++ libc6-dev" compilers
+    need make command -v make
     need cmake command -v cmake
-    [ "$wanted" = build ] && return
+    case $wanted in coast | build) return ;; esac
     if [ "$wanted" = ports ]; then
         for triplet in aarch64 i686 s390x; do
             need g++-$triplet-linux-gnu command -v $triplet-linux-gnu-g++
@@ -108,6 +117,28 @@ list_missing() {
     need gcovr command -v gcovr
 }
 
+purposes() { # what each package is for
+    for package; do
+        case $package in
+        gcc | g++ | libc6-dev | make | cmake) purpose="to build the programs" ;;
+        libcairo2-dev) purpose="meshplot, which draws meshes; can be done without" ;;
+        libjansson-dev) purpose="ptriangle --report; can be done without" ;;
+        libhdf5-dev) purpose=".h5 files; can be done without" ;;
+        pkg-config) purpose="programs that call the libraries" ;;
+        libcmocka-dev | libgmp-dev) purpose="the tests" ;;
+        *) purpose="the checks of tools/setup.sh $wanted" ;;
+        esac
+        printf 'setup:   %-16s %s\n' "$package" "$purpose"
+    done
+}
+
+amount() { # of all that apt brings for these: packages, and their size on the disk
+    as_root env LC_ALL=C apt-get install --download-only --no-install-recommends --assume-no "$@" 2>/dev/null | awk '
+        / newly installed/ { packages = $3 } # "0 upgraded, 64 newly installed, ..."
+        /^After this operation/ { size = $4 " " $5 }
+        END { if (packages > 0) print "in all " packages " packages, " size }'
+}
+
 consequence() { # what a machine without $wished does without
     case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
     case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
@@ -128,9 +159,9 @@ as_root() {
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
 case $wanted in
-build | tests | ci | ports) ;;
+coast | build | tests | ci | ports) ;;
 *)
-    echo "usage: tools/setup.sh [build|tests|ci|ports]" >&2
+    echo "usage: tools/setup.sh [coast|build|tests|ci|ports]" >&2
     exit 2
     ;;
 esac
@@ -141,9 +172,14 @@ if [ -n "$wished" ] && [ -z "$missing" ] && [ "$(id -u)" -ne 0 ] && ! sudo -n tr
     echo "setup: without $wished: $(consequence)" >&2
     wished=""
 fi
-if [ -n "$missing$wished" ] && command -v apt-get >/dev/null; then
-    echo "setup: installing$missing${wished:+ $wished}"
+if [ -n "$missing$wished" ] && [ "$how" != no ] && command -v apt-get >/dev/null; then
     apt update || echo "setup: apt-get update failed; trying with the package lists that are here" >&2
+    echo "setup: installing through apt:"
+    # shellcheck disable=SC2086 # one word a package
+    purposes $missing $wished
+    # shellcheck disable=SC2086
+    echo "setup: $(amount $missing $wished). PTRIANGLE_SETUP=least leaves out what can be done without;" \
+        "PTRIANGLE_SETUP=no installs nothing"
     # shellcheck disable=SC2086 # one word a package
     [ -z "$missing" ] || apt install -y --no-install-recommends $missing || true
     # shellcheck disable=SC2086

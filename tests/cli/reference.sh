@@ -1,10 +1,5 @@
 # Counts that any right program finds (vertices triangles edges exterior interior subsegments), on classic inputs
-# that are not part of this tree.
-if [ -z "$shared" ]; then
-    echo "cli reference: no further inputs, skipped"
-    exit 77
-fi
-
+# that are not part of this tree; registered only where they are.
 reference() { # reference INPUT SWITCHES COUNTS...
     input=$1
     switches=$2
