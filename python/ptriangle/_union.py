@@ -97,8 +97,7 @@ def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
         text = "polygons overlap, or their rings are not those of valid polygons"
     else:
         text = "the rings are not those of a valid polygon: holes overlap or lie outside, or rings cross"
-    warn("%s. The even-odd rule meshes an area of %g, where the polygons have %g; union=True meshes what lies in any "
-         "of them" % (text, meshed, meant), who)
+    warn("%s. The even-odd rule meshes an area of %g; union=True meshes what lies in any polygon" % (text, meshed), who)
 
 
 def _largest_of(label: Array, areas: Array) -> Array:
