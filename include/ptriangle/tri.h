@@ -113,7 +113,7 @@ static inline struct tri_figure tri_no_figure(void)
 struct tri_settings {
     size_t size; /* sizeof(struct tri_settings) */
     double min_angle;   /* degrees: no smaller angle, but at small angles of the input; up to 36 nearly everywhere,
-                           above 38 as 38 */
+                           above 38 as 38, if conforming above 36 as 36 */
     double max_area;    /* of a triangle, in squared units of the coordinates */
     bool conforming;    /* each triangle is Delaunay, no point lies in the diametral circle of a segment's piece */
     bool keep_hull;     /* segments that enclose nothing are fine: the convex hull is meshed, but for the holes */

@@ -85,7 +85,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
 
     What is wanted; without bounds it is the constrained Delaunay triangulation:
 
-    min_angle: degrees; up to 36 on nine inputs in ten, above 38 as 38.
+    min_angle: degrees; up to 36 on nine inputs in ten, above 38 as 38, conforming above 36 as 36.
     max_area: of a triangle.
     size: bounds triangles by the area of an equilateral one with edges of this length: a number, or a function of x and
         y, asked at corners and centroids (inf: any); or a SizeFunction, of compiled code, which all threads call.

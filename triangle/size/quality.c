@@ -8,6 +8,11 @@
 
 struct tri_quality tri_quality_defaults(void) { return (struct tri_quality){.max_steiner = -1}; }
 
+double tri_worked_angle(const struct tri_quality *quality)
+{
+    return fmin(quality->min_angle, quality->conforming ? TRI_CONFORMING_ANGLE : TRI_USUAL_ANGLE);
+}
+
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {
     struct tri_bounds bounds = {0, 0, 0};
