@@ -261,6 +261,77 @@ static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state
     tri_pslg_free(&pslg);
 }
 
+/* Circles take at most so many times the triangles of the mesh without them. Stopped where they run away. */
+static void judge_growth(const struct tri_pslg *pslg, double angle, int64_t most)
+{
+    struct tri_report report;
+    struct tri_options options = support_quality(angle, 0);
+    struct tri_mesh plain = support_generate(pslg, &options, NULL);
+    options.quality.conforming = true;
+    options.quality.max_steiner = most * plain.n_triangles;
+    struct tri_mesh mesh = support_generate(pslg, &options, &report);
+    assert_false(report.quality.hit_limit);
+    assert_in_range(mesh.n_triangles, 0, most * plain.n_triangles);
+    tri_mesh_free(&mesh);
+    tri_mesh_free(&plain);
+}
+
+/* Slanted lines across a square, each drawn two or three times, 10^-14 to 10^-11 apart, and others across them. */
+static struct tri_pslg doubled_hatching(uint64_t seed)
+{
+    enum { LINES = 8 };
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(4 + 12 * LINES, 4 + 6 * LINES, 0, 0);
+    const double slope = support_unit(&random), gap = ldexp(1, -37 - support_below(&random, 10));
+    for (int k = 0; k < 4; k++)
+        support_add_point(&pslg, k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1);
+    for (int k = 0; k < 4; k++)
+        support_add_segment(&pslg, k, (k + 1) % 4);
+    for (int i = 0; i < 2 * LINES; i++) {
+        const int times = 1 + support_below(&random, 3);
+        for (int k = 0; k < times; k++) {
+            double off = -0.9 + 1.8 * (i / 2) / LINES + (k > 0 ? gap * (2 * support_unit(&random) - 1) : 0);
+            double from = -1.2 * support_unit(&random), to = 1.2 * support_unit(&random), s = slope;
+            int32_t a = i % 2 ? support_add_point(&pslg, from - off * s, from * s + off)
+                              : support_add_point(&pslg, off + from * s, off * s - from);
+            int32_t b = i % 2 ? support_add_point(&pslg, to - off * s, to * s + off)
+                              : support_add_point(&pslg, off + to * s, off * s - to);
+            support_add_segment(&pslg, a, b);
+        }
+    }
+    return pslg;
+}
+
+/* Lines that were computed twice: the space between is not filled, and their circles take no 10^12 pieces. */
+static void test_circles_across_doubled_lines_end(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("regress/doubled_lines.poly", &pslg));
+    judge_growth(&pslg, 0, 4);
+    judge_growth(&pslg, 20, 4);
+    tri_pslg_free(&pslg);
+    for (uint64_t seed = 0; seed < 52; seed++) {
+        pslg = doubled_hatching(seed);
+        judge_growth(&pslg, 0, 4);
+        judge_growth(&pslg, 20, 4);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Above 36 degrees vertices run away beside circles: the mesh is that of 36. */
+static void test_a_larger_bound_is_worked_for_as_36(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("letter.poly", &pslg));
+    struct tri_mesh usual = conforming(&pslg, 36, NULL), above = conforming(&pslg, 38, NULL);
+    support_assert_same_bytes(&usual, &above);
+    tri_mesh_free(&above);
+    tri_mesh_free(&usual);
+    tri_pslg_free(&pslg);
+}
+
 /* On the circle is not inside it. */
 static void test_the_circle_is_not_inside(void **state)
 {
@@ -291,6 +362,8 @@ int main(void)
         cmocka_unit_test(test_what_stays_is_counted),
         cmocka_unit_test(test_what_would_take_too_many_parts_is_counted_by_place),
         cmocka_unit_test(test_what_coordinates_do_not_resolve_is_counted_as_that),
+        cmocka_unit_test(test_circles_across_doubled_lines_end),
+        cmocka_unit_test(test_a_larger_bound_is_worked_for_as_36),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static const char *const paragraphs[] = {
     "  -q      no angle below 20 degrees; -q30: below 30. Up to 28 is always reached except next to\n"
     "          small angles of the input and to what is finer than 512 units in the last place of its\n"
     "          largest coordinate. Of 133 real inputs 101 (76%) keep 36, 31 (23%) keep 38.\n"
-    "          A bound above 38 is treated as 38\n"
+    "          A bound above 38 is treated as 38, with -D above 36 as 36\n"
     "  -a0.5   no triangle larger than 0.5. The number has no exponent: -a1e-3 means -a1 -e\n"
     "  -a      areas are bounded by the regions of the .poly file or, with -r, by the .area file\n"
     "  -u      a test of the caller's own; without effect on the command line\n"

@@ -89,7 +89,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     What is wanted; without bounds it is the constrained Delaunay triangulation:
 
     min_angle: degrees. Use 30 unless you have a reason: of 133 real inputs 101 keep 36, 31 keep 38. A bound above 38 is
-        treated as 38, with an IgnoredWarning.
+        treated as 38, conforming above 36 as 36, with an IgnoredWarning.
     max_area: of a triangle.
     size: bounds triangles by the area of an equilateral one with edges of this length: a number, or a function of x and
         y, asked at corners and centroids (inf: any); or a SizeFunction, of compiled code, which all threads call.

@@ -519,7 +519,7 @@ static enum tri_status refine_by_schedule(struct par_run *state, const struct tr
                                           struct tri_error *error)
 {
     struct tri_quality usual = *quality;
-    usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    usual.min_angle = tri_worked_angle(quality);
     if (!state->sizes_first && state->next == PAR_SIZES)
         state->next = PAR_BOUNDS;
     const bool may_number = !state->options->by_block;

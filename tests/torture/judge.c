@@ -373,7 +373,7 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     o.options.quality.max_area /= 2;
     o.options.quality.region_areas = true;
     /* Short edges that a bound above the usual one has left are features of the mesh: asked again it would go on. */
-    if (o.options.quality.min_angle > TRI_USUAL_ANGLE)
+    if (o.options.quality.min_angle > tri_worked_angle(&o.options.quality))
         o.options.quality.min_angle = 30;
     enter(verdict, "refining again");
     status = status ? status : refine(&o, 1, &error);
@@ -424,7 +424,7 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->block > 0)
         judge_threads(&o, pslg, verdict);
     if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0 &&
-        o.options.quality.min_angle <= TRI_USUAL_ANGLE)
+        o.options.quality.min_angle <= tri_worked_angle(&o.options.quality))
         judge_schedule_size(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again &&
         o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= PROMISED &&

@@ -43,7 +43,7 @@ static void judge_unexplained(const struct outcome *o, const struct tri_check_re
     const double share = o->options.quality.min_angle > PROMISED ? 0.05 : 0;
     const int64_t excused = report->n_small_explained + count[TRI_EXCUSE_NARROW_GAP] + count[TRI_EXCUSE_PRECISION];
     const int64_t unexplained = report->n_small - excused;
-    if (o->switches.protect > 0 || o->options.quality.min_angle > TRI_USUAL_ANGLE)
+    if (o->switches.protect > 0 || o->options.quality.min_angle > tri_worked_angle(&o->options.quality))
         return;
     if (unexplained > FEW + share * o->mesh.n_triangles)
         judge_fault(verdict, "angle", "%lld of %d angles are small without a reason (input angle %lld, gap %lld)",

@@ -146,14 +146,13 @@ static void add_note(struct tri_api_mesh *m, const char *note)
 
 static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
 {
-    char lowered[100];
+    const struct tri_quality asked = {.min_angle = s->min_angle, .conforming = s->conforming};
+    char lowered[TRI_ANGLE_NOTE];
     m->notes[0] = 0;
     add_note(m, m->report.notes.empty);
     add_note(m, m->report.notes.skipped);
     add_note(m, m->odd_length);
-    snprintf(lowered, sizeof lowered, "an angle bound of %g degrees is above %g: triangles are made for %g",
-             s->min_angle, TRI_USUAL_ANGLE, TRI_USUAL_ANGLE);
-    if (s->min_angle > TRI_USUAL_ANGLE)
+    if (tri_note_lowered_angle(&asked, lowered))
         add_note(m, lowered);
     if (s->note && m->notes[0])
         s->note(s->note_user, m->notes);

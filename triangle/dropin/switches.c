@@ -195,11 +195,9 @@ void tri_switches_warn(const struct tri_switches *s, void (*warn)(void *user, co
     if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
         warn(user, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r: the switch is ignored",
              false);
-    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180) {
-        snprintf(text, sizeof text, "an angle bound of %g degrees is above %g: triangles are made for %g",
-                 s->min_angle, TRI_USUAL_ANGLE, TRI_USUAL_ANGLE);
+    const struct tri_quality quality = {.min_angle = s->min_angle, .conforming = s->conforming};
+    if (s->angle && s->min_angle < 180 && tri_note_lowered_angle(&quality, text))
         warn(user, text, false);
-    }
 }
 
 bool tri_switches_refine(const struct tri_switches *s)

@@ -10,7 +10,6 @@
 #include "triangle/mesh/parents.h"
 #include "triangle/size/gap.h"
 #include "triangle/size/hopeless.h"
-#include "triangle/tunables.h"
 
 static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
@@ -118,7 +117,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_LIMIT;
     if (c->asked.quality->protect > 0 && is_beside_protected(c, t))
         return TRI_EXCUSE_PROTECTED;
-    if (c->asked.quality->min_angle > TRI_USUAL_ANGLE && badness == TRI_BAD_ANGLE)
+    if (c->asked.quality->min_angle > tri_worked_angle(c->asked.quality) && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
     return TRI_EXCUSES;
 }

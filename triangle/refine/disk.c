@@ -3,14 +3,16 @@
  * RULE. The point of a subsegment e level with a vertex v is that at the distance of v from o, where e and v lie on two
  * parents with the common end o; else the foot of the perpendicular from v. Let e have length l, v distance h from it,
  * and the level point distance d from the nearer end a. Then e is split
- *   - level with v, if h <= d and h < l / TRI_NARROW;
- *   - d + h^2 / d from a, if h > d and that is less than
+ *   - level with v, if 0.9 h <= d and h < l / TRI_NARROW;
+ *   - d + h^2 / d from a, if 0.9 h > d and that is less than
  *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
+ * It is not split if rounding would undo that. Let g be how far from its level rounding leaves a place. Then e stays if
+ * no place is level and g * l > TRI_NARROW * h^2, or if v lies across a space that is not filled (gap.h) and that is
+ * longer than (TRI_NARROW * h)^2 / g.
  *
  * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
  * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
- * shortest edge. What stays is where coordinates have no place for a level: h^2 < TRI_LEVEL_PARTS ulps of
- * the length. */
+ * shortest edge. */
 #include "triangle/refine/disk.h"
 
 #include <assert.h>
@@ -19,6 +21,7 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/parents.h"
 #include "triangle/refine/split.h"
+#include "triangle/size/gap.h"
 #include "triangle/tunables.h"
 
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
@@ -51,30 +54,56 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
 struct sight {
     double l, h, d;
     bool from_end; /* d is measured from the subsegment's second end */
+    bool far;      /* d reaches 0.9 h. With h as the bound, rounding made two parents split each other for ever */
 };
 
 static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, l = sqrt(x * x + y * y), level = level_with(mesh, s, v);
-    double nearer = level < 0.5 ? level : 1 - level;
-    return (struct sight){l, fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l, nearer * l, level >= 0.5};
+    double d = (level < 0.5 ? level : 1 - level) * l, h = fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l;
+    return (struct sight){l, h, d, level >= 0.5, d >= 0.9 * h};
 }
 
-/* Is the subsegment split at the point level with the vertex? A d below the shortest edge is rounding. */
-static bool is_split_level(const struct sight *v, double shortest)
-{
-    return TRI_NARROW * v->h < v->l && v->d >= shortest && v->d >= v->h;
-}
-
-/* The fraction at which to split, by the rule. */
+/* The fraction at which to split, by the rule. A d below the shortest edge is rounding. */
 static double fraction_for(const struct sight *v, double usual, double shortest)
 {
     double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
-    if (TRI_NARROW * v->h >= v->l || v->d < shortest || (v->d < v->h && far >= from_nearer))
+    if (TRI_NARROW * v->h >= v->l || v->d < shortest || (!v->far && far >= from_nearer))
         return usual;
-    double fraction = v->d < v->h ? far : v->d / v->l;
+    double fraction = v->far ? v->d / v->l : far;
     return v->from_end ? 1 - fraction : fraction;
+}
+
+/* A unit in the last place. */
+static double unit_of(double x)
+{
+    int exponent;
+    frexp(x, &exponent);
+    return x == 0 ? 0 : ldexp(1, exponent - DBL_MANT_DIG);
+}
+
+/* How far from its level rounding leaves a place: along the line, that coordinate counts whose unit moves it less. */
+static double grain_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    double x = fabs(b.x - a.x), y = fabs(b.y - a.y);
+    return fmin(x * unit_of(at.x), y * unit_of(at.y)) / sqrt(x * x + y * y);
+}
+
+/* Has the subsegment a place that is level with v in spite of rounding? */
+static bool has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
+                      const struct sight *sight)
+{
+    double fraction = sight->d / sight->l;
+    const struct tri_disk_split level = {sight->from_end ? 1 - fraction : fraction, v};
+    const struct tri_split_base base = tri_disk_base(mesh, s, &level);
+    struct tri_point p;
+    for (int choice = 0; choice < TRI_DISK_PLACES; choice++)
+        if (tri_place_disk_split(mesh, s, &level, &base, choice, &p) &&
+            tri_leaves_disks_empty(mesh, s, p, mesh->xy[v]))
+            return true;
+    return false;
 }
 
 /* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
@@ -82,12 +111,17 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
                          struct tri_disk_split *split)
 {
     const struct sight sight = sight_of(mesh, s, v);
-    double shortest = sqrt(mesh->limits.shortest2), off = fmax(sight.d, ULP * shortest);
+    const double shortest = sqrt(mesh->limits.shortest2), h2 = sight.h * sight.h;
     if (!tri_is_resolved_from(mesh, s, v))
         return false;
     split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
-    split->level = is_split_level(&sight, shortest) ? v : TRI_NONE;
-    return TRI_NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= TRI_LEVEL_PARTS * sight.h * sight.h;
+    split->level = TRI_NARROW * sight.h < sight.l && sight.d >= shortest && sight.far ? v : TRI_NONE;
+    if (sight.d < shortest)
+        return TRI_NARROW * sight.h >= sight.l || fmax(sight.d, ULP * shortest) * sight.l <= TRI_NARROW * h2;
+    const double grain = grain_at(mesh, s, mesh->xy[v]);
+    const double gap = tri_gap_across(mesh, s->parent, s->v[sight.from_end], v);
+    return grain * gap <= TRI_NARROW * TRI_NARROW * sight.h &&
+           (grain * sight.l <= TRI_NARROW * h2 || has_level(mesh, s, v, &sight));
 }
 
 bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
@@ -118,14 +152,6 @@ struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tr
     double off = (x * (at.x - between.x) + y * (at.y - between.y));
     return off * off <= near * near * l2 ? tri_split_base_level(mesh, s, at)
                                          : tri_split_base(mesh, s, split->fraction);
-}
-
-/* A unit in the last place. */
-static double unit_of(double x)
-{
-    int exponent;
-    frexp(x, &exponent);
-    return x == 0 ? 0 : ldexp(1, exponent - DBL_MANT_DIG);
 }
 
 /* Of the two coordinates that lie next to a + d, the nearest, or the one on its other side. */

@@ -97,9 +97,6 @@ static bool refine_worklist(struct tri_refiner *r)
     return true;
 }
 
-/* A bound above TRI_USUAL_ANGLE is worked for as that one. */
-static double worked_angle(const struct tri_quality *quality) { return fmin(quality->min_angle, TRI_USUAL_ANGLE); }
-
 /* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
  * (tri_sizes_come_first). A call with a fence or a worklist has one stage: triangles that the first stage makes bad for
  * the second would not be in its list. */
@@ -107,14 +104,14 @@ static void begin_stages(struct tri_refiner *r)
 {
     bool easy = !r->hooks->fence && !r->hooks->worklist && tri_sizes_come_first(r->mesh, r->quality, NULL);
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : worked_angle(r->quality), r->quality->conforming);
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality), r->quality->conforming);
 }
 
 static void next_stage(struct tri_refiner *r)
 {
     r->step = NOT_BEGUN;
     r->stage++;
-    r->criterion.bounds = tri_bounds_for(worked_angle(r->quality), r->quality->conforming);
+    r->criterion.bounds = tri_bounds_for(tri_worked_angle(r->quality), r->quality->conforming);
 }
 
 /* Resumable, as refine_worklist. */

@@ -121,7 +121,7 @@ static double gap_of(const struct tri_mesh *mesh, tri_triangle_id t, const struc
 
 struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    const double angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    const double angle = tri_worked_angle(quality);
     return (struct tri_crowd){mesh, tri_bounds_for(angle, false).sin2,
                               angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
 }

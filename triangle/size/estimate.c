@@ -199,7 +199,7 @@ static double *know_all(struct works w, const struct tri_executor *executor)
 /* Are there sizes, beside a bound on angles that is dear to mend? */
 static bool may_come_first(const struct tri_quality *quality)
 {
-    return fmin(quality->min_angle, TRI_USUAL_ANGLE) > TRI_EASY_ANGLE && tri_has_sizes(quality);
+    return tri_worked_angle(quality) > TRI_EASY_ANGLE && tri_has_sizes(quality);
 }
 
 /* Is what sizes ask for far more than what angles would make? */
@@ -229,7 +229,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
     e.known = asks ? know_all(asked_works(&e), executor) : NULL;
     const double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
     if (may_come_first(quality) && (asks || outweighs_angles(&e, asked, executor)))
-        again = TRI_AGAIN / (TRI_NEVER_AGAIN - fmin(quality->min_angle, TRI_USUAL_ANGLE));
+        again = TRI_AGAIN / (TRI_NEVER_AGAIN - tri_worked_angle(quality));
     *sure = mesh->n_triangles + urgent;
     const double rest = sum_of(sampled_works(&e, rest_work), executor, &ignored);
     free(e.known);

@@ -34,6 +34,18 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
 }
 
+double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v)
+{
+    int32_t n;
+    double cost = 0;
+    tri_parent_id listed[8];
+    const tri_parent_id *at = tri_parents_beside(mesh, v, u, u, listed, &n);
+    for (int32_t i = 0; i < n; i++)
+        if (at[i] != parent && tri_corner_between(mesh, parent, at[i]) == TRI_APART)
+            cost = fmax(cost, tri_filling_cost(mesh, parent, at[i], mesh->xy[u], mesh->xy[v]));
+    return cost > mesh->limits.dearest_gap ? cost : 0;
+}
+
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
 
 /* Does q lie beside the parent, rather than before its start or beyond its end? */

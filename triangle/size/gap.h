@@ -16,6 +16,10 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v);
 
+/* The same for the dearest space that is not filled between this parent, u being its vertex beside v, and one that v
+ * lies on; 0: all are filled, or there is none. */
+double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v);
+
 /* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
  * bridges; 0 where it bridges none. */
 double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);

@@ -2,11 +2,26 @@
 #include "triangle/size/quality.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "triangle/geometry/degrees.h"
 #include "triangle/tunables.h"
 
 struct tri_quality tri_quality_defaults(void) { return (struct tri_quality){.max_steiner = -1}; }
+
+double tri_worked_angle(const struct tri_quality *quality)
+{
+    return fmin(quality->min_angle, quality->conforming ? TRI_CONFORMING_ANGLE : TRI_USUAL_ANGLE);
+}
+
+bool tri_note_lowered_angle(const struct tri_quality *quality, char note[TRI_ANGLE_NOTE])
+{
+    const double worked = tri_worked_angle(quality);
+    if (quality->min_angle > worked)
+        snprintf(note, TRI_ANGLE_NOTE, "an angle bound of %g degrees is above %g: triangles are made for %g",
+                 quality->min_angle, worked, worked);
+    return quality->min_angle > worked;
+}
 
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {

@@ -13,7 +13,8 @@ typedef int tri_unsuitable(void *user, const double a[2], const double b[2], con
 typedef double tri_edge_length(void *user, const double at[2]);
 
 struct tri_quality {
-    double min_angle;      /* degrees; 0: no bound on angles; above 38 as 38 */
+    double min_angle;      /* degrees; 0: no bound on angles; above 38 as 38,
+                              if conforming above 36 as 36 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
@@ -36,6 +37,14 @@ static inline bool tri_asks_caller(const struct tri_quality *quality)
 {
     return quality->edge_length || quality->unsuitable;
 }
+
+/* A bound on angles that is larger than this is worked for as this one. */
+double tri_worked_angle(const struct tri_quality *quality);
+
+/* Writes into note that refinement works for a smaller angle than is asked for. False: it does not, and nothing is
+ * written. */
+enum { TRI_ANGLE_NOTE = 160 };
+bool tri_note_lowered_angle(const struct tri_quality *quality, char note[TRI_ANGLE_NOTE]);
 
 /* Is there any bound on sizes? */
 static inline bool tri_has_sizes(const struct tri_quality *quality)
