@@ -61,8 +61,8 @@ static double largest_coordinate(const struct tri_mesh *mesh)
     return size;
 }
 
-/* Gaps and sizes, if what is nearer than this is no feature. Returns how many vertices have features up to TRI_BLUR times as far
- * (what no triangle uses has the least size). */
+/* Gaps and sizes, if what is nearer than this is no feature. Returns how many vertices have features up to TRI_BLUR
+ * times as far (what no triangle uses has the least size). */
 static int32_t find_features(struct tri_mesh *mesh, double rounding, const struct tri_executor *executor)
 {
     int32_t n = 0;
