@@ -28,10 +28,11 @@ static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONF
 static const double AREAS_DECIDE = 1.3, SURELY_ONE_MESH = 0.8;
 
 /* Measured: bytes at the peak of triangulating, of the process, a point, an attribute of one, the surface of attributes
- * at one, a segment, and of a mesh that is rebuilt, a point and a triangle; of text on its way into files, a point and at the most; and the share of all
- * that is sure. */
+ * at one, a segment, and of a mesh that is rebuilt, a point and a triangle; of text on its way into files, a point and
+ * at the most; and the share of all that is sure. */
 static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 200, ATTRIBUTE_BYTES = 20, SURFACE_BYTES = 110,
-                    SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100, ELEMENT_BYTES = 48, TEXT_BYTES = 60, MOST_TEXT = 6e6, SURE_SHARE = 0.7;
+                    SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100, ELEMENT_BYTES = 48, TEXT_BYTES = 60,
+                    MOST_TEXT = 6e6, SURE_SHARE = 0.7;
 
 /* Measured: what is allocated to write files, touched or not. */
 static const double BUFFER_BYTES = 3e7;

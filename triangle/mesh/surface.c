@@ -16,7 +16,7 @@
 enum { FEW = 8, AT_ONCE = 4096, SIDES = 4 };
 
 struct box {
-    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices that rounding may have put beside them */
+    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices beside them by rounding */
 };
 
 struct tri_surface {
