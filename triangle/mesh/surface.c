@@ -16,7 +16,7 @@
 enum { FEW = 8, AT_ONCE = 4096, SIDES = 4 };
 
 struct box {
-    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices that rounding may have put beside them */
+    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices beside them by rounding */
 };
 
 struct tri_surface {
@@ -90,42 +90,32 @@ static void make_box(const struct tri_surface *s, size_t i, int32_t first, int32
     }
 }
 
-/* center: [triangles], scratch: [2 triangles]. */
-static void sort_triangles(struct tri_surface *s, struct tri_point *center, uint64_t *scratch,
-                           const struct tri_executor *executor)
-{
-    const int32_t n = s->mesh.n_triangles;
-    for (tri_triangle_id t = 0; t < n; t++) {
-        const tri_vertex_id *v = s->mesh.tri[t].v;
-        const struct tri_point a = s->mesh.xy[v[0]], b = s->mesh.xy[v[1]], c = s->mesh.xy[v[2]];
-        center[t] = (struct tri_point){a.x + b.x + c.x, a.y + b.y + c.y};
-        s->order[t] = t;
-    }
-    tri_hilbert_order(center, s->order, n, scratch, executor);
-    make_box(s, 1, 0, n);
-}
-
+/* The boxes are the room to sort in before they are made. */
 enum tri_status tri_surface_keep(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     if (mesh->n_attributes == 0 || mesh->surface || mesh->n_triangles == 0)
         return TRI_OK;
     const size_t n = (size_t)mesh->n_triangles;
     struct tri_point *center = malloc(n * sizeof *center);
-    uint64_t *scratch = malloc(2 * n * sizeof *scratch);
-    struct tri_surface *s = calloc(1, sizeof *s);
-    bool memory = s && center && scratch && !tri_mesh_copy(&s->mesh, mesh, error);
-    if (memory) {
+    struct tri_surface *s = mesh->surface = calloc(1, sizeof *s);
+    if (s && !tri_mesh_copy(&s->mesh, mesh, error))
         *s = (struct tri_surface){s->mesh, malloc(n * sizeof *s->order), malloc((n / 2 + 2) * sizeof *s->box),
                                   mesh->n_parents < mesh->n_subs, mesh->n_vertices};
-        memory = s->order && s->box;
+    const bool memory = center && s && s->order && s->box;
+    for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++) {
+        const tri_vertex_id *v = mesh->tri[t].v;
+        const struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+        center[t] = (struct tri_point){a.x + b.x + c.x, a.y + b.y + c.y};
+        s->order[t] = t;
     }
-    if (memory)
-        sort_triangles(s, center, scratch, executor);
-    else
+    if (memory) {
+        tri_hilbert_order(center, s->order, mesh->n_triangles, (uint64_t *)(void *)s->box, executor);
+        make_box(s, 1, 0, mesh->n_triangles);
+    } else {
         tri_surface_free(s);
-    mesh->surface = memory ? s : NULL;
+        mesh->surface = NULL;
+    }
     free(center);
-    free(scratch);
     return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the attributes' surface");
 }
 
@@ -144,7 +134,7 @@ void tri_surface_free(struct tri_surface *s)
 struct search {
     const struct tri_surface *surface;
     struct tri_point p;
-    tri_parent_id parent; /* TRI_NONE, or triangles that have no edge on it do not count */
+    tri_parent_id parent; /* not below 0: only triangles with an edge on it count */
     tri_triangle_id best; /* the one that p is least outside of */
     double depth;         /* how far, below 0; HUGE_VAL: it holds p */
 };
@@ -153,7 +143,7 @@ static void try_triangle(struct search *search, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = &search->surface->mesh;
     const struct tri_triangle *at = &mesh->tri[t];
-    bool counts = search->parent == TRI_NONE;
+    bool counts = search->parent < 0;
     double depth = HUGE_VAL;
     for (int e = 0; e < 3; e++) {
         const struct tri_point a = mesh->xy[at->v[tri_next[e]]], b = mesh->xy[at->v[tri_prev[e]]];
@@ -183,31 +173,27 @@ static void search_box(struct search *search, size_t i, int32_t first, int32_t e
         try_triangle(search, search->surface->order[k]);
 }
 
-/* Sets those of vertex v, beginning at triangle `near` (TRI_NONE: anywhere). Returns the triangle that v lies in. */
-static tri_triangle_id set_one(const struct tri_mesh *mesh, tri_vertex_id v, tri_triangle_id near)
-{
-    const struct tri_surface *s = mesh->surface;
-    assert(mesh->on[v] >= 0 || mesh->on[v] == TRI_VERTEX_FREE);
-    const struct tri_parent *parent = mesh->on[v] >= 0 ? &mesh->parents[mesh->on[v]] : NULL;
-    if (parent && !s->has_chains) {
-        tri_interpolate_edge(mesh, parent->v[0], parent->v[1], mesh->xy[v], attributes_of(mesh, v));
-        return near;
-    }
-    tri_triangle_id at = parent || near == TRI_NONE ? TRI_NONE : tri_walk_to(&s->mesh, near, mesh->xy[v]);
-    if (at == TRI_NONE) {
-        struct search search = {s, mesh->xy[v], parent ? mesh->on[v] : TRI_NONE, s->order[0], -HUGE_VAL};
-        search_box(&search, 1, 0, s->mesh.n_triangles);
-        at = search.best;
-    }
-    interpolate(&s->mesh, s->mesh.tri[at].v, mesh->xy[v], attributes_of(mesh, v));
-    return at;
-}
-
 void tri_surface_set(const struct tri_mesh *mesh, const tri_vertex_id *vertices, int32_t n)
 {
-    tri_triangle_id near = TRI_NONE;
-    for (int32_t i = 0; mesh->surface && i < n; i++)
-        near = set_one(mesh, vertices[i], near);
+    const struct tri_surface *s = mesh->surface;
+    tri_triangle_id at = TRI_NONE;
+    for (int32_t i = 0; s && i < n; i++) {
+        const tri_vertex_id v = vertices[i];
+        const tri_parent_id parent = mesh->on[v];
+        assert(parent >= 0 || parent == TRI_VERTEX_FREE);
+        if (parent >= 0 && !s->has_chains) {
+            const tri_vertex_id *end = mesh->parents[parent].v;
+            tri_interpolate_edge(mesh, end[0], end[1], mesh->xy[v], attributes_of(mesh, v));
+            continue;
+        }
+        at = parent >= 0 || at == TRI_NONE ? TRI_NONE : tri_walk_to(&s->mesh, at, mesh->xy[v]);
+        if (at == TRI_NONE) {
+            struct search search = {s, mesh->xy[v], parent, s->order[0], -HUGE_VAL};
+            search_box(&search, 1, 0, s->mesh.n_triangles);
+            at = search.best;
+        }
+        interpolate(&s->mesh, s->mesh.tri[at].v, mesh->xy[v], attributes_of(mesh, v));
+    }
 }
 
 /* Part by part along a curve, since vertices may have any order. */

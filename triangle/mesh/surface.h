@@ -13,7 +13,7 @@ void tri_interpolate_edge(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
                           double *to);
 
 /* Copies the mesh as it is now to mesh->surface, if vertices have attributes, all of them, and there is no surface yet.
- * 50 bytes a triangle and 32 a vertex, and 30 more a triangle while it runs. TRI_NO_MEMORY: there is none. */
+ * 50 bytes a triangle and 32 a vertex, and 16 more a triangle while it runs. TRI_NO_MEMORY: there is none. */
 enum tri_status tri_surface_keep(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 void tri_surface_free(struct tri_surface *surface);
 
