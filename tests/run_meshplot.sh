@@ -73,6 +73,10 @@ draws -o window.svg --window 0.4,1.4,0.5,1.5 --edges off --segments off --legend
 [ "$(fills window.svg)" -eq 1 ] || fault "window.svg has $(fills window.svg) colours instead of 1"
 draws -o deep.png --window 0.4,1.4,0.400000000001,1.400000000001 --edges on --mark 0,0,1,1 --title deep
 cp mesh.1.node points.node
+cp mesh.1.node loose.node
+cp mesh.1.ele loose.ele
+printf '0 2 0 1\n1 1\n1 -7 2 1\n0\n' >loose.poly # the place of no vertex is not looked up
+"$plot" loose -o loose.svg >out.txt 2>&1 || fault "a segment that names no vertex: $(head -n 1 out.txt)"
 "$plot" points -o points.png >out.txt 2>&1 || fault "points alone: $(head -n 1 out.txt)"
 
 refuses 2 mesh.1

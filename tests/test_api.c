@@ -4,6 +4,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -323,6 +324,96 @@ static void test_edge_lengths_without_meaning(void **state)
         tri_mesh_delete(mesh);
     }
     tri_mesh_delete(plain);
+}
+
+/* Lengths, and how often they were asked for. */
+struct lengths {
+    double length;
+    double slope;   /* they shrink by so much along x */
+    double octaves; /* and vary by so much from place to place, beyond what anybody could follow */
+    atomic_llong asked;
+    long long most; /* then the end is asked for */
+};
+
+static double length_asked(void *user, const double at[2])
+{
+    struct lengths *lengths = user;
+    const double part = fmod(7919.7 * at[0] + 6173.3 * at[1], 1);
+    atomic_fetch_add(&lengths->asked, 1);
+    return lengths->length / (1 + lengths->slope * at[0]) * exp2(-lengths->octaves * part);
+}
+
+static bool is_asked_enough(void *user)
+{
+    struct lengths *lengths = user;
+    return atomic_load(&lengths->asked) >= lengths->most;
+}
+
+static void ignore_progress(void *user, double done, int64_t triangles) { (void)user, (void)done, (void)triangles; }
+
+/* More triangles than a mesh holds, by far or just so, everywhere or at one side: refused after few questions. */
+static void test_lengths_that_are_too_small(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    for (int i = 0; i < 12; i++) {
+        const int way = i % 4;
+        struct lengths lengths = {.length = i < 4 ? 1e-12 : i < 8 ? 1e-4 : 1, .slope = i < 8 ? 0 : 1e5};
+        struct tri_settings settings = tri_no_settings();
+        struct tri_mesh *mesh;
+        settings.edge_length = length_asked;
+        settings.edge_length_user = &lengths;
+        settings.callbacks_in_parallel = way == 2;
+        settings.progress = way == 3 ? ignore_progress : NULL;
+        assert_int_equal(way % 3 == 0 ? tri_mesh_new(&mesh, &figure, &settings, NULL)
+                                      : par_mesh_new(&mesh, &figure, &settings, NULL), TRI_TOO_LARGE);
+        assert_null(mesh);
+        assert_true(lengths.asked > 0 && lengths.asked < 100000);
+    }
+}
+
+/* Lengths that are no function of the place, to the eye, are asked for as often as the header says; whoever wants the
+ * end meanwhile has it. */
+static void test_lengths_that_vary_wildly(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    for (int i = 0; i < 4; i++) {
+        struct lengths lengths = {.length = 1, .octaves = 30, .most = i < 2 ? 5000 : 1 << 25};
+        struct tri_settings settings = tri_no_settings();
+        struct tri_mesh *mesh;
+        settings.edge_length = length_asked;
+        settings.edge_length_user = &lengths;
+        settings.progress = ignore_progress;
+        settings.stop = is_asked_enough;
+        settings.stop_user = &lengths;
+        enum tri_status status = i % 2 ? tri_mesh_new(&mesh, &figure, &settings, NULL)
+                                       : par_mesh_new(&mesh, &figure, &settings, NULL);
+        assert_int_equal(status, i < 2 ? TRI_STOPPED : TRI_TOO_LARGE);
+        assert_true(lengths.asked < lengths.most + 5000);
+        tri_mesh_delete(mesh);
+    }
+}
+
+/* One thread asks, or several. */
+static void test_one_mesh_for_one_size(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct lengths lengths = {.length = 0.02};
+    struct tri_settings settings = tri_no_settings();
+    struct tri_mesh *mesh[2];
+    settings.min_angle = 25;
+    settings.edge_length = length_asked;
+    settings.edge_length_user = &lengths;
+    settings.threads = 2;
+    for (int k = 0; k < 2; k++) {
+        settings.callbacks_in_parallel = k;
+        assert_int_equal(par_mesh_new(&mesh[k], &figure, &settings, NULL), TRI_OK);
+    }
+    assert_true(tri_mesh_triangles(mesh[0]).n > 80000 && same_meshes(mesh[0], mesh[1]));
+    tri_mesh_delete(mesh[0]);
+    tri_mesh_delete(mesh[1]);
 }
 
 /* Beyond x = 2 there is no length: the place is told. */
@@ -896,6 +987,9 @@ int main(void)
         cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_edge_length),
         cmocka_unit_test(test_edge_lengths_without_meaning),
+        cmocka_unit_test(test_lengths_that_are_too_small),
+        cmocka_unit_test(test_lengths_that_vary_wildly),
+        cmocka_unit_test(test_one_mesh_for_one_size),
         cmocka_unit_test(test_place_of_an_odd_length),
         cmocka_unit_test(test_notes_of_an_empty_mesh),
         cmocka_unit_test(test_notes_of_skipped_segments),

@@ -326,6 +326,39 @@ static void good_hole_and_island(void **state)
     expect(TRI_CHECK_FACES, 1, -1);
 }
 
+/* No triangle is there, of segments that meet at one point and of three that enclose something apart from them. So many
+ * that comparing all pairs of them is more than the judge does. */
+static void lost_face_beside_a_hub(void **state)
+{
+    (void)state;
+    enum { N = 17000 };
+    double(*points)[2] = calloc(N + 4, sizeof *points);
+    int32_t(*ends)[2] = calloc(N + 3, sizeof *ends);
+    assert_true(points && ends);
+    for (int32_t i = 1; i <= N; i++) {
+        points[i][0] = 1e5;
+        points[i][1] = i;
+        ends[i - 1][1] = i;
+    }
+    for (int32_t k = 0; k < 3; k++) {
+        points[N + 1 + k][0] = k < 2 ? 2e5 : 3e5;
+        points[N + 1 + k][1] = k % 2;
+        ends[N + k][0] = N + 1 + k;
+        ends[N + k][1] = N + 1 + (k + 1) % 3;
+    }
+    const struct tri_check_mesh mesh = {.n_points = N + 4, .points = points[0], .segments = ends[0]};
+    struct tri_pslg input = {.n_points = N + 4, .points = points[0], .n_segments = N + 3, .segments = ends[0]};
+    const struct tri_check_options options = {.max_bad = -1};
+    struct tri_check_report report;
+    assert_int_equal(tri_check(&mesh, &input, &options, &report, NULL), TRI_OK);
+    assert_int_equal(report.item[TRI_CHECK_FACES].state, TRI_CHECK_FAILED);
+    input.n_segments = N; /* which enclose nothing */
+    assert_int_equal(tri_check(&mesh, &input, &options, &report, NULL), TRI_OK);
+    assert_int_equal(report.item[TRI_CHECK_FACES].state, TRI_CHECK_OK);
+    free(points);
+    free(ends);
+}
+
 /* Two holes that touch at a corner are two faces; a hole point at that corner is in both. */
 static void faces_that_touch(void **state)
 {
@@ -1467,6 +1500,7 @@ int main(void)
         cmocka_unit_test(good_patch),
         cmocka_unit_test(good_nothing),
         cmocka_unit_test(good_hole_and_island),
+        cmocka_unit_test(lost_face_beside_a_hub),
         cmocka_unit_test(faces_that_touch),
         cmocka_unit_test(good_dangling_segment),
         cmocka_unit_test(good_components_that_touch),

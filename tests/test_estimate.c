@@ -95,8 +95,8 @@ static void test_integral(void **state)
     (void)state;
     enum { N = 1000 };
     const struct tri_point corner[3] = {{0, 0}, {1, 0}, {1, 1}};
-    const struct tri_size_field field = {size_about, NULL, 0, 1e-3, 0.3, 60},
-                                over = {size_about, NULL, 1e3, 1e-3, 0.3, 60};
+    const struct tri_size_field field = {.at = size_about, .large = 1e-3, .few = 0.3, .deepest = 60},
+                                over = {.at = size_about, .over = 1e3, .large = 1e-3, .few = 0.3, .deepest = 60};
     double sum = 0, sum_over = 0;
     for (int i = 0; i < N; i++)
         for (int k = 0; k < N; k++) {
@@ -242,7 +242,7 @@ static void test_bounds_that_are_met_ask_for_nothing(void **state)
     struct tri_quality quality = tri_quality_defaults();
     assert_int_equal(mesh.n_triangles, 2);
     quality.max_area = 0.5;
-    assert_true(tri_area_demand(&mesh, &quality, NULL) == 0);
+    assert_true(tri_size_demand(&mesh, &quality, NULL) == 0);
     quality.max_area = 0;
     quality.region_areas = true;
     assert_true(tri_resize(&mesh.regions, 3, sizeof *mesh.regions));
@@ -251,7 +251,7 @@ static void test_bounds_that_are_met_ask_for_nothing(void **state)
     mesh.regions[2] = (struct tri_region){.max_area = 0.005};
     for (int32_t t = 0; t < 2; t++)
         mesh.tri[t].region = t + 1;
-    assert_true(fabs(tri_area_demand(&mesh, &quality, NULL) - 100 / 0.75) < 1e-9);
+    assert_true(fabs(tri_size_demand(&mesh, &quality, NULL) - 100 / 0.75) < 1e-9);
     tri_mesh_free(&mesh);
     tri_pslg_free(&square);
 }

@@ -246,7 +246,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_quality *quality = &run->options.quality;
-    const double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
+    const double demand = run->options.refine ? tri_size_demand(&run->mesh, quality, run->hooks->executor) : 0;
     const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
     const bool sweeps = is_swept(run);
     struct estimate e = {.sweeps = sweeps, .vertices = run->mesh.n_vertices + grown / 2};

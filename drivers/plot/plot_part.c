@@ -69,9 +69,9 @@ static void cache_end(struct cache *k)
 static const double *place_of(struct cache *k, int64_t v)
 {
     static const double nowhere[2] = {NAN, NAN};
-    int64_t block = v >> BLOCK_BITS, slot = block % k->n_slots, first = block << BLOCK_BITS;
     if (v < 0 || v >= k->source->n_points || k->status != TRI_OK)
         return nowhere;
+    const int64_t block = v >> BLOCK_BITS, slot = block % k->n_slots, first = block << BLOCK_BITS;
     if (k->block[slot] != block) {
         int64_t left = k->source->n_points - first;
         k->block[slot] = block;

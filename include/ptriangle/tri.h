@@ -124,7 +124,9 @@ struct tri_settings {
     /* Length of edges around a place, as a bound on areas: no triangle is larger than an equilateral one with edges of
      * the least length at its corners and centroid. In the median edges come out at about 0.8 of it. Infinite: any
      * length will do there. So it will where the function returns 0, a negative number or NaN, but a note tells so,
-     * with one such place. */
+     * with one such place. Before the first point it is called some ten thousand times, never more than 2^25 times and
+     * 100 for each triangle that there is. TRI_TOO_LARGE if these calls show that the lengths ask for more triangles
+     * than a mesh holds. */
     double (*edge_length)(void *user, const double at[2]);
     void *edge_length_user;
     /* Must the triangle a, b, c (counter-clockwise) be refined? Asked about triangles that keep all bounds of size;
@@ -142,15 +144,15 @@ struct tri_settings {
     void *gate_user;
     const double *fence; /* [4] x_min, y_min, x_max, y_max, half-open; with it min_angle is at most 34 */
 
-    /* true: the call ends soon, with TRI_STOPPED. Asked every few thousand steps, by several threads at once; once it
-     * has said so, it must go on saying so. */
+    /* true: the call ends soon, with TRI_STOPPED. Asked every few thousand steps and calls of functions, by several
+     * threads at once; once it has said so, it must go on saying so. */
     bool (*stop)(void *user);
     void *stop_user;
 
     /* ptriangle/par.h only */
     int threads;            /* <= 0: OMP_NUM_THREADS, else one for each core */
-    bool callbacks_in_parallel; /* edge_length and unsuitable may be called by several threads at once; else one thread
-                                   refines where they are set */
+    bool callbacks_in_parallel; /* edge_length and unsuitable may be called by several threads at once. Otherwise one
+                                   thread, the calling one, refines if they are set; the mesh is the same */
     bool numbered_by_block; /* new points and triangles lie as they were made: quicker. Else along a curve, as the
                                cache of a solver wants it */
 

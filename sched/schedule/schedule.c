@@ -511,7 +511,7 @@ static enum tri_status refine_sizes_first(struct par_run *state, const struct tr
 static bool must_be_sequential(const struct tri_quality *quality, const struct par_options *options)
 {
     const bool is_tied = options->hooks && (options->hooks->gate || options->hooks->fence);
-    return quality->max_steiner >= 0 || is_tied || (tri_asks_caller(quality) && !options->size_test_in_parallel);
+    return quality->max_steiner >= 0 || is_tied;
 }
 
 /* Refines by schedules: two where angles are dear. */
@@ -623,7 +623,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     double began = tri_seconds();
     assert(tri_mesh_is_sound(mesh));
     assert(!options->park || !options->sink);
-    *report = (struct par_report){.threads = par_threads(options->threads, false)};
+    const bool alone = tri_asks_caller(quality) && !options->size_test_in_parallel;
+    *report = (struct par_report){.threads = par_threads(alone ? 1 : options->threads, false)};
     if (options->park)
         *options->park = NULL;
     struct timed timed = {par_executor(&report->threads), report->seconds_shared};

@@ -45,14 +45,21 @@ static int compare_cuts(const void *a, const void *b)
     return tri_compare_places(p->point, q->point);
 }
 
-static void sort(struct check_piece *piece, int32_t n)
+/* From left to right, each but once; returns how many remain. */
+static int32_t sort(struct check_piece *piece, int32_t n)
 {
+    int32_t kept = 0;
     for (int32_t i = 0; i < n; i++) {
         if (tri_compare_places(piece[i].from, piece[i].to) > 0)
             piece[i] = (struct check_piece){piece[i].to, piece[i].from};
     }
     if (n > 1)
         qsort(piece, (size_t)n, sizeof *piece, compare_pieces);
+    for (int32_t i = 0; i < n; i++) {
+        if (kept == 0 || compare_pieces(&piece[kept - 1], &piece[i]) != 0)
+            piece[kept++] = piece[i];
+    }
+    return kept;
 }
 
 static enum tri_status add_cut(struct cutting *k, int32_t i, struct tri_point p)
@@ -162,23 +169,18 @@ static enum tri_status take_between(struct cutting *k, struct check_pieces *out)
         if (k->cut[i].piece == k->cut[i - 1].piece && !check_same_place(k->cut[i].point, k->cut[i - 1].point))
             out->at[n++] = (struct check_piece){k->cut[i - 1].point, k->cut[i].point};
     }
-    sort(out->at, n);
-    for (int32_t i = 0; i < n; i++) {
-        if (out->n == 0 || compare_pieces(&out->at[out->n - 1], &out->at[i]) != 0)
-            out->at[out->n++] = out->at[i];
-    }
+    out->n = sort(out->at, n);
     return TRI_OK;
 }
+
+void tri_check_sort_missing(struct checker *c) { c->n_missing = sort(c->missing, c->n_missing); }
 
 enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces)
 {
     *pieces = (struct check_pieces){0};
-    if (c->n_missing == 0)
-        return TRI_OK;
     struct cutting k = {.tolerance = c->tolerance, .n = c->n_missing, .piece = c->missing};
-    sort(k.piece, k.n);
     enum tri_status status = find_cuts(&k);
-    if (status == TRI_OK && !is_too_long(&k))
+    if (status == TRI_OK && k.n > 0 && !is_too_long(&k))
         status = take_between(&k, pieces);
     free(k.cut);
     return status;

@@ -9,8 +9,11 @@ struct check_pieces {
     struct check_piece *at; /* [n] to be freed */
 };
 
-/* c->missing, cut wherever pieces meet and each but once: they share nothing then but end points, up to rounding. None
- * where that would take too long, or too much memory. About n sqrt(n) steps where they are short and apart. */
+/* Brings c->missing into order, from left to right, and drops pieces that are there already. */
+void tri_check_sort_missing(struct checker *c);
+
+/* c->missing, in order, cut wherever pieces meet: they share nothing then but end points, up to rounding. None where
+ * that would take too long, or too much memory. About n sqrt(n) steps where they are short and apart. */
 enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces);
 
 #endif

@@ -494,6 +494,25 @@ static bool has_hole_inside(const struct checker *c)
     return found;
 }
 
+/* The missing pieces, cut where they meet. They stay whole if a sweep of them alone finds that they meet at their ends
+ * only, which is the rule. */
+static enum tri_status list_missing(struct checker *c, struct check_pieces *missing)
+{
+    struct checker alone = *c;
+    bool good = false;
+    alone.boundary.n = alone.n_segments = alone.n_queries = 0;
+    tri_check_sort_missing(c);
+    const struct check_pieces whole = {c->n_missing, c->missing};
+    enum tri_status status = whole.n > 0 ? sweep(&alone, &whole, true, false, &good) : TRI_OK;
+    if (status == TRI_OK && !good)
+        return tri_check_split_missing(c, missing);
+    if (status == TRI_OK) { /* they are handed over */
+        *missing = whole;
+        c->missing = NULL;
+    }
+    return status;
+}
+
 enum tri_status tri_check_overlap(struct checker *c)
 {
     static const struct check_pieces none;
@@ -501,7 +520,7 @@ enum tri_status tri_check_overlap(struct checker *c)
     bool regions = check_good(c, TRI_CHECK_REGIONS), good = false;
     enum tri_status status = TRI_OK;
     if (faces_count(c))
-        status = tri_check_split_missing(c, &missing);
+        status = list_missing(c, &missing);
     bool again = regions || missing.n > 0;
     if (status == TRI_OK) {
         tri_check_begin(c, TRI_CHECK_OVERLAP);

@@ -11,6 +11,7 @@
  * THEOREM (end). Points for angles are finitely many by hopeless.c and feature_size.c; those for sizes and circles,
  * whatever the others do, by inside.c and disk.c. */
 #include "triangle/refine/refiner.h"
+#include "triangle/refine/walls.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -125,6 +126,17 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
+/* Of a part of the work nothing is asked that the whole has been asked for; the size test is asked about triangles of
+ * the mesh alone. */
+static enum tri_status check_sizes(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                                   const struct tri_refine_hooks *hooks, struct tri_error *error)
+{
+    struct tri_quality known = *quality;
+    known.unsuitable = NULL;
+    known.edge_length = hooks->worklist ? NULL : quality->edge_length;
+    return hooks->fence || hooks->part ? TRI_OK : tri_refine_check(mesh, &known, NULL, error);
+}
+
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
                                 struct tri_refine_report *report, struct tri_error *error)
@@ -132,7 +144,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     struct tri_refiner *r = NULL;
     *refiner = NULL;
     *report = (struct tri_refine_report){0};
-    enum tri_status status = hooks->fence || hooks->part ? TRI_OK : tri_refine_check(mesh, quality, NULL, error);
+    enum tri_status status = check_sizes(mesh, quality, hooks, error);
     if (status)
         return status;
     r = calloc(1, sizeof *r);
@@ -173,6 +185,7 @@ void tri_refiner_free(struct tri_refiner *r)
     if (!r)
         return;
     tri_cavity_free(&r->cavity);
+    tri_walls_free(r->walls);
     tri_bad_queue_free(&r->queue);
     free(r->encroached);
     free(r);

@@ -80,8 +80,8 @@ struct tri_refine_report {
 
 /* Refines until every bad triangle is given up or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
- * TRI_TOO_LARGE comes before anything is done where area bounds ask for more than a mesh holds (tri_refine_check; not
- * within a fence, nor of a part).
+ * TRI_TOO_LARGE comes before anything is done if area bounds, or lengths that are a function, ask for more than a mesh
+ * holds (tri_refine_check; not within a fence, nor of a part).
  * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. Only tri_refine sets attributes, last. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
                            struct tri_error *error);

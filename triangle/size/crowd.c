@@ -94,7 +94,8 @@ static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, do
     const int DEEPEST = 128; /* h is smooth, and bounded from below */
     const tri_vertex_id *v = mesh->tri[triangle].v;
     struct field f = {.least = HUGE_VAL};
-    const struct tri_size_field field = {size_at, &f, 1 / (most * most), HUGE_VAL, FEW, DEEPEST};
+    const struct tri_size_field field = {.at = size_at, .user = &f, .over = 1 / (most * most), .large = HUGE_VAL,
+                                         .few = FEW, .deepest = DEEPEST};
     for (int k = 0; k < 3; k++) {
         f.corner[k] = mesh->xy[v[k]];
         f.size[k] = tri_larger(mesh->feature[v[k]], sqrt(mesh->limits.shortest2)); /* shorter edges stay */

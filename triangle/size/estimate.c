@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "triangle/base/size_text.h"
+#include "triangle/base/stop.h"
 #include "triangle/size/asked.h"
 #include "triangle/size/crowd.h"
 #include "triangle/size/integral.h"
@@ -14,13 +15,31 @@
 
 enum { DEEPEST_CUT = 12 };
 
+/* The caller's functions are asked at so many places beside four for each triangle, and for samples of work at so many
+ * times as many. */
+enum { MOST_ASKED = 1 << 20, SAMPLES_ASKED = 8 };
+
 /* More than anybody will have, and no infinity: bounds may ask for any number. */
 static const double MOST_WORK = 1e15;
+
+/* How often the caller's functions are asked. */
+struct budget {
+    int64_t left;  /* places that may be looked at before parts are taken as they are */
+    uint32_t step; /* see tri_stop_is_due */
+    bool stopped;  /* nothing is asked any more */
+};
+
+static struct budget budget_for(const struct tri_mesh *mesh, int64_t most)
+{
+    return (struct budget){.left = 4 * (int64_t)mesh->n_triangles + most};
+}
 
 /* What work is estimated from. */
 struct estimator {
     struct tri_asked asked;
     struct tri_crowd crowd;
+    struct budget *budget;
+    bool at_least; /* of what the caller's functions ask for, what is certain counts */
     double large; /* the caller's functions are asked in pieces no larger than this */
     double *known; /* [n_triangles] what sizes ask for in each; NULL: to be asked for */
 };
@@ -48,20 +67,28 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
 struct wish {
     const struct tri_asked *asked;
     const struct tri_point *piece; /* [3] */
+    struct budget *budget;
 };
 
 static double wished_at(const void *user, struct tri_point q)
 {
     const double MEAN_SQUARE = TRI_EQUILATERAL * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
+    const double ANY = 1e99;
     const struct wish *wish = user;
-    return sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
+    struct budget *budget = wish->budget;
+    budget->stopped = budget->stopped || tri_stop_is_due(wish->asked->mesh->stop, &budget->step);
+    budget->left = budget->stopped ? 0 : budget->left - 1;
+    return budget->stopped ? ANY : sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
 }
 
 /* Triangles that the caller's functions ask for in a piece. */
 static double wished_in(const struct estimator *e, const struct tri_point p[3])
 {
-    const struct wish wish = {&e->asked, p};
-    const struct tri_size_field field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT};
+    const struct wish wish = {&e->asked, p, e->budget};
+    if (e->at_least && e->budget->left <= 0)
+        return 0;
+    const struct tri_size_field field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
+                                         &e->budget->left, e->at_least};
     return tri_integral(&field, p);
 }
 
@@ -98,9 +125,11 @@ static double angle_work(const struct estimator *e, tri_triangle_id t)
     return tri_is_live(&e->asked.mesh->tri[t]) ? 1 + tri_crowd_work(&e->crowd, t, 0) : 0;
 }
 
-static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
+static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                                      struct budget *budget)
 {
-    struct estimator e = {tri_asked_of(mesh, quality), tri_crowd_for(mesh, quality), HUGE_VAL, NULL};
+    struct estimator e = {.asked = tri_asked_of(mesh, quality), .crowd = tri_crowd_for(mesh, quality),
+                          .budget = budget, .large = HUGE_VAL};
     double all = 0;
     for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
         all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
@@ -111,7 +140,8 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
 
 double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id t)
 {
-    const struct estimator here = {.asked = tri_asked_of(mesh, quality), .large = HUGE_VAL};
+    struct budget budget = {.left = TRI_WISH_PIECES};
+    const struct estimator here = {.asked = tri_asked_of(mesh, quality), .budget = &budget, .large = HUGE_VAL};
     if (!tri_is_live(&mesh->tri[t]))
         return 0;
     const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
@@ -215,7 +245,7 @@ bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality 
     double ignored = 0;
     if (!may_come_first(quality) || tri_asks_caller(quality))
         return may_come_first(quality);
-    const struct estimator e = estimator_for(mesh, quality);
+    const struct estimator e = estimator_for(mesh, quality, NULL);
     return outweighs_angles(&e, sum_of(asked_works(&e), executor, &ignored), executor);
 }
 
@@ -224,7 +254,8 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
                     const struct tri_executor *executor, double *sure)
 {
     const bool asks = tri_asks_caller(quality);
-    struct estimator e = estimator_for(mesh, quality);
+    struct budget budget = budget_for(mesh, MOST_ASKED);
+    struct estimator e = estimator_for(mesh, quality, &budget);
     double urgent = 0, ignored = 0, again = 0;
     e.known = asks ? know_all(asked_works(&e), executor) : NULL;
     const double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
@@ -236,16 +267,18 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
     return (1 + again * again) * (asked + rest);
 }
 
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
+/* Of functions a rough look will do: parts may be larger than for the estimate. */
+double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor)
 {
-    struct tri_quality areas = *quality;
+    const double ROUGH = 16;
+    struct budget budget = {.left = MOST_ASKED};
     double urgent = 0;
-    areas.edge_length = NULL;
-    areas.unsuitable = NULL;
-    if (!tri_has_sizes(&areas))
+    if (!tri_has_sizes(quality))
         return 0;
-    const struct estimator e = {.asked = tri_asked_of(mesh, &areas)};
+    struct estimator e = estimator_for(mesh, quality, &budget);
+    e.large *= ROUGH;
+    e.at_least = true;
     sum_of(asked_works(&e), executor, &urgent);
     return TRI_MEAN_OVER_BOUND / TRI_MOST_OVER_BOUND * urgent;
 }
@@ -253,11 +286,12 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                  const struct tri_executor *executor, struct tri_error *error)
 {
-    double triangles = quality->max_steiner < 0 ? tri_area_demand(mesh, quality, executor) : 0;
+    double triangles = quality->max_steiner < 0 ? tri_size_demand(mesh, quality, executor) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for at least %s triangles, and a mesh holds %s",
+                    "the %s ask for at least %s triangles, and a mesh holds %s",
+                    tri_asks_caller(quality) ? "sizes" : "area bounds",
                     tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
@@ -278,7 +312,8 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
     for (int i = 0; i < 4; i++) {
         struct tri_point piece[3];
         quarter(p, i, piece);
-        double inside = tri_asks_caller(e->asked.quality) ? asked_in(e, region, piece) : work / 4;
+        const bool asks = tri_asks_caller(e->asked.quality) && e->budget->left > 0;
+        double inside = asks ? asked_in(e, region, piece) : work / 4;
         if (!sample_triangle(to, e, region, piece, inside, grain, depth - 1))
             return false;
     }
@@ -326,7 +361,8 @@ bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *qual
                      const struct tri_executor *executor, tri_take_work *take, void *user)
 {
     const struct receiver to = {take, user};
-    struct estimator e = estimator_for(mesh, quality);
+    struct budget budget = budget_for(mesh, (int64_t)SAMPLES_ASKED * MOST_ASKED);
+    struct estimator e = estimator_for(mesh, quality, &budget);
     assert(take && grain >= 0);
     e.known = tri_has_sizes(quality) ? know_all(asked_works(&e), executor) : NULL;
     struct works rest = sampled_works(&e, rest_work);

@@ -1,6 +1,6 @@
 /* How many triangles refinement will make: in a mesh, in a triangle, and where. tri_estimate is read by --dry-run, by
  * progress, and by the schedule, for the number and size of its cells; tri_sample_work says where cells are cut;
- * tri_area_demand, the certain part, is what refusals read. */
+ * tri_size_demand, the certain part, is what refusals read. */
 #ifndef TRIANGLE_SIZE_ESTIMATE_H
 #define TRIANGLE_SIZE_ESTIMATE_H
 
@@ -11,17 +11,19 @@
  * where sizes are the caller's functions, and those that angles ask for beside them (crowd.h). It may be more than any
  * mesh can hold. *sure: the certain part: the triangles that there are, and those that sizes ask for where they are not
  * met yet. The mesh has been made ready for refinement (groundwork.h).
- * O(triangles), some 8,000 calls of the caller's functions, and one for each hundred triangles or so to come. */
+ * O(triangles); the caller's functions are asked at some 8,000 places, never at more than 2^20 beside four for each
+ * triangle. Once a stop is asked for (mesh->stop), they are not asked any more, and count for nothing. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure);
 
-/* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
- * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
+/* Triangles that the sizes ask for at least, where they are not met yet: the sum of areas over their bounds, and a
+ * third more, since no mesh fills its bounds; 0 without. Places count at which the caller's functions hardly vary, as
+ * far as 2^20 calls tell: about four for each triangle, 500 at least. O(triangles). */
+double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor);
 
-/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first, and
- * so does a schedule. O(triangles). */
+/* TRI_TOO_LARGE where the sizes ask for more triangles than one mesh can hold; tri_refine asks first, and so does a
+ * schedule. O(triangles). */
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                  const struct tri_executor *executor, struct tri_error *error);
 
@@ -39,7 +41,8 @@ double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *qualit
 typedef bool tri_take_work(void *user, struct tri_point q, double work);
 
 /* Hands out the work in pieces of about `grain`, each with its place, in an order that the mesh decides; small ones are
- * gathered. False: `take` said so. O(triangles + pieces). */
+ * gathered. False: `take` said so. O(triangles + pieces); the caller's functions are asked at no more than 2^23 places
+ * beside four for each triangle. */
 bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *quality, double grain,
                      const struct tri_executor *executor, tri_take_work *take, void *user);
 

@@ -2,8 +2,6 @@
  * places is 1 over the product of both: so a part counts by its corners. */
 #include "triangle/size/integral.h"
 
-#include <stdbool.h>
-
 #include "triangle/geometry/shape.h"
 
 struct place {
@@ -25,9 +23,13 @@ static int opposite_longest(const struct place p[3])
     return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
 }
 
-static double count_by_corners(const struct tri_size_field *f, const struct place p[3], double area)
+static double count_by_corners(const struct tri_size_field *f, const struct place p[3], double area, bool simple)
 {
     double mean = (p[0].h + p[1].h + p[2].h) / (3 * p[0].h * p[1].h * p[2].h);
+    if (f->at_least && !simple) {
+        const double high = tri_larger(p[0].h, tri_larger(p[1].h, p[2].h));
+        mean = 1 / (high * high);
+    }
     return mean > f->over ? area * (mean - f->over) : 0;
 }
 
@@ -45,12 +47,14 @@ static bool is_simple(const struct tri_size_field *f, const struct place p[3], i
 static double count_in(const struct tri_size_field *f, const struct place p[3], int depth)
 {
     double area = area_of(p);
+    if (depth == 0 || (f->left && *f->left <= 0))
+        return count_by_corners(f, p, area, false);
     int k = opposite_longest(p);
     const struct place *a = &p[tri_next[k]], *b = &p[tri_prev[k]];
     struct place middle = {{0.5 * (a->at.x + b->at.x), 0.5 * (a->at.y + b->at.y)}, 0};
     middle.h = f->at(f->user, middle.at);
-    if (depth == 0 || is_simple(f, p, k, &middle, area))
-        return count_by_corners(f, p, area);
+    if (is_simple(f, p, k, &middle, area))
+        return count_by_corners(f, p, area, true);
     const struct place first[3] = {p[k], *a, middle}, second[3] = {p[k], middle, *b};
     return count_in(f, first, depth - 1) + count_in(f, second, depth - 1);
 }

@@ -3,6 +3,9 @@
 #ifndef TRIANGLE_SIZE_INTEGRAL_H
 #define TRIANGLE_SIZE_INTEGRAL_H
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "triangle/geometry/point.h"
 
 struct tri_size_field {
@@ -12,6 +15,8 @@ struct tri_size_field {
     double large; /* parts of a larger area are divided in any case: h may vary inside them unseen */
     double few;   /* parts that hold no more squares than this are not divided */
     int deepest;  /* so many times a part is halved at most, whatever h does */
+    const int64_t *left; /* parts are halved while this is above 0; NULL: always */
+    bool at_least; /* parts in which h may vary count by their largest h */
 };
 
 /* Where h is smooth, O(log of the ratios of sizes) places are looked at. */
