@@ -39,7 +39,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/base/size_text.c
     triangle/size/feature_size.c
     triangle/refine/split.c
-    triangle/refine/walls.c
     triangle/refine/disk.c
     triangle/refine/bad_queue.c
     triangle/refine/criterion.c

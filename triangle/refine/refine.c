@@ -11,7 +11,6 @@
  * THEOREM (end). Points for angles are finitely many by hopeless.c and feature_size.c; those for sizes and circles,
  * whatever the others do, by inside.c and disk.c. */
 #include "triangle/refine/refiner.h"
-#include "triangle/refine/walls.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -185,7 +184,6 @@ void tri_refiner_free(struct tri_refiner *r)
     if (!r)
         return;
     tri_cavity_free(&r->cavity);
-    tri_walls_free(r->walls);
     tri_bad_queue_free(&r->queue);
     free(r->encroached);
     free(r);

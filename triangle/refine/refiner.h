@@ -28,9 +28,6 @@ struct tri_refiner {
     int32_t next_listed, n_worklist;
     enum tri_bound_stage stage;
     enum tri_excuse excuse; /* of the last refusal */
-    int64_t in_vain;  /* triangles searched for points that protected walls refused; -1: they have been many */
-    struct tri_walls *walls; /* made then; NULL: not yet, or some subsegment may be split (walls.h) */
-    tri_sub_id barred; /* a wall that refuses the point in hand, found without a search; TRI_NONE: none was */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */

@@ -21,7 +21,6 @@
 #include "triangle/refine/petal.h"
 #include "triangle/refine/place.h"
 #include "triangle/refine/split.h"
-#include "triangle/refine/walls.h"
 #include "triangle/size/feature_size.h"
 #include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
@@ -219,6 +218,17 @@ static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_
     return split_at(r, s, usual, triangle);
 }
 
+/* May the new point see this wall under any angle? */
+static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
+{
+    const struct tri_cavity *c = &r->cavity;
+    if (!tri_is_protected(r->quality, &r->mesh->sub[~c->edge[i].outer]))
+        return false;
+    struct tri_relative a = c->edge[i].a->r, b = c->edge[i + 1].a->r;
+    double x = b.x - a.x, y = b.y - a.y, area2 = c->edge[i].area2;
+    return area2 * area2 > TRI_CLEARANCE * TRI_CLEARANCE * shortest * (x * x + y * y);
+}
+
 /* Does the new point, for a triangle with this shortest edge, squared, lie on the wrong side of a wall, or see it under
  * too wide an angle? Sets *behind. */
 static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, bool *behind)
@@ -230,9 +240,8 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, 
     *behind = false;
     if (dot >= 0 && cross > 0)
         return false;
-    if (tri_is_in_lens(a->r, b->r, r->criterion.bounds.lens_cos2) &&
-        !(tri_is_protected(r->quality, &r->mesh->sub[~c->edge[i].outer]) &&
-          tri_is_tolerated(a->r, b->r, cross, shortest)))
+    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * a->r.l * b->r.l;
+    if (in_lens && !tolerates(r, i, shortest))
         return true;
     *behind = tri_orient2d(c->p, r->mesh->xy[a->v], r->mesh->xy[b->v]) <= 0;
     return *behind;
@@ -272,12 +281,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* The cavity of a new point for a triangle, with that shortest edge, squared: DONE where it is found and is ours, or
- * known to have the wall r->barred, which refuses the point. 0: walls do not matter. */
-static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p,
-                                    double shortest)
+/* The cavity of a new point for a triangle: DONE where it is found and is ours. */
+static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
 {
-    r->barred = TRI_NONE;
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->hooks->gate) {
@@ -287,10 +293,6 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
     }
     if (r->hooks->fence && !tri_fence_holds(r->hooks->fence, p)) /* then its cavity reaches beyond, too */
         return defer(r, triangle, &r->report->fenced);
-    if (r->walls && shortest > 0)
-        r->barred = tri_wall_before(r->walls, triangle, p, shortest);
-    if (r->barred != TRI_NONE)
-        return DONE;
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
     case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
@@ -306,24 +308,10 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
 {
     tri_vertex_id beyond[2];
     switch (tri_petal_point(r->mesh, r->hooks->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
-    case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p, shape->l[shape->shortest]);
+    case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
     case TRI_PETAL_BEYOND: return wait_for_more(r, beyond);
     default: return REFUSED;
     }
-}
-
-/* A search has led to a wall that must not be split. Where such searches go through many triangles, walls are looked
- * for first from now on. */
-static void count_in_vain(struct tri_refiner *r)
-{
-    enum { MANY = 16 }; /* for each triangle of the mesh */
-    if (r->in_vain < 0 || r->hooks->fence || r->hooks->part)
-        return;
-    r->in_vain += r->cavity.n_tri;
-    if (r->in_vain <= MANY * (int64_t)r->mesh->n_triangles)
-        return;
-    r->walls = tri_walls_new(&r->criterion);
-    r->in_vain = -1;
 }
 
 /* The best or the usual point, or the split of a subsegment that it encroaches. */
@@ -337,19 +325,17 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
         outcome = find_best(r, triangle, shape, &p);
     if (outcome == REFUSED) {
         p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
-        outcome = find_cavity(r, triangle, p, shape->l[shape->shortest]);
+        outcome = find_cavity(r, triangle, p);
     }
     if (outcome != DONE)
         return outcome;
-    assert(r->barred != TRI_NONE || (r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle));
-    tri_sub_id s = r->barred != TRI_NONE ? r->barred : find_encroached(r, shape->l[shape->shortest]);
+    assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
+    tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
     if (s == TRI_NONE)
         return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
     outcome = split(r, s, triangle);
-    if (outcome == REFUSED && r->barred == TRI_NONE)
-        count_in_vain(r);
     return outcome == DONE ? AGAIN : outcome;
 }
 
@@ -365,7 +351,7 @@ static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id tr
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (tri_is_walled_in(&r->criterion.asked, triangle, shape))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    outcome = find_cavity(r, triangle, p, 0);
+    outcome = find_cavity(r, triangle, p);
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
 }
 
