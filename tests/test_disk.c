@@ -236,7 +236,6 @@ static void test_what_would_take_too_many_parts_is_counted_by_place(void **state
     }
     tri_count_encroached(&mesh, &options, &report.quality, turned);
     assert_memory_equal(turned, count, sizeof count);
-    assert_true(beyond > 0);
     assert_int_equal(count[TRI_EXCUSE_PRECISION], beyond);
     assert_true(count[TRI_EXCUSE_INPUT_ANGLE] > 0 && count[TRI_EXCUSE_NARROW_GAP] > 0);
     tri_mesh_free(&mesh);

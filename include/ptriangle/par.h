@@ -4,9 +4,9 @@
  * any grading. The mesh depends on the figure and the settings alone, never on the number of threads; it is not the one
  * that tri_mesh_new makes, which inserts points in another order: same bounds, about the same size.
  *
- * A small mesh, or settings with most_new_points, gate or fence make it one sequential refinement. Callbacks that must
- * not run in parallel leave one thread to follow the schedule. Calls from several threads, on different meshes, and from
- * within parallel regions are fine.
+ * A small mesh, or settings with most_new_points, gate, fence, or a size test (unsuitable) that must not run in
+ * parallel make it one sequential refinement. A size function (edge_length) leaves one thread to follow the schedule.
+ * Calls from several threads, on different meshes, and from within parallel regions are fine.
  * In a child that was forked after a call there is one thread. */
 #ifndef PTRIANGLE_PAR_H
 #define PTRIANGLE_PAR_H

@@ -151,8 +151,9 @@ struct tri_settings {
 
     /* ptriangle/par.h only */
     int threads;            /* <= 0: OMP_NUM_THREADS, else one for each core */
-    bool callbacks_in_parallel; /* edge_length and unsuitable may be called by several threads at once. Otherwise one
-                                   thread, the calling one, refines if they are set; the mesh is the same */
+    bool callbacks_in_parallel; /* edge_length and unsuitable may be called by several threads at once. Otherwise the
+                                   calling thread refines alone if they are set. With edge_length the mesh is the same,
+                                   with unsuitable it is that of one sequential refinement */
     bool numbered_by_block; /* new points and triangles lie as they were made: quicker. Else along a curve, as the
                                cache of a solver wants it */
 

@@ -511,7 +511,7 @@ static enum tri_status refine_sizes_first(struct par_run *state, const struct tr
 static bool must_be_sequential(const struct tri_quality *quality, const struct par_options *options)
 {
     const bool is_tied = options->hooks && (options->hooks->gate || options->hooks->fence);
-    return quality->max_steiner >= 0 || is_tied;
+    return quality->max_steiner >= 0 || is_tied || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
 /* Refines by schedules: two where angles are dear. */

@@ -33,8 +33,9 @@ struct par_place {
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
-    bool size_test_in_parallel; /* size function and size test may be called by several threads at once; else one
-                                   thread works if there are any. The mesh is the same */
+    bool size_test_in_parallel; /* size function and size test may be called by several threads at once. Else with
+                                   a size function one thread does all, and makes the same mesh; with a size test the
+                                   mesh is refined sequentially */
     const struct tri_refine_hooks *hooks; /* gate, fence and told alone, of sequential calls: with a gate or a fence
                                              there is no schedule; NULL: none */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the

@@ -125,13 +125,11 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
-/* Of a part of the work nothing is asked that the whole has been asked for; the size test is asked about triangles of
- * the mesh alone. */
+/* Of a part of the work nothing is asked that the whole has been asked for. */
 static enum tri_status check_sizes(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                    const struct tri_refine_hooks *hooks, struct tri_error *error)
 {
     struct tri_quality known = *quality;
-    known.unsuitable = NULL;
     known.edge_length = hooks->worklist ? NULL : quality->edge_length;
     return hooks->fence || hooks->part ? TRI_OK : tri_refine_check(mesh, &known, NULL, error);
 }

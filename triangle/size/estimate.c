@@ -273,10 +273,12 @@ double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
 {
     const double ROUGH = 16;
     struct budget budget = {.left = MOST_ASKED};
+    struct tri_quality known = *quality;
     double urgent = 0;
-    if (!tri_has_sizes(quality))
+    known.unsuitable = NULL;
+    if (!tri_has_sizes(&known))
         return 0;
-    struct estimator e = estimator_for(mesh, quality, &budget);
+    struct estimator e = estimator_for(mesh, &known, &budget);
     e.large *= ROUGH;
     e.at_least = true;
     sum_of(asked_works(&e), executor, &urgent);
@@ -291,7 +293,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_q
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "the %s ask for at least %s triangles, and a mesh holds %s",
-                    tri_asks_caller(quality) ? "sizes" : "area bounds",
+                    quality->edge_length ? "sizes" : "area bounds",
                     tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
