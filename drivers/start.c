@@ -54,9 +54,9 @@ static int complain_of_version(const char *path, const char *version)
     return program_trouble;
 }
 
-/* A user may link another's program into a folder of their own, with a module of their own beside it: whoever starts
- * the program there must not run that module. Does the file or folder belong to the administrator, to the program's
- * owner or to this user? path receives its path. False: errno says why; EPERM: it does not. */
+/* A user may link another's program into a folder of their own, with a module of their own beside it. Another user who
+ * starts the program there must not run that module. Does the file or folder belong to the administrator, to the
+ * program's owner or to this user? path receives its path. False: errno says why; EPERM: it does not. */
 static bool is_trusted(const char *name, char path[OWN_PATH])
 {
     struct stat program, at;

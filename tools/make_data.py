@@ -784,7 +784,7 @@ def touching_squares():
     return poly
 
 
-@case("regress/within_rounding.poly", "segments along each other but for rounding (github Stoeoef/spade issue 111)",
+@case("regress/within_rounding.poly", "segments within rounding of each other (github Stoeoef/spade issue 111)",
       "two crossings; the flat triangles between them are not lost", ("-pc",))
 def within_rounding():
     poly = Poly(0, False)

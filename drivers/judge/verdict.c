@@ -42,7 +42,7 @@ static void print_summary(const struct verdict_style *s, const struct judged_fil
     }
 }
 
-/* Points that can be corners, and are not: the matrix of a solver is singular there. 0 where there are no triangles. */
+/* Points that no triangle uses, which make a solver's matrix singular. 0 without triangles. */
 static int64_t unused_points(const struct judged_files *f, const struct tri_check_report *r)
 {
     return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;

@@ -7,7 +7,7 @@
 #include "ptriangle/tiles.h"
 
 struct orphans {
-    int64_t n, n_before; /* of so many points there were before refinement; refinement makes none */
+    int64_t n, n_before; /* orphans; points before refinement, which makes no orphans */
     int32_t *kept;       /* [n_before + 1] how many of the points before each are none; malloc'ed */
 };
 

@@ -79,7 +79,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     points [n, 2]; segments [s, 2]: point numbers from 0. Without segments the convex hull is meshed.
     polygons: a list of polygons: lists of rings [k, 2], closed or not (an outline and its holes), single rings, or
         shapely's; a GeoSeries of geopandas, or GeoJSON. Places in an odd number of rings are meshed (the even-odd
-        rule). An InputWarning tells if polygons overlap, or lie in one another, or are not valid. z is dropped.
+        rule). An InputWarning says if polygons overlap, or lie in one another, or are not valid. z is dropped.
     union: places in any polygon are meshed: in its outline and in none of its holes. Borders inside vanish.
     holes [h, 2]: places; or "auto": the segments are rings as above.
     regions [r, 4]: x, y, attribute, largest area (<= 0: any).
@@ -101,7 +101,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     gate: function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max: changes stay within.
     order: 2: points amid the edges, too.
     keep_unused: points that no triangle uses (duplicates, points outside) stay. Otherwise they are dropped;
-        Mesh.input_points tells where each point went.
+        Mesh.input_points says where each point went.
     threads: else OMP_NUM_THREADS, else one for each core. The mesh does not depend on it.
     stop: function that is asked often, by any thread: True ends the work with StoppedError.
     progress: True: a line on standard error; or a function of the share that is done, 0 to 1, and of the number of

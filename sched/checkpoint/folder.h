@@ -12,9 +12,9 @@ int par_folder_open(const char *path);
 /* A file that is there, to read. */
 int par_folder_read(int folder, const char *name);
 
-/* A new and empty file, to write; what had the name is no longer in the folder. The file has the name once it is
- * complete, and on the disk: if the process dies before, nothing is left. Systems without files that have no name (NFS)
- * give it the name at once. */
+/* A new and empty file, to write; a file of that name is removed from the folder. par_folder_end gives the new one the
+ * name once it is complete and on the disk: if the process dies before, nothing is left. Systems without files that
+ * have no name (NFS) give it the name at once. */
 int par_folder_create(int folder, const char *name);
 bool par_folder_end(int folder, const char *name, int file);
 

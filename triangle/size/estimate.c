@@ -15,8 +15,7 @@
 
 enum { DEEPEST_CUT = 12 };
 
-/* The caller's functions are asked at so many places beside four for each triangle, and for samples of work at so many
- * times as many. */
+/* Calls of the caller's functions beside four for each triangle, and the factor by which samples of work take more. */
 enum { MOST_ASKED = 1 << 20, SAMPLES_ASKED = 8 };
 
 /* More than anybody will have, and no infinity: bounds may ask for any number. */

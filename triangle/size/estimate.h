@@ -16,9 +16,9 @@
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure);
 
-/* Triangles that the sizes ask for at least, where they are not met yet: the sum of areas over their bounds, and a
- * third more, since no mesh fills its bounds; 0 without. Of the caller's functions lengths count, where they hardly
- * vary, as far as 2^20 calls tell: about four for each triangle, 500 at least. O(triangles). */
+/* The least number of triangles that the sizes ask for, in triangles that violate them: the sum of areas over their
+ * bounds, and a third more, since no mesh fills its bounds; 0 without sizes. Lengths of a caller's function are looked
+ * at by at most 2^20 calls, about four for each triangle and 500 at least. O(triangles). */
 double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor);
 

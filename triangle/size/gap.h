@@ -27,8 +27,8 @@ double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const
 /* Does the shortest edge of the triangle bridge a spike? */
 bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* Is the distance of two vertices the width of a space between two parents that is too dear to fill, be it at its end?
- * Is that of a vertex from a parent, as one of the vertex's own parents bounds such a space with it? */
+/* Is the distance of two vertices the width of a space between two parents that is too expensive to fill, or of its
+ * end? Is the distance of a vertex from a parent: does one of the vertex's own parents bound such a space with it? */
 bool tri_spans_gap(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v);
 bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v);
 

@@ -450,8 +450,8 @@ enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *err
     return tri_output_conclude(output, sync_to_disk(output->file), error);
 }
 
-/* The bytes of a file that is open, which are on their way to the disk then, as far as the system can be told; 0: there
- * is none. */
+/* Starts the writing of an open file to the disk, if the system has a call for that. Returns its bytes; 0: it is not
+ * open. */
 static uint64_t send_off(const struct tri_output *output)
 {
     struct stat status;
