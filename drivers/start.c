@@ -73,8 +73,10 @@ static int run_module(int argc, char **argv)
     char path[OWN_PATH];
     if (!place_of(path, PTRIANGLE_MODULE))
         return complain("/proc/self/exe", "does not tell where this program is");
-    if (!is_trusted(".", path) || !is_trusted(PTRIANGLE_MODULE_FOLDER, path) || !is_trusted(PTRIANGLE_MODULE, path))
-        return complain(path, errno == EPERM ? "belongs neither to root nor to the program's owner" : strerror(errno));
+    if (!is_trusted(".", path) || !is_trusted(PTRIANGLE_MODULE_FOLDER, path) ||
+        !is_trusted(PTRIANGLE_MODULE_FOLDER "/..", path) || !is_trusted(PTRIANGLE_MODULE, path))
+        return complain(path, errno == EPERM ? "belongs neither to root nor to the program's owner nor to you"
+                                             : strerror(errno));
     void *module = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
     const char *version = module ? dlsym(module, "program_version") : NULL;
     if (version && strcmp(version, program_version) != 0)

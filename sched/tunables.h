@@ -101,6 +101,9 @@
 
 /* Bytes of a state that are written at a time; a multiple of any block of a disk. Guess. */
 #define PAR_STATE_WRITE (1 << 20)
+/* A state that is on the disk in fewer seconds does not measure how fast the disk is. Guess: ten times what a disk takes
+ * for any file. */
+#define PAR_STATE_MEASURES 0.2
 /* A state amid a phase is due once so many times as long has passed as the last one took: a tenth of the time goes into
  * states at most. Guess. */
 #define PAR_STATE_REST 9

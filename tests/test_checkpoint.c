@@ -698,6 +698,16 @@ static void test_the_last_state_begins_in_time(void **state)
     assert_false(par_state_is_due(&c, 0.9, 1e6)); /* the first measures the disk */
     assert_true(par_state_is_due(&c, 1.1, 1e6));
     assert_false(par_state_is_last(&c, 99, 1e6));
+    c.last = c.saved = 1;
+    c.cost = c.writing = 0.01; /* one that is no more than a disk takes for any file measures nothing */
+    c.size = 100;
+    assert_false(par_state_is_due(&c, 1.9, 1e6) || par_state_is_last(&c, 99, 1e6));
+    assert_true(par_state_is_due(&c, 2.1, 1e6));
+    c.last = c.saved = 0;
+    c.cost = c.writing = 0;
+    c.manifest.state_bytes = 1; /* resumed: the state that is there is to be surpassed first */
+    assert_false(par_state_is_due(&c, 49, 1e6));
+    assert_true(par_state_is_due(&c, 51, 1e6));
     c.last = c.saved = 12;
     c.cost = c.writing = 2;
     c.size = 1e6;
@@ -722,14 +732,14 @@ static double run_on_paper(double limit, double rate, double each, double slower
     c.seconds = 600;
     c.limit = limit;
     for (bool is_over = false; !is_over; now += 0.1, triangles += 0.1 * rate) {
-        const bool is_last = par_state_is_last(&c, now, triangles);
+        const bool is_last = now >= limit || par_state_is_last(&c, now, triangles);
         if (!is_last && (!par_state_is_due(&c, now, triangles) || now - c.last < PAR_STATE_REST * c.cost))
             continue;
         c.cost = c.writing = each * triangles * (is_last ? slower : 1);
         c.size = *kept = triangles;
         c.last = now += c.cost;
         c.saved++;
-        is_over = par_state_is_last(&c, now, triangles);
+        is_over = is_last || par_state_is_last(&c, now, triangles);
     }
     return now;
 }

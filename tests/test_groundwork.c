@@ -90,19 +90,20 @@ static void test_acute_vertices(void **state)
     }
 }
 
-/* What is nearer is no feature: in a square with a segment, and so many vertices 64 resolutions beside that. */
-static double rounding_beside(int vertices)
+/* Distances below this are no features, in a square with `pairs` segments and a vertex 64 resolutions beside each. */
+static double rounding_beside(int pairs)
 {
-    struct tri_pslg pslg = support_pslg(6 + vertices, 5, 0, 0);
+    struct tri_pslg pslg = support_pslg(4 + 3 * pairs, 4 + pairs, 0, 0);
     for (int k = 0; k < 4; k++)
         support_add_point(&pslg, k == 1 || k == 2, k / 2);
     for (int k = 0; k < 4; k++)
         support_add_segment(&pslg, k, (k + 1) % 4);
-    for (int k = 0; k < 2; k++)
-        support_add_point(&pslg, 0.25 + 0.5 * k, 0.5);
-    support_add_segment(&pslg, 4, 5);
-    for (int k = 0; k < vertices; k++)
-        support_add_point(&pslg, 0.4 + 0.2 * k, 0.5 + (k > 0 ? -0x1p-46 : 0x1p-46));
+    for (int k = 0; k < pairs; k++) {
+        const double y = (k + 1) / 16.0;
+        const int32_t start = support_add_point(&pslg, 0.25, y), end = support_add_point(&pslg, 0.75, y);
+        support_add_segment(&pslg, start, end);
+        support_add_point(&pslg, 0.5, y + 0x1p-46);
+    }
     struct tri_options options = support_quality(20, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     assert_true(mesh.limits.finest2 == 0x1p-94);
@@ -112,13 +113,13 @@ static double rounding_beside(int vertices)
     return rounding;
 }
 
-/* 32 resolutions of the largest coordinate; 256 where more than one vertex has something nearer than that. */
+/* 32 resolutions of the largest coordinate; 256 if more than four vertices have something nearer than that. */
 static void test_what_is_rounding(void **state)
 {
     (void)state;
     assert_true(rounding_beside(0) == 0x1p-47);
-    assert_true(rounding_beside(1) == 0x1p-47);
-    assert_true(rounding_beside(2) == 0x1p-44);
+    assert_true(rounding_beside(4) == 0x1p-47);
+    assert_true(rounding_beside(5) == 0x1p-44);
 }
 
 int main(void)

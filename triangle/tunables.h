@@ -47,11 +47,12 @@
 #define TRI_SHRINK 6.0
 /* How fast the size of features grows with the distance. Guess. */
 #define TRI_SLOPE 0.5
-/* Shortest edge over the largest coordinate, 32 resolutions; TRI_BLUR times that if more than one vertex has a distance
- * between the two. Measured: with 128 for all, drawings lose features; with 32, grids drawn twice get 2.5 times the
+/* Shortest edge over the largest coordinate, 32 resolutions; TRI_BLUR times that if more than TRI_FEW_BLURRED vertices
+ * have a distance between the two: so many may be two pairs of points. Measured: with 128 for all, drawings lose features; with 32, grids drawn twice get 2.5 times the
  * triangles; with 4 instead of 8, maps keep 1.7 times the bad ones. */
 #define TRI_SHORTEST_EDGE 0x1p-47
 #define TRI_BLUR 8.0
+#define TRI_FEW_BLURRED 4
 /* Two segments that meet at less than 1 over this are a spike, and not filled: a quarter of a degree. Guess. */
 #define TRI_SHARP 256.0
 /* Spaces between segments that take no more than 2^TRI_CHEAP_GAP points are filled in any case; all are, if they take

@@ -164,6 +164,7 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     if (status != TRI_OK)
         return status;
     f->source = judged_h5_source(f->h5);
+    f->for_solvers = true;
     f->source.memory = ask->memory;
     f->n_nodes = f->source.n_points;
     return TRI_OK;
@@ -204,6 +205,7 @@ static enum tri_status read_format(struct judged_files *f, const struct judged_a
     if (status != TRI_OK)
         return status;
     f->boundary_alone = !format->inner_segments;
+    f->for_solvers = true;
     f->base = format->base;
     f->n_nodes = f->mesh.n_points;
     f->source = take_arrays(f);

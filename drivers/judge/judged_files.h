@@ -30,6 +30,7 @@ struct judged_files {
     struct tri_elements elements;
     struct tri_check_mesh arrays;
     bool boundary_alone; /* it may have segments inside that its format does not keep */
+    bool for_solvers;    /* its format leaves out points of the input that no triangle uses */
     struct judged_text text;
     struct judged_h5 *h5;
 };

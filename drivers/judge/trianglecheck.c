@@ -116,6 +116,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     f->source.given &= ~ignored;
     struct tri_check_options options = s->check;
     options.base = f->base;
+    options.renumbered = options.renumbered || f->for_solvers;
     if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
         options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
     if (f->source.n_triangles >= WORTH_THREADS) {

@@ -51,7 +51,7 @@ const char long_options_help[] =
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
     "                     mesh that it has, whatever time that takes; else it writes nothing\n"
-    "  --no-sync          files of 8 MiB or more get their names before they are on the disk. That is faster, but a\n"
+    "  --no-sync          files of 8 MB or more get their names before they are on the disk. That is faster, but a\n"
     "                     loss of power may leave them empty\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "                     default), else a line for each stage. Never with -Q\n"
@@ -167,7 +167,8 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
 static bool is_base(const char *value)
 {
     const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
-    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, ".h5");
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, ".h5") &&
+           !tri_name_ends(last, ".vtkhdf");
 }
 
 static enum tri_status take_output(struct long_options *options, const char *value, struct tri_error *error)

@@ -180,18 +180,23 @@ struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers)
     return options;
 }
 
-static enum tri_status write_from_grid(const struct run *run, bool for_solvers)
+/* Writes Triangle's files, exports, or both from one grid. If there are exports it leaves out unused points. */
+static enum tri_status write_from_grid(const struct run *run, bool own, bool exports)
 {
-    const struct tri_grid_options options = mesh_files_grid(run, for_solvers);
+    const struct tri_grid_options options = mesh_files_grid(run, exports);
     struct tri_grid grid;
     enum tri_status status = tri_grid_make(&grid, &options, run->error);
-    status = status ? status : for_solvers ? write_exports(run, &grid) : write_own(run, &grid);
+    status = status || !own ? status : write_own(run, &grid);
+    status = status || !exports ? status : write_exports(run, &grid);
     tri_grid_free(&grid);
     return status;
 }
 
 enum tri_status mesh_files_write(const struct run *run)
 {
-    enum tri_status status = write_from_grid(run, false);
-    return status || run->hooks->options->n_exports == 0 ? status : write_from_grid(run, true);
+    const bool exports = run->hooks->options->n_exports > 0;
+    if (!exports || run->unused.n == 0)
+        return write_from_grid(run, true, exports);
+    enum tri_status status = write_from_grid(run, true, false);
+    return status ? status : write_from_grid(run, false, true);
 }

@@ -92,7 +92,7 @@ static double unrefined_streams(const struct run *run)
 static double input_bytes(const struct run *run)
 {
     const struct tri_pslg *p = &run->pslg;
-    const double surface = run->options.refine && p->n_attributes > 0 ? SURFACE_BYTES : 0;
+    const double surface = run->options.refine && p->n_attributes > 0 ? SURFACE_BYTES + 8.0 * p->n_attributes : 0;
     const double point = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + ATTRIBUTE_BYTES * p->n_attributes +
                          surface;
     const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +

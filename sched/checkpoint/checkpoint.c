@@ -378,8 +378,11 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
         (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
     enum tri_status status = walk(to, user, error);
     bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
-                ftruncate(to->file, (off_t)to->place) == 0 && par_folder_end(c->folder, name, to->file);
+                ftruncate(to->file, (off_t)to->place) == 0;
+    const double began = tri_seconds();
+    done = done && par_folder_end(c->folder, name, to->file);
     const int fault = errno;
+    to->writing += tri_seconds() - began;
     if (to->file >= 0)
         done = close(to->file) == 0 && done;
     free(to->waiting);

@@ -48,8 +48,8 @@ struct par_checkpoint {
     int lock;                    /* the directory's, held by this process */
     int saved;                   /* states written by this process */
     double last;                 /* when the last was, or when the run began */
-    double cost, writing;        /* seconds that it took, and that went into writing of these, */
-    double size;                 /* and triangles in it */
+    double cost, writing;        /* seconds that it took; those until what was written of it was on the disk */
+    double size;                 /* triangles in it */
     double limit;                /* when the run will be stopped, by tri_seconds(); 0: not known. To be set likewise */
     double looked;               /* when the last border was */
     struct par_spool spool;
@@ -117,7 +117,7 @@ struct par_state_file {
     bool failed;   /* it could not be written or read; whoever walks need not ask */
     int64_t place;
     uint64_t hash; /* of what has been written */
-    double writing; /* seconds that this took */
+    double writing; /* seconds that it took to write, hashing left out */
     char *waiting; /* what is on its way to be */
 };
 

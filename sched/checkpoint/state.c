@@ -203,14 +203,17 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
 bool par_state_is_last(const struct par_checkpoint *c, double now, double triangles)
 {
     const double growth = fmax(triangles / fmax(c->size, 1), 1); /* of what is written; room that is empty is read */
-    return c->limit > 0 && c->saved > 0 && c->limit - now <= 2 * (c->cost + (growth - 1) * c->writing);
+    const bool measured = c->writing >= PAR_STATE_MEASURES;
+    const double lead = measured ? 2 * (c->cost + (growth - 1) * c->writing) : 0;
+    return c->limit > 0 && c->saved > 0 && c->limit - now <= lead;
 }
 
 bool par_state_is_due(const struct par_checkpoint *c, double now, double triangles)
 {
     static const double EARLY = 0.01; /* of the time: a disk that is slower than the mesher by 30 times is in time */
-    const bool measures = c->limit > 0 && c->saved == 0;
-    const double wait = measures ? fmin(c->seconds, EARLY * (c->limit - c->last)) : c->seconds;
+    const bool measures = c->limit > 0 && c->writing < PAR_STATE_MEASURES;
+    const bool resumed = c->saved == 0 && par_checkpoint_has_state(c); /* it is to get further first */
+    const double wait = measures ? fmin(c->seconds, (resumed ? 0.5 : EARLY) * (c->limit - c->last)) : c->seconds;
     return now - c->last >= wait || par_state_is_last(c, now, triangles);
 }
 

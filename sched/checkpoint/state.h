@@ -19,8 +19,9 @@
 struct par_partition;
 struct par_run;
 
-/* Is a state that begins now the last before the limit of time? It is to begin as long before the limit as it takes
- * twice over, by what the last one took for its triangles. The first one measures the disk, and comes early. */
+/* Is a state that begins now the last before the limit of time? It begins before the limit by twice the time that it
+ * will take, as the last one took for its triangles. Early states measure the disk, until one takes long enough for
+ * that. A run that is resumed measures halfway: a large state right at the beginning could take all of its time. */
 bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, double triangles);
 
 /* Is it time for a state? */

@@ -231,8 +231,13 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
 
 tri_triangle_id tri_walk_to(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
-    const tri_triangle_id end = walk_to(&(struct walk){mesh, t, 3 * (int64_t)mesh->n_triangles}, q);
-    return end == NOT_FOUND ? TRI_NONE : end;
+    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
+        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        if (next == t || next == TRI_NONE)
+            return next;
+        t = next;
+    }
+    return TRI_NONE;
 }
 
 tri_sub_id tri_sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)

@@ -7,9 +7,9 @@
  *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
  *   features    how far each vertex is from what is around it, by all of the above (feature_size.h)
  *
- * RULE (rounding). Distances of 32 to 256 resolutions are features if one vertex alone is so near to another one or to
- * a segment. If more are, lines were computed twice, or points that belong on them: then such distances are rounding.
- * Each that counted as a feature would take some 400 triangles.
+ * RULE (rounding). Distances of 32 to 256 resolutions are features if at most TRI_FEW_BLURRED vertices are so near to
+ * another one or to a segment. If more are, lines were computed twice, or points that belong on them: then such
+ * distances are rounding. Each that counts as a feature takes some 100 to 400 triangles.
  *
  * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
 #include "triangle/size/groundwork.h"
@@ -85,7 +85,7 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
         return status;
     const double shortest = TRI_SHORTEST_EDGE * largest_coordinate(mesh);
     mesh->limits.finest2 = shortest * shortest;
-    if (find_features(mesh, shortest, executor) > 1)
+    if (find_features(mesh, shortest, executor) > TRI_FEW_BLURRED)
         find_features(mesh, TRI_BLUR * shortest, executor);
     return TRI_OK;
 }

@@ -38,7 +38,7 @@ static inline bool tri_asks_caller(const struct tri_quality *quality)
     return quality->edge_length || quality->unsuitable;
 }
 
-/* A bound on angles that is larger than this is worked for as this one. */
+/* A larger bound on angles is treated as this one. */
 double tri_worked_angle(const struct tri_quality *quality);
 
 /* Writes into note that refinement works for a smaller angle than is asked for. False: it does not, and nothing is
