@@ -9,9 +9,9 @@
 /* --- angles, in degrees */
 
 /* Up to about this bound refinement ends in practice (28.6 is proved, with input angles of 60 and more). A larger one
- * is worked for as this one; triangles are still counted by what is asked for. */
+ * is treated as this one; triangles are still counted by the bound that is asked for. */
 #define TRI_USUAL_ANGLE 38.0
-/* The same with -D. Measured on 235 real inputs: 36 degrees take up to 2.6 times the triangles of 34, 38 up to 22. */
+/* The largest bound with -D. Measured on 235 real inputs: 36 degrees take up to 2.6 times the triangles of 34, 38 up to 22. */
 #define TRI_CONFORMING_ANGLE 36.0
 /* Above this bound sizes may be refined first, with TRI_SIZES_ANGLE as bound, where areas ask for TRI_SIZES_FIRST times
  * the triangles that angles do. Measured on 19 coasts, parts and figures at 33 to 36 degrees: below twice, meshes made

@@ -122,11 +122,10 @@ struct tri_settings {
     int64_t most_new_points; /* > 0: then refinement ends */
 
     /* Length of edges around a place, as a bound on areas: no triangle is larger than an equilateral one with edges of
-     * the least length at its corners and centroid. In the median edges come out at about 0.8 of it. Infinite: any
-     * length will do there. So it will where the function returns 0, a negative number or NaN, but a note tells so,
-     * with one such place. Before the first point it is called some ten thousand times, never more than 2^25 times and
-     * 100 for each triangle that there is. TRI_TOO_LARGE if these calls show that the lengths ask for more triangles
-     * than a mesh holds. */
+     * the least length at its corners and centroid. The median edge length is about 0.8 of it. Infinite: no bound
+     * there. 0, a negative number or NaN is no bound either, and a note names one such place. Before the first point
+     * the function is called some ten thousand times, at most 2^25 times and 100 for each triangle of the mesh. The
+     * call fails with TRI_TOO_LARGE if the lengths ask for more triangles than a mesh can hold. */
     double (*edge_length)(void *user, const double at[2]);
     void *edge_length_user;
     /* Must the triangle a, b, c (counter-clockwise) be refined? Asked about triangles that keep all bounds of size;

@@ -6,9 +6,9 @@
  *   - level with v, if 0.9 h <= d and h < l / TRI_NARROW;
  *   - d + h^2 / d from a, if 0.9 h > d and that is less than
  *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
- * It is not split if rounding would undo that. Let g be how far from its level rounding leaves a place. Then e stays if
- * no place is level and g * l > TRI_NARROW * h^2, or if v lies across a space that is not filled (gap.h) and that is
- * longer than (TRI_NARROW * h)^2 / g.
+ * It is not split if rounding would undo that. Let g be the rounding error of a place along e. Then e stays if no place
+ * is level and g * l > TRI_NARROW * h^2. It also stays if v lies across a space that is not filled (gap.h), and if that
+ * space is longer than (TRI_NARROW * h)^2 / g.
  *
  * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
  * two parents side by side take about as many points as they have vertices, and no part is shorter than half the

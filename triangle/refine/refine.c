@@ -125,7 +125,7 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
-/* Of a part of the work nothing is asked that the whole has been asked for. */
+/* A call for part of the work is not checked again. */
 static enum tri_status check_sizes(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                    const struct tri_refine_hooks *hooks, struct tri_error *error)
 {

@@ -6,8 +6,8 @@
  *     |bp|, inherited as insertion radii are (Shewchuk 2002);
  *   - a split point: the same from all vertices around it, but no more than its distance from other features;
  *   - a point inserted because of sizes: no more than its distance from its neighbours.
- * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches), nor are widths of spaces
- * that are not filled (gap.h), at their ends either.
+ * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches). Neither are widths of
+ * spaces that are not filled (gap.h), nor those of their ends.
  *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / TRI_SHRINK is not refined for its angle.
  *
