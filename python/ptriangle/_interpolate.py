@@ -13,7 +13,7 @@ from ._arrays import Array
 
 _INSIDE = -1e-12    # a share of a triangle's area that counts as none
 _FLAT = 1e-9        # the height of a triangle, as a share of its longest edge, that counts as none
-_MOST = 1 << 22     # pairs of places and triangles or edges that are looked at together
+_MOST = 1 << 15     # pairs of places and edges that are looked at together: they fit in a core's cache
 
 
 def _shares(corners: Array, at: Array) -> Array:
@@ -82,14 +82,14 @@ def _locate(corners: Array, neighbors: Array, at: Array) -> Tuple[Array, Array]:
 def _onto_border(points: Array, border: Array, at: Array) -> Tuple[Array, Array, Array]:
     """(the nearest edge of the border [b, 2] to each place, how much of it lies before the nearest place of it, the
     distance)."""
-    a, along = points[border[:, 0]], points[border[:, 1]] - points[border[:, 0]]
-    length2 = (along * along).sum(axis=1)
+    a, (u, v) = points[border[:, 0]], (points[border[:, 1]] - points[border[:, 0]]).T
+    length2 = u * u + v * v
     edge, share, distance = np.empty(len(at), int), np.empty(len(at)), np.empty(len(at))
     step = max(1, _MOST // len(border))
     for k in range(0, len(at), step):
-        some = at[k:k + step, None]
-        shares = np.clip(((some - a) * along).sum(axis=-1) / length2, 0, 1)
-        distance2 = ((some - a - shares[..., None] * along) ** 2).sum(axis=-1)
+        x, y = at[k:k + step, :1] - a[:, 0], at[k:k + step, 1:] - a[:, 1]
+        shares = np.clip((x * u + y * v) / length2, 0, 1)
+        distance2 = (x - shares * u) ** 2 + (y - shares * v) ** 2
         best = distance2.argmin(axis=1)
         rows = np.arange(len(best))
         edge[k:k + step], share[k:k + step] = best, shares[rows, best]
