@@ -1,6 +1,7 @@
 """Files of meshes and figures, by the suffix of their names; what the library does not know is done here.
 
-A format of its own is an entry of _READERS and _WRITERS: here .h5, by h5py, as docs/formats.md describes it.
+A format of its own is an entry of _READERS and _WRITERS: here .h5 and .vtkhdf, by h5py, as docs/formats.md describes
+them.
 """
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ def _h5py(who: str) -> Any:
     try:
         import h5py  # type: ignore[import-untyped, unused-ignore]
     except ImportError:
-        raise ImportError("%s: files .h5 need h5py: pip install h5py" % who) from None
+        raise ImportError("%s: files .h5 and .vtkhdf need h5py: pip install h5py" % who) from None
     return h5py
 
 
@@ -41,10 +42,29 @@ def _read_h5(path: str, who: str) -> Arrays:
     return {name: rows.astype(SHAPES[name][0].dtype) for name, rows in arrays.items() if len(rows)}
 
 
+def _add_vtk(file: Any, arrays: Arrays) -> None:
+    """What VTK and ParaView read of it: one grid of triangles and then segments as lines."""
+    points, triangles, segments = (arrays[name] for name in ("points", "triangles", "segments"))
+    m, s = len(triangles), len(segments)
+    grid = file.create_group("VTKHDF")
+    grid.attrs.update({"Version": np.array([2, 0]), "Type": np.bytes_("UnstructuredGrid")})
+    rows = {"Points": np.column_stack([points, np.zeros(len(points))]),
+            "Connectivity": np.concatenate([triangles.ravel(), segments.ravel()]),
+            "Offsets": np.append(np.arange(0, 3 * m + 1, 3), 3 * m + np.arange(2, 2 * s + 1, 2)),
+            "Types": np.repeat(np.array([5, 3], np.uint8), [m, s]), "NumberOfPoints": np.array([len(points)]),
+            "NumberOfCells": np.array([m + s]), "NumberOfConnectivityIds": np.array([3 * m + 2 * s]),
+            "PointData/marker": arrays["point_markers"], "PointData/attributes": arrays["point_attributes"],
+            "CellData/marker": np.append(np.zeros(m, np.int32), arrays["segment_markers"]),
+            "CellData/attributes": np.pad(arrays["triangle_attributes"], ((0, s), (0, 0)))}
+    for name, some in rows.items():
+        if some.size:
+            grid.create_dataset(name, data=some, track_times=False)
+
+
 def _write_h5(path: str, arrays: Arrays, who: str) -> None:
     points, triangles = arrays["points"], arrays["triangles"]
     if triangles.shape[1] != 3:
-        raise InputError("%s: %s: .h5 files hold no second-order triangles" % (who, path))
+        raise InputError("%s: %s: %s files hold no second-order triangles" % (who, path, _suffix(path)))
     h5py, temporary = _h5py(who), path + ".part"
     corners = points[np.unique(triangles)] if len(triangles) else points
     bounds = np.concatenate([corners.min(axis=0), corners.max(axis=0)]) if len(corners) else np.zeros(4)
@@ -58,6 +78,8 @@ def _write_h5(path: str, arrays: Arrays, who: str) -> None:
                 if arrays[name].size:
                     file.create_dataset(name, data=arrays[name], track_times=False)
             file.create_group("about").attrs.update(about)
+            if _suffix(path) == ".vtkhdf":
+                _add_vtk(file, arrays)
         os.replace(temporary, path)
     except OSError as fault:
         raise FileError("%s: %s" % (path, fault), 5) from None
@@ -66,8 +88,8 @@ def _write_h5(path: str, arrays: Arrays, who: str) -> None:
             os.remove(temporary)
 
 
-_READERS: Dict[str, Callable[[str, str], Arrays]] = {".h5": _read_h5}
-_WRITERS: Dict[str, Callable[[str, Arrays, str], None]] = {".h5": _write_h5}
+_READERS: Dict[str, Callable[[str, str], Arrays]] = {".h5": _read_h5, ".vtkhdf": _read_h5}
+_WRITERS: Dict[str, Callable[[str, Arrays, str], None]] = {".h5": _write_h5, ".vtkhdf": _write_h5}
 _OF_THE_LIBRARY: List[str] = [".node", ".ele", ".poly", ".vtu", ".msh", ".2dm", ".14", ".grd"]
 
 

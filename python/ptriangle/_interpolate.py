@@ -1,18 +1,19 @@
 """Linear interpolation in a Delaunay triangulation: of scattered measurements onto the points of a mesh.
 
 Each place walks from triangle to triangle, across the edge that it lies farthest behind, all of them at once. In a
-Delaunay triangulation such walks end. Rounding may catch one between flat triangles; it is then compared with all.
+Delaunay triangulation such walks end. Places outside have the value of the nearest place of the border.
 """
 from __future__ import annotations
 
-from typing import Tuple
+from typing import Any, Tuple
 
 import numpy as np
 
 from ._arrays import Array
 
 _INSIDE = -1e-12    # a share of a triangle's area that counts as none
-_MOST = 1 << 22     # pairs of places and triangles or edges that are looked at together
+_FLAT = 1e-9        # the height of a triangle, as a share of its longest edge, that counts as none
+_MOST = 1 << 15     # pairs of places and edges that are looked at together: they fit in a core's cache
 
 
 def _shares(corners: Array, at: Array) -> Array:
@@ -36,49 +37,77 @@ def _starts(centres: Array, at: Array) -> Array:
     return order[np.minimum(np.searchsorted(cell(centres)[order], cell(at)), len(order) - 1)]
 
 
-def _best_of_all(corners: Array, at: Array) -> Array:
-    """The triangle in which each place lies, or nearly so, by looking at all."""
-    step = max(1, _MOST // len(corners))
-    parts = [np.argmax(_shares(corners[None], at[k:k + step, None]).min(axis=-1), axis=1)
-             for k in range(0, len(at), step)]
-    return np.concatenate(parts)
+def _rounding(points: Array, length: Any) -> Any:
+    """What counts as no distance, from an edge as long as that."""
+    return _FLAT * length + 8 * np.spacing(np.abs(points).max())
 
 
-def locate(corners: Array, neighbors: Array, at: Array) -> Tuple[Array, Array]:
+def without_flat_rim(points: Array, triangles: Array, neighbors: Array) -> Tuple[Array, Array]:
+    """Triangles and neighbors without those that rounding alone has made: points on a slanted line of the hull have
+    flat triangles. One goes if its longest edge is in the hull, or is that of another that goes. If all are flat, so is
+    the cloud: none is left."""
+    edges = points[triangles[:, [2, 0, 1]]] - points[triangles[:, [1, 2, 0]]]
+    length2, n, rows = (edges * edges).sum(axis=-1), len(triangles), np.arange(len(triangles))
+    longest = length2.argmax(axis=1)
+    length = np.sqrt(length2[rows, longest])
+    areas2 = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
+    flat = areas2 <= length * _rounding(points, length)
+    up = np.append(np.where(flat, neighbors[rows, longest], rows), n)  # n: outside
+    up[up < 0] = n
+    for _ in range(n.bit_length()):
+        up = up[up]
+    kept = (up[:n] != n) & ~flat.all()
+    number = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1)
+    return triangles[kept], number[neighbors[kept]]
+
+
+def _locate(corners: Array, neighbors: Array, at: Array) -> Tuple[Array, Array]:
     """(the triangle of each place, is it inside). Outside it is a triangle at the border."""
-    triangle, inside = _starts(corners.mean(axis=1), at), np.zeros(len(at), bool)
+    triangle, inside = _starts(corners.mean(axis=1), at), np.ones(len(at), bool)
     walking = np.arange(len(at))
-    for _ in range(200 + 8 * int(np.sqrt(len(corners)))):
+    for _ in range(len(corners)):  # but for rounding, no walk comes to a triangle twice
         if len(walking) == 0:
-            return triangle, inside
+            break
         shares = _shares(corners[triangle[walking]], at[walking])
         worst = shares.argmin(axis=1)
         arrived = shares[np.arange(len(walking)), worst] >= _INSIDE
         beyond = neighbors[triangle[walking], worst]
-        inside[walking[arrived]] = True
+        inside[walking] = arrived | (beyond >= 0)
         goes_on = ~arrived & (beyond >= 0)
         triangle[walking[goes_on]] = beyond[goes_on]
         walking = walking[goes_on]
-    triangle[walking], inside[walking] = _best_of_all(corners, at[walking]), True
     return triangle, inside
 
 
-def onto_border(points: Array, border: Array, at: Array) -> Array:
-    """The nearest place of the border [b, 2] to each of some places."""
-    a, along = points[border[:, 0]], points[border[:, 1]] - points[border[:, 0]]
-    length2 = (along * along).sum(axis=1)
-    step, found = max(1, _MOST // len(border)), [np.empty((0, 2))]
+def _onto_border(points: Array, border: Array, at: Array) -> Tuple[Array, Array, Array]:
+    """(the nearest edge of the border [b, 2] to each place, how much of it lies before the nearest place of it, the
+    distance)."""
+    a, (u, v) = points[border[:, 0]], (points[border[:, 1]] - points[border[:, 0]]).T
+    length2 = u * u + v * v
+    edge, share, distance = np.empty(len(at), int), np.empty(len(at)), np.empty(len(at))
+    step = max(1, _MOST // len(border))
     for k in range(0, len(at), step):
-        some = at[k:k + step, None]
-        share = np.clip(((some - a) * along).sum(axis=-1) / length2, 0, 1)
-        nearest = a + share[..., None] * along
-        best = ((some - nearest) ** 2).sum(axis=-1).argmin(axis=1)
-        found.append(nearest[np.arange(len(best)), best])
-    return np.concatenate(found)
+        x, y = at[k:k + step, :1] - a[:, 0], at[k:k + step, 1:] - a[:, 1]
+        shares = np.clip((x * u + y * v) / length2, 0, 1)
+        distance2 = (x - shares * u) ** 2 + (y - shares * v) ** 2
+        best = distance2.argmin(axis=1)
+        rows = np.arange(len(best))
+        edge[k:k + step], share[k:k + step] = best, shares[rows, best]
+        distance[k:k + step] = np.sqrt(distance2[rows, best])
+    return edge, share, distance
 
 
-def interpolated(corners: Array, values: Array, triangle: Array, at: Array) -> Array:
-    """Values [k, ...] of places in triangles. values [t, 3, ...] at the corners."""
+def interpolated(points: Array, triangles: Array, neighbors: Array, values: Array, at: Array) -> Tuple[Array, Array]:
+    """(values [k, ...] at places, which of them are inside, but for rounding). values [n, ...] at the points."""
+    corners = points[triangles]
+    triangle, inside = _locate(corners, neighbors, at)
     shares = np.clip(_shares(corners[triangle], at), 0, 1)
     shares /= shares.sum(axis=1, keepdims=True)
-    return np.asarray(np.einsum("ij,ij...->i...", shares, values[triangle]))
+    found = np.asarray(np.einsum("ij,ij...->i...", shares, values[triangles[triangle]]))
+    outside, (beside, corner) = np.nonzero(~inside)[0], np.nonzero(neighbors < 0)
+    border = np.column_stack([triangles[beside, (corner + 1) % 3], triangles[beside, (corner + 2) % 3]])
+    edge, share, distance = _onto_border(points, border, at[outside])
+    ends = np.column_stack([1 - share, share])
+    found[outside] = np.einsum("ij,ij...->i...", ends, values[border[edge]])
+    inside[outside] = distance <= _rounding(points, 4 * np.ptp(points))
+    return found, inside

@@ -101,7 +101,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     gate: function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max: changes stay within.
     order: 2: points amid the edges, too.
     keep_unused: points that no triangle uses (duplicates, points outside) stay. Otherwise they are dropped;
-        Mesh.input_points says where each point went.
+        Mesh.input_points holds the new number of each point.
     threads: else OMP_NUM_THREADS, else one for each core. The mesh does not depend on it.
     stop: function that is asked often, by any thread: True ends the work with StoppedError.
     progress: True: a line on standard error; or a function of the share that is done, 0 to 1, and of the number of
@@ -118,9 +118,9 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         raise InputError("%s: union=True without polygons" % who)
     shapes = [] if polygons is None else _rings.polygons_of(polygons, who + ": polygons")
     only_polygons = polygons is not None and segments is None and holes is None and triangles is None
-    n_input = -1
+    n_told = None
     if polygons is not None:
-        points, segments, n_input = _with_polygons(points, segments, shapes, union, who)
+        points, segments, n_told = _with_polygons(points, segments, shapes, union, who)
     if points is None:
         raise InputError("%s: neither points nor polygons are given" % who)
     if isinstance(holes, str):
@@ -133,7 +133,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         triangle_attributes=triangle_attributes, triangle_areas=triangle_areas), who)
     found = finished(made(figure, settings, calls), order, calls)
     del kept  # which the library has looked at until here
-    found._settle_points(figure.points.n if n_input < 0 else n_input, keep_unused)
+    found._settle_points(figure.points.n, n_told, keep_unused)
     if only_polygons and not union and not keep_hull and len(found.triangles) > 0:
         _union.warn_of_overlaps(shapes, float(found.areas.sum()), who)
     return found
@@ -144,6 +144,7 @@ def read(path: Any) -> "Arrays":
     """The arrays of a file, as keywords of mesh(): mesh(**read("plate.poly"), min_angle=30).
 
     Figures: x.poly, x.node. Meshes, which mesh() keeps, and refines where it is asked for more: x.ele (with its points,
-    segments and area bounds), x.vtu, x.msh, x.2dm, x.14, x.grd, x.h5 (by h5py).
+    segments and area bounds), x.vtu, x.msh, x.2dm, x.14, x.grd, x.h5 and
+    x.vtkhdf (by h5py).
     """
     return _files.read_arrays(path, "read()")  # type: ignore[return-value]

@@ -89,16 +89,16 @@ class Mesh:
         self._arrays = _arrays_of(handle)
         self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
 
-    def _settle_points(self, n_input: int, keep_unused: bool) -> None:
-        """Says where the first n_input points went, and drops points that no triangle uses. A mesh without triangles
-        keeps its points."""
+    def _settle_points(self, n_input: int, n_told: Optional[int], keep_unused: bool) -> None:
+        """Says where the first n_told of the n_input points went (None: all), and drops points that no triangle uses. A
+        mesh without triangles keeps its points."""
         arrays = self._arrays
-        self._input_points = np.arange(n_input, dtype=np.int32)
+        self._input_points = np.arange(n_input, dtype=np.int32)[:n_told]
         used = _used(arrays, n_input, self._counts["crossings"])
         if len(arrays["triangles"]) > 0 and not used.all():
             kept = np.ones(len(used), bool) if keep_unused else used
             numbers = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
-            self._input_points = numbers[_firsts(arrays["points"][:n_input])]
+            self._input_points = numbers[_firsts(arrays["points"][:n_input])][:n_told]
             if not keep_unused:
                 self._numbers = numbers
                 arrays.update({name: arrays[name][kept] for name in _NAMES[:3]})
@@ -319,14 +319,10 @@ class Mesh:
             raise InputError("%s: values of shape %s for %d points" % (who, given.shape, figure.points.n))
         cloud = Mesh(made(figure, Settings(), Calls(who)))
         del kept
-        if len(cloud.triangles) == 0:
+        triangles, neighbors = _interpolate.without_flat_rim(cloud.points, cloud.triangles, cloud.neighbors)
+        if len(triangles) == 0:
             raise InputError("%s: all points lie on one line" % who)
-        corners = cloud.points[cloud.triangles]
-        triangle, inside = _interpolate.locate(corners, cloud.neighbors, at)
-        at = at.copy()
-        at[~inside] = _interpolate.onto_border(cloud.points, cloud.boundary, at[~inside])
-        triangle[~inside] = _interpolate.locate(corners, cloud.neighbors, at[~inside])[0]
-        found = _interpolate.interpolated(corners, given[cloud.triangles], triangle, at)
+        found, inside = _interpolate.interpolated(cloud.points, triangles, neighbors, given, at)
         if outside is not None:
             found[~inside] = outside
         return found
@@ -370,9 +366,9 @@ class Mesh:
 
     @explained
     def write(self, path: Any, first: int = 1) -> None:
-        """Writes the mesh in the format that the suffix says: x.vtu (VTK), x.msh (Gmsh), x.h5 (HDF5, by h5py), x.2dm
-        (SMS), x.14 or x.grd (ADCIRC); x.poly, x.ele, x.node or x without suffix: x.node, x.ele and x.poly, whose
-        numbers count from `first`, 0 or 1. Order 2 is for all of them but .h5 and .14."""
+        """Writes the mesh in the format that the suffix says: x.vtu (VTK), x.msh (Gmsh), x.h5 or x.vtkhdf (HDF5, by
+        h5py), x.2dm (SMS), x.14 or x.grd (ADCIRC); x.poly, x.ele, x.node or x without suffix: x.node, x.ele and
+        x.poly, whose numbers count from `first`, 0 or 1. Order 2 is for all of them but .h5, .vtkhdf and .14."""
         arrays = dict(self._arrays)
         if self._order == 2:
             arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))

@@ -126,6 +126,7 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
     data, out, vorout, kept = TriangulateIO(), TriangulateIO(), TriangulateIO(), []
     words: List[str] = []
     notes: List[bytes] = []
+    tri = {key: given for key, given in tri.items() if given is not None}
     if np.asarray(tri.get("vertices", ())).size < 6:
         raise InputError("Input must have at least three vertices.")
     for key, given in tri.items():

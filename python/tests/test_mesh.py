@@ -170,6 +170,10 @@ def test_numbers_of_the_corners_of_polygons():
     assert m.input_points.tolist() == [0, 1, 2, 3, 1, 4, 5, 2]
     union = ptriangle.mesh([[0.5, 0.5], [7, 7]], polygons=[box(0, 0, 1, 1), box(1, 0, 1, 1)], union=True)
     assert union.input_points.tolist() == [0, -1]
+    union = ptriangle.mesh([[0, 0], [.5, .5], [7, 7]], polygons=[box(0, 0, 1, 1), box(.5, 0, 2, 1)], union=True,
+                           max_area=0.05)
+    assert np.array_equal(np.unique(union.triangles), np.arange(len(union.points)))
+    assert union.input_points.tolist() == [0, 1, -1]
 
 
 def test_crossings_outside_are_dropped():
@@ -202,6 +206,24 @@ def test_interpolation_outside_takes_the_nearest_place_of_the_hull():
     for places, values in [([[0, 0], [1, 1], [2, 2]], [1, 2, 3]), (inner, [1, 2]), ([[0, 0], [1, 1]], [1, 2])]:
         with pytest.raises(ptriangle.InputError):
             m.interpolate(places, values)
+
+
+@pytest.mark.parametrize("scale, far", [(1, 0), (1e4, 5e6)])
+@pytest.mark.parametrize("inset", [0, 0.25])
+def test_interpolation_at_slanted_borders(scale, far, inset):
+    turn = np.array([[np.cos(0.3), -np.sin(0.3)], [np.sin(0.3), np.cos(0.3)]])
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    along = np.linspace(0, 1, 50, endpoint=False)[:, None]
+    square = np.vstack([a + along * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0))])
+    places = (inset + (1 - 2 * inset) * square) @ turn * scale + far
+    m = ptriangle.mesh(polygons=[corners @ turn * scale + far], max_area=5e-4 * scale ** 2)
+    nearest = np.clip((m.points - far) / scale @ turn.T, inset, 1 - inset)
+    for values, slack in ((lambda at: at @ [3, -2], 1e-6), (lambda at: np.sin(9 * at[:, 0]), 0.01)):
+        found = m.interpolate(places, values((places - far) / scale @ turn.T), outside=None if inset else np.nan)
+        close = np.abs(found - values(nearest)) < slack
+        assert close[np.unique(m.boundary)].all() and (slack == 0.01 or close.all())
+    with pytest.raises(ptriangle.InputError, match="on one line"):
+        m.interpolate(places[:50], places[:50, 0])
 
 
 def test_interpolation_walks_through_flat_triangles():

@@ -55,6 +55,7 @@ def ring(x, y, width, height):
     ([[ring(-1, -1, 10, 10), ring(0, 0, 2, 2), ring(1, 1, 2, 2)]], 94, 93, "the rings are not those of a valid"),
     ([[[[0, 0], [2, 2], [2, 0], [0, 2]]]], 2, 2, "the rings are not those of a valid"),
     ([ring(0, 0, 4, 4), ring(1, 1, 2, 2)], 12, 16, "polygon 1 lies in polygon 0 .* by the even-odd rule"),
+    ([ring(0, 0, 1e5, 1e5), ring(5, 5, 1, 1)], 1e10 - 1, 1e10, "polygon 1 lies in polygon 0"),
     ([ring(1, 1, 2, 2), [ring(0, 0, 4, 4)]], 12, 16, "polygon 0 lies in polygon 1"),
     ([ring(0, 0, 2, 2), ring(1, 0, 2, 2)], 4, 6, "polygons overlap, or their rings")])
 def test_polygons_that_overlap_or_are_not_valid(polygons, even_odd, union, words):

@@ -219,9 +219,9 @@ def test_shapely_and_geopandas():
 
 # --- files
 
-@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".2dm", ".14", ".grd", ".h5", ".ele", ".poly"])
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".2dm", ".14", ".grd", ".h5", ".vtkhdf", ".ele", ".poly"])
 def test_formats(tmp_path, suffix):
-    if suffix == ".h5":
+    if suffix in (".h5", ".vtkhdf"):
         pytest.importorskip("h5py")
     m = plate(min_angle=30, regions=[[3, 2, 7, 0.1]], segment_markers=[2, 2, 2, 2, 3, 3, 3, 3])
     m.write(tmp_path / ("plate" + suffix))
@@ -233,6 +233,16 @@ def test_formats(tmp_path, suffix):
     assert sorted(map(sorted, again.segments.tolist())) == sorted(map(sorted, m.segments.tolist()))
     if suffix not in (".14", ".grd"):
         assert set(again.triangle_attributes[:, 0]) == {7} and set(again.segment_markers) == {2, 3}
+
+
+def test_vtk_reads_its_own_suffix(tmp_path):
+    pytest.importorskip("h5py")
+    pyvista = pytest.importorskip("pyvista")
+    m = plate(min_angle=30, regions=[[3, 2, 7, 0.1]], segment_markers=[2, 2, 2, 2, 3, 3, 3, 3])
+    m.write(tmp_path / "plate.vtkhdf")
+    read = pyvista.read(tmp_path / "plate.vtkhdf")
+    assert np.array_equal(read.points[:, :2], m.points) and np.array_equal(read.cells_dict[5], m.triangles)
+    assert read.area == pytest.approx(m.areas.sum())
 
 
 def test_suffixes_that_do_not_exist(tmp_path):
@@ -264,10 +274,10 @@ def test_meshio(order, tmp_path):
     assert set(legacy.cell_data["attribute_0"][0].ravel()) == {7} and len(legacy.points) == len(m.points)
 
 
-@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".ele", ".14", ".h5"])
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".ele", ".14", ".h5", ".vtkhdf"])
 def test_second_order_in_files(suffix, tmp_path):
     m = plate(min_angle=30, order=2)
-    if suffix in (".14", ".h5"):
+    if suffix in (".14", ".h5", ".vtkhdf"):
         with pytest.raises(ptriangle.InputError, match="%s files hold no second-order" % suffix):
             m.write(tmp_path / ("plate" + suffix))
         assert os.listdir(tmp_path) == []

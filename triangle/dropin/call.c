@@ -83,10 +83,10 @@ static void tell_notes(const struct io_run *run)
         tell_remark(run, notes->empty);
 }
 
-static void warn_number(const struct io_run *run, int n, const char *what)
+static void warn_number(const struct io_run *run, int n, const char *one, const char *several)
 {
     char text[160];
-    snprintf(text, sizeof text, "%d %s", n, what);
+    snprintf(text, sizeof text, "%d %s", n, n == 1 ? one : several);
     if (n > 0)
         warn(run, text);
 }
@@ -99,11 +99,13 @@ static void warn_of_switch(void *user, const char *text, bool misread)
 static void warn_of_input(const struct io_run *run)
 {
     const struct tri_report *report = &run->report;
-    warn_number(run, report->loose,
+    warn_number(run, report->loose, "segment is no edge of the mesh: it is passed on, but the mesh does not keep it",
                 "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
-    warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
+    warn_number(run, report->duplicates, "point lies where a point of lower number lies, and is not used",
+                "points lie where a point of lower number lies, and are not used");
     tell_notes(run);
-    warn_number(run, report->carve.between, "hole points lie on segments, and empty nothing");
+    warn_number(run, report->carve.between, "hole point lies on a segment, and empties nothing",
+                "hole points lie on segments, and empty nothing");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn(run, "the limit of S was reached before the mesh was conforming");
 }
