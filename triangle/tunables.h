@@ -11,7 +11,8 @@
 /* Up to about this bound refinement ends in practice (28.6 is proved, with input angles of 60 and more). A larger one
  * is treated as this one; triangles are still counted by the bound that is asked for. */
 #define TRI_USUAL_ANGLE 38.0
-/* The largest bound with -D. Measured on 235 real inputs: 36 degrees take up to 2.6 times the triangles of 34, 38 up to 22. */
+/* The largest bound with -D. Measured on 235 real inputs: 36 degrees take up to 2.6 times the triangles of 34, 38 up to
+ * 22. */
 #define TRI_CONFORMING_ANGLE 36.0
 /* Above this bound sizes may be refined first, with TRI_SIZES_ANGLE as bound, where areas ask for TRI_SIZES_FIRST times
  * the triangles that angles do. Measured on 19 coasts, parts and figures at 33 to 36 degrees: below twice, meshes made
@@ -48,8 +49,9 @@
 /* How fast the size of features grows with the distance. Guess. */
 #define TRI_SLOPE 0.5
 /* Shortest edge over the largest coordinate, 32 resolutions; TRI_BLUR times that if more than TRI_FEW_BLURRED vertices
- * have a distance between the two: so many may be two pairs of points. Measured: with 128 for all, drawings lose features; with 32, grids drawn twice get 2.5 times the
- * triangles; with 4 instead of 8, maps keep 1.7 times the bad ones. */
+ * have a distance between the two: so many may be two pairs of points. Measured: with 128 for all, drawings lose
+ * features; with 32, grids drawn twice get 2.5 times the triangles; with 4 instead of 8, maps keep 1.7 times the bad
+ * ones. */
 #define TRI_SHORTEST_EDGE 0x1p-47
 #define TRI_BLUR 8.0
 #define TRI_FEW_BLURRED 4
