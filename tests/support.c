@@ -125,16 +125,17 @@ static long double weigh(const struct tri_point corner[3], struct tri_point p, l
 static bool is_on_surface(const struct tri_mesh *before, struct tri_point p, const double *value)
 {
     const int32_t n = before->n_attributes;
+    const long double rounding = 0x1p-46L * tri_larger(fabs(p.x), fabs(p.y)); /* of p beside a segment */
     for (int32_t t = 0; t < before->n_triangles; t++) {
         const int32_t *v = before->tri[t].v;
         const struct tri_point corner[3] = {before->xy[v[0]], before->xy[v[1]], before->xy[v[2]]};
         long double weight[3];
-        bool good = weigh(corner, p, weight) > -1e-9L;
+        bool good = weigh(corner, p, weight) > -1e-9L - rounding;
         for (int32_t k = 0; good && k < n; k++) {
             const double *a = before->attributes;
             const long double is = weight[0] * a[n * v[0] + k] + weight[1] * a[n * v[1] + k] +
                                    weight[2] * a[n * v[2] + k];
-            good = fabsl(is - value[k]) <= 1e-8L;
+            good = fabsl(is - value[k]) <= 1e-8L + rounding;
         }
         if (good)
             return true;

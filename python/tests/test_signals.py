@@ -36,7 +36,7 @@ LONG = """
 WAYS = {
     "one thread": "ptriangle.mesh(points, segments, min_angle=30, max_area=1e-7, threads=1)",
     "two threads": "ptriangle.mesh(points, segments, min_angle=30, max_area=1e-7, threads=2)",
-    "size": "ptriangle.mesh(points, segments, min_angle=30, size=lambda x, y: 1e-4)",
+    "size": "ptriangle.mesh(points, segments, min_angle=30, size=lambda x, y: 1e-3)",
     "progress": "ptriangle.mesh(points, segments, max_area=1e-7, progress=lambda done, n: None)",
     "endless callback": "ptriangle.mesh(points, segments, size=lambda x, y: time.sleep(100))",
     "in a callback": "ptriangle.mesh(points, segments, max_area=0.1,"
