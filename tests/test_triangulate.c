@@ -804,6 +804,8 @@ static void listen_to_stderr(const char *switches, struct triangulateio *in, boo
     trifree(out.trianglelist);
     trifree(out.segmentlist);
     trifree(out.segmentmarkerlist);
+    trifree(out.edgelist);
+    trifree(out.edgemarkerlist);
 }
 
 static void test_words_for_who_does_not_ask(void **state)
