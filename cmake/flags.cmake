@@ -62,10 +62,11 @@ function(ptriangle_flags target)
         CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
         C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
-    target_compile_definitions(${target} PRIVATE $<$<COMPILE_LANGUAGE:C>:_POSIX_C_SOURCE=200809L>)
     target_compile_options(${target} PRIVATE ${PTRIANGLE_DEBUG_FLAGS} ${PTRIANGLE_SPEED} ${PTRIANGLE_WARNINGS})
-    if(arg_STRICT)
+    if(arg_STRICT) # C11's library alone: the system is behind triangle/base/system.h
         target_compile_options(${target} PRIVATE ${PTRIANGLE_STRICT_WARNINGS})
+    else()
+        target_compile_definitions(${target} PRIVATE $<$<COMPILE_LANGUAGE:C>:_POSIX_C_SOURCE=200809L>)
     endif()
     if(PTRIANGLE_WERROR)
         target_compile_options(${target} PRIVATE -Werror)

@@ -4,8 +4,7 @@
 # Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
     triangle/base/status.c
-    triangle/base/scratch_file.c
-    triangle/base/mapped_file.c
+    triangle/base/system_posix.c
     triangle/geometry/predicates.c
     triangle/mesh/pslg.c
     triangle/mesh/mesh.c
@@ -103,7 +102,6 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/parts.c
-    triangle/text/joined.c
     triangle/text/write.c
     triangle/text/layouts.c
     triangle/text/text_stream.c
@@ -136,9 +134,8 @@ set(PTRIANGLE_HDF5_SOURCES
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/buffer.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
-set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/base/mapped_file.c
-    triangle/mesh/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c
+set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
@@ -163,7 +160,6 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/tiles/numbering.c
     sched/tiles/park.c
     sched/checkpoint/spool.c
-    sched/checkpoint/folder.c
     sched/checkpoint/checkpoint.c
     sched/checkpoint/state.c
     sched/tiles/ahead.c
@@ -211,15 +207,12 @@ set(PTRIANGLE_MAIN_ptriangle drivers/mesh/ptriangle.c)
 set(PTRIANGLE_MAIN_trianglecheck drivers/judge/trianglecheck.c)
 set(PTRIANGLE_MAIN_meshplot drivers/plot/meshplot.c)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES drivers/judge/verdict.c sched/schedule/threads.c)
+set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
-    drivers/resources.c
-    drivers/judge/scratch.c
+    triangle/base/system_posix_process.c
+    drivers/words.c
     drivers/judge/judged_text.c
-    drivers/judge/judged_h5.c
-    drivers/judge/judged_files.c
-    drivers/judge/judged_words.c
-    drivers/one_line.c)
+    drivers/judge/judged_files.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
@@ -238,14 +231,14 @@ set(PTRIANGLE_PLOT_SOURCES
 set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/arguments.c
     drivers/mesh/console.c
-    drivers/one_line.c
+    drivers/words.c
     drivers/mesh/help.c
+    triangle/base/system_posix_process.c
     drivers/interrupt.c
     drivers/mesh/export.c
     drivers/mesh/mesh_files.c
     drivers/mesh/summary.c
     drivers/mesh/self_check.c
-    drivers/resources.c
     drivers/mesh/needs.c
     drivers/mesh/plan.c
     drivers/mesh/stages.c)

@@ -11,20 +11,16 @@
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
  * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`. A handler never waits
- * (docs/theory.md, the end by a signal), and calls and reads only what POSIX and C allow in a handler. */
+ * (docs/theory.md, the end by a signal), and calls and reads only what C and triangle/base/system.h allow in a
+ * handler. */
 #include "drivers/interrupt.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
-#include <time.h>
-#include <unistd.h>
 
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LONG_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2,
                "handlers need lock-free atomics");
@@ -51,20 +47,7 @@ static _Atomic(const char *) go_on; /* the command for that; NULL: there is no c
 static _Atomic(const char *) temporaries[TRI_MAX_OUTPUTS];
 static const char *name; /* these are set before the first handler can run */
 static double patience; /* beyond the grace */
-static bool has_timer;
-static timer_t timer;
-
-static const struct kind {
-    int number;
-    const char *name;
-} ends[] = {
-    {SIGHUP, "SIGHUP"},   {SIGINT, "SIGINT"},   {SIGQUIT, "SIGQUIT"}, {SIGTERM, "SIGTERM"},
-    {SIGALRM, "SIGALRM"}, {SIGUSR1, "SIGUSR1"}, {SIGUSR2, "SIGUSR2"}, {SIGXCPU, "SIGXCPU"},
-    {SIGVTALRM, "SIGVTALRM"}, {SIGPROF, "SIGPROF"},
-};
-static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
-
-enum { N_ENDS = sizeof ends / sizeof *ends, N_CRASHES = sizeof crashes / sizeof *crashes };
+static bool has_alarm;
 
 /* --- what a handler does */
 
@@ -87,19 +70,15 @@ static void remove_temporaries(void)
     for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
         const char *path = atomic_load(&temporaries[i]);
         if (path)
-            unlink(path);
+            (void)tri_path_remove(path);
     }
 }
 
-static void say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text)); }
-
 const char *interrupt_cause(void)
 {
-    int number = (int)who_asked();
-    for (int i = 0; i < N_ENDS; i++)
-        if (ends[i].number == number)
-            return ends[i].name;
-    return number == NOBODY ? "another task" : "the time limit";
+    const int number = (int)who_asked();
+    const char *of_system = tri_interrupt_name(number);
+    return of_system ? of_system : number == NOBODY ? "another task" : "the time limit";
 }
 
 int interrupt_code(void)
@@ -115,7 +94,7 @@ static void say_number(long n)
     do
         *--first = (char)('0' + n % 10);
     while ((n /= 10) > 0);
-    say(first);
+    tri_say(first);
 }
 
 const char *interrupt_written(void)
@@ -130,30 +109,30 @@ void interrupt_tell_kept(void)
     const long n = atomic_load(&kept);
     if (n == 0)
         return;
-    say(name);
-    say(": ");
+    tri_say(name);
+    tri_say(": ");
     say_number(n);
-    say(" triangles are kept; to go on: ");
-    say(atomic_load(&go_on));
-    say("\n");
+    tri_say(" triangles are kept; to go on: ");
+    tri_say(atomic_load(&go_on));
+    tri_say("\n");
 }
 
-static void tell(void)
+static void tell_end(void)
 {
-    say(name);
-    say(": stopped by ");
-    say(interrupt_cause());
-    say(" while ");
-    say(interrupt_stage_now());
+    tri_say(name);
+    tri_say(": stopped by ");
+    tri_say(interrupt_cause());
+    tri_say(" while ");
+    tri_say(interrupt_stage_now());
     const long n = atomic_load(&reached);
     if (n > 0) {
-        say(": about ");
+        tri_say(": about ");
         say_number(n);
-        say(atomic_load(&reached_what));
+        tri_say(atomic_load(&reached_what));
     }
-    say("; ");
-    say(interrupt_written());
-    say("\n");
+    tri_say("; ");
+    tri_say(interrupt_written());
+    tri_say("\n");
     interrupt_tell_kept();
 }
 
@@ -162,8 +141,8 @@ static void end_now(void)
 {
     remove_temporaries();
     if (!(atomic_load(&state) & TOLD))
-        tell();
-    _exit(interrupt_code());
+        tell_end();
+    _Exit(interrupt_code());
 }
 
 /* Ends the program, or has it end itself. */
@@ -179,10 +158,8 @@ static void end_when_free(void)
 
 static void arm(double seconds)
 {
-    struct itimerspec once = {.it_value.tv_sec = (time_t)seconds};
-    once.it_value.tv_nsec = (long)(1e9 * (seconds - (double)once.it_value.tv_sec));
-    if (has_timer)
-        timer_settime(timer, 0, &once, NULL);
+    if (has_alarm)
+        tri_alarm(seconds);
     else
         set_unless(LATE, 0); /* a second signal ends the program in any case */
 }
@@ -208,23 +185,12 @@ static void time_is_up(void)
         arm(patience);
 }
 
-static void handle(int number, siginfo_t *info, void *context)
-{
-    int reason = errno;
-    (void)context;
-    if (number == SIGALRM && info->si_code == SI_TIMER)
-        time_is_up();
-    else
-        ask((unsigned)number);
-    errno = reason;
-}
+static void handle(int number) { ask((unsigned)number); }
 
-static void crash(int number)
+static void remove_at_crash(void)
 {
     if (take_for_good())
         remove_temporaries();
-    signal(number, SIG_DFL);
-    raise(number);
 }
 
 /* --- what the program does */
@@ -232,7 +198,7 @@ static void crash(int number)
 static void hold(void)
 {
     while (set_unless(HELD, ENDING) & ENDING)
-        pause(); /* another thread's handler is ending the program */
+        (void)tri_pause(1); /* another thread's handler is ending the program */
 }
 
 static bool is_due(unsigned now) { return (now & (DUE | DONE)) == DUE; }
@@ -254,46 +220,13 @@ static void publish(const struct tri_output_set *set)
         atomic_store(&temporaries[i], i < set->n ? set->outputs[i].temporary : NULL);
 }
 
-/* Some library calls exit: OpenMP's, where it gets no memory. */
-static void at_exit(void)
-{
-    if (take_for_good())
-        remove_temporaries();
-}
-
-static void catch_end(int number)
-{
-    struct sigaction action = {.sa_sigaction = handle, .sa_flags = SA_SIGINFO}, old;
-    sigfillset(&action.sa_mask);
-    if (sigaction(number, NULL, &old) == 0 && (number == SIGALRM || old.sa_handler != SIG_IGN))
-        sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that nobody reads must end */
-}
-
-/* Handlers of others, such as those of sanitizers, stay. */
-static void catch_crash(int number)
-{
-    struct sigaction action = {.sa_handler = crash}, old;
-    sigfillset(&action.sa_mask);
-    if (sigaction(number, NULL, &old) == 0 && !(old.sa_flags & SA_SIGINFO) && old.sa_handler == SIG_DFL)
-        sigaction(number, &action, NULL);
-}
-
 bool interrupt_start(const char *program, double seconds, double patient)
 {
-    sigset_t alarm;
+    static const struct tri_interrupts handlers = {handle, time_is_up, remove_at_crash};
     name = program;
     patience = fmax(patient - GRACE, 0);
-    has_timer = timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; /* sends SIGALRM */
-    signal(SIGXFSZ, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
-    for (int i = 0; i < N_ENDS; i++)
-        catch_end(ends[i].number);
-    for (int i = 0; i < N_CRASHES; i++)
-        catch_crash(crashes[i]);
-    sigemptyset(&alarm);
-    sigaddset(&alarm, SIGALRM);
-    sigprocmask(SIG_UNBLOCK, &alarm, NULL); /* a caller's mask is inherited */
-    if (atexit(at_exit) != 0 || (seconds > 0 && !has_timer))
+    has_alarm = tri_interrupts_catch(&handlers);
+    if (atexit(remove_at_crash) != 0 || (seconds > 0 && !has_alarm)) /* some library calls exit: OpenMP's, for one */
         return false;
     if (seconds > 0)
         arm(seconds);

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "triangle/base/stop.h"
+#include "triangle/base/status.h"
 #include "triangle/text/output.h"
 
 enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of timeout(1) */

@@ -1,6 +1,5 @@
+#define _POSIX_C_SOURCE 200809L /* stat, dlopen: the one file that loads a module */
 #include "drivers/start.h"
-
-#include "drivers/tasks.h"
 
 #ifndef PTRIANGLE_MODULE
 
@@ -20,6 +19,7 @@ int main(int argc, char **argv)
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/base/system.h"
 #include "triangle/text/names.h"
 
 static bool needs_module(int argc, char **argv)
@@ -33,9 +33,9 @@ static bool needs_module(int argc, char **argv)
 
 /* A name as seen from the folder of the executable, by whatever links that was found; false: the system does not tell
  * where it is. */
-static bool place_of(char path[OWN_PATH], const char *name)
+static bool place_of(char path[TRI_PATH], const char *name)
 {
-    if (!own_path(path) || strlen(path) + strlen(name) + 1 > OWN_PATH)
+    if (!tri_own_path(path) || strlen(path) + strlen(name) + 1 > TRI_PATH)
         return false;
     strcpy(strrchr(path, '/') + 1, name);
     return true;
@@ -57,7 +57,7 @@ static int complain_of_version(const char *path, const char *version)
 /* A user may link another's program into a folder of their own, with a module of their own beside it. Another user who
  * starts the program there must not run that module. Does the file or folder belong to the administrator, to the
  * program's owner or to this user? path receives its path. False: errno says why; EPERM: it does not. */
-static bool is_trusted(const char *name, char path[OWN_PATH])
+static bool is_trusted(const char *name, char path[TRI_PATH])
 {
     struct stat program, at;
     if (!place_of(path, name) || stat("/proc/self/exe", &program) != 0 || stat(path, &at) != 0)
@@ -70,7 +70,7 @@ static bool is_trusted(const char *name, char path[OWN_PATH])
  * along leaves threads and handlers behind. */
 static int run_module(int argc, char **argv)
 {
-    char path[OWN_PATH];
+    char path[TRI_PATH];
     if (!place_of(path, PTRIANGLE_MODULE))
         return complain("/proc/self/exe", "does not tell where this program is");
     if (!is_trusted(".", path) || !is_trusted(PTRIANGLE_MODULE_FOLDER, path) ||

@@ -1,19 +1,12 @@
-#include "drivers/tasks.h"
+/* What launchers tell a program, and how its threads wait. */
+#include "drivers/start.h"
 
 #include <limits.h>
 #include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-bool own_path(char path[OWN_PATH])
-{
-    const ssize_t n = readlink("/proc/self/exe", path, OWN_PATH);
-    const bool whole = n > 0 && n < OWN_PATH;
-    path[whole ? n : 0] = '\0';
-    return whole;
-}
+#include "triangle/base/system.h"
 
 /* A whole number that the variable holds; -1: none, or one that no count of tasks is. */
 static int number_of(const char *name)
@@ -57,31 +50,22 @@ static bool is_program(const char *path, const char *argv0)
     return strcmp(file ? file + 1 : path, name ? name + 1 : argv0) == 0;
 }
 
-bool tasks_is_busy(const char *loadavg, long processors)
-{
-    long running;
-    return sscanf(loadavg, "%*s %*s %*s %ld/", &running) == 1 && running > (processors + 1) / 2;
-}
+bool tasks_is_busy(long running, long processors) { return running > (processors + 1) / 2; }
 
 static bool is_machine_busy(void)
 {
-    char text[128] = "";
-    FILE *file = fopen("/proc/loadavg", "r");
-    if (!file)
-        return false;
-    const bool is_read = fgets(text, sizeof text, file) != NULL;
-    fclose(file);
-    return is_read && tasks_is_busy(text, sysconf(_SC_NPROCESSORS_ONLN));
+    long running, processors;
+    return tri_work(&running, &processors) && tasks_is_busy(running, processors);
 }
 
 /* The variable that is set here tells the new program that it is the second start. The descriptors by which a launcher
  * is reached stay open, and there are no others: main() has opened nothing yet. */
 void tasks_wait_idly(char **argv)
 {
-    char path[OWN_PATH];
+    char path[TRI_PATH];
     int task;
     if (is_way_told() || (tasks_started(&task) == 1 && !is_machine_busy()))
         return;
-    if (own_path(path) && argv[0] && is_program(path, argv[0]) && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
-        execv(path, argv);
+    if (tri_own_path(path) && argv[0] && is_program(path, argv[0]))
+        tri_start_again(path, argv, "OMP_WAIT_POLICY", "passive");
 }

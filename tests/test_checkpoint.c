@@ -16,7 +16,7 @@
 #include "sched/schedule/schedule.h"
 #include "sched/checkpoint/state.h"
 #include "sched/tunables.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "trials.h"
 
 static const char DIRECTORY[] = "state";

@@ -136,7 +136,7 @@ static void test_no_memory(void **state)
     const struct tri_sink to = sink_of(&judge);
     enum tri_status status = TRI_NO_MEMORY;
     int64_t held = atomic_load(&support_held);
-    for (int64_t k = 9; status; k++) { /* those before are the lattice's */
+    for (int64_t k = 10; status; k++) { /* those before are the lattice's, and the thread */
         struct par_queue queue;
         assert_true(par_queue_begin(&queue, &to, 5000));
         const struct tri_sink sink = par_queue_sink(&queue);

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "triangle/base/size_text.h"
+#include "triangle/base/system.h"
+#include "triangle/hdf5/h5_read.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
 
@@ -36,8 +36,8 @@ bool judged_cut_text_suffix(char *path)
 
 static double size_of(const char *path)
 {
-    struct stat status;
-    return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
+    struct tri_file_facts facts;
+    return path != NULL && tri_path_look(path, &facts) ? (double)facts.size : 0;
 }
 
 /* The input's text is read into memory. */
@@ -148,9 +148,9 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
                                            : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     if (status == TRI_OK) {
         struct judged_names names = {own.node,
-                                     ask->may_lack_triangles && access(own.ele, F_OK) != 0 ? NULL : own.ele,
-                                     access(own.poly, F_OK) == 0 ? own.poly : NULL,
-                                     access(neigh, F_OK) == 0 ? neigh : NULL};
+                                     ask->may_lack_triangles && !tri_path_allows(own.ele, TRI_THERE) ? NULL : own.ele,
+                                     tri_path_allows(own.poly, TRI_THERE) ? own.poly : NULL,
+                                     tri_path_allows(neigh, TRI_THERE) ? neigh : NULL};
         status = read_texts(f, ask, &names, error);
         tri_names_free(&own);
     }
@@ -158,17 +158,91 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
     return status;
 }
 
+/* --- an HDF5 file, in slices */
+
+struct judged_h5 {
+    struct tri_h5 *file;
+    int32_t columns;
+};
+
+static enum tri_status open_h5_file(struct judged_h5 **h5, const char *path, struct tri_error *error)
+{
+    *h5 = calloc(1, sizeof **h5);
+    enum tri_status status = *h5 ? tri_h5_open(path, &(*h5)->file, error)
+                                 : tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory");
+    if (status) {
+        free(*h5);
+        *h5 = NULL;
+    } else {
+        (*h5)->columns = tri_h5_count((*h5)->file)->columns;
+    }
+    return status;
+}
+
+static void close_h5_file(struct judged_h5 *h5)
+{
+    if (h5)
+        tri_h5_free(h5->file);
+    free(h5);
+}
+
+/* The last one of each triangle. */
+static enum tri_status read_attributes(struct judged_h5 *h5, int64_t first, int64_t n, double *out,
+                                       struct tri_error *error)
+{
+    int64_t width = h5->columns;
+    double *rows = malloc(((size_t)n * (size_t)width + 1) * sizeof *rows);
+    enum tri_status status = rows ? tri_h5_read(h5->file, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, rows, error)
+                                  : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    for (int64_t i = 0; i < n && !status; i++)
+        out[i] = rows[width * (i + 1) - 1];
+    free(rows);
+    return status;
+}
+
+static enum tri_status read_slice(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
+                                  struct tri_error *error)
+{
+    static const enum tri_h5_kind kinds[TRI_CHECK_N_ARRAYS] = {
+        [TRI_CHECK_POINTS] = TRI_H5_OF_POINTS,
+        [TRI_CHECK_CORNERS] = TRI_H5_OF_TRIANGLES,
+        [TRI_CHECK_POINT_MARKERS] = TRI_H5_OF_POINT_MARKERS,
+        [TRI_CHECK_SEGMENT_ENDS] = TRI_H5_OF_SEGMENTS,
+        [TRI_CHECK_SEGMENT_MARKERS] = TRI_H5_OF_SEGMENT_MARKERS,
+        [TRI_CHECK_POINT_ATTRIBUTES] = TRI_H5_OF_POINT_ATTRIBUTES,
+    }; /* of others there are none */
+    struct judged_h5 *h5 = user;
+    return array == TRI_CHECK_ATTRIBUTES ? read_attributes(h5, first, n, out, error)
+                                         : tri_h5_read(h5->file, kinds[array], first, n, out, error);
+}
+
+static struct tri_check_source h5_source(struct judged_h5 *h5)
+{
+    const struct tri_h5_counts *n = tri_h5_count(h5->file);
+    unsigned given = 1u << TRI_CHECK_POINTS | 1u << TRI_CHECK_CORNERS;
+    given |= (n->columns > 0 ? 1u : 0u) << TRI_CHECK_ATTRIBUTES;
+    given |= (n->point_markers ? 1u : 0u) << TRI_CHECK_POINT_MARKERS;
+    given |= (n->attributes > 0 ? 1u : 0u) << TRI_CHECK_POINT_ATTRIBUTES;
+    given |= (n->lists_segments ? 1u : 0u) << TRI_CHECK_SEGMENT_ENDS;
+    given |= (n->lists_segments && n->segment_markers ? 1u : 0u) << TRI_CHECK_SEGMENT_MARKERS;
+    return (struct tri_check_source){.n_points = n->points, .n_triangles = n->triangles, .n_segments = n->segments,
+                                     .n_point_attributes = n->attributes, .given = given, .read = read_slice,
+                                     .user = h5};
+}
+
 static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    enum tri_status status = judged_h5_open(&f->h5, ask->base, error);
+    enum tri_status status = open_h5_file(&f->h5, ask->base, error);
     if (status != TRI_OK)
         return status;
-    f->source = judged_h5_source(f->h5);
+    f->source = h5_source(f->h5);
     f->for_solvers = true;
     f->source.memory = ask->memory;
     f->n_nodes = f->source.n_points;
     return TRI_OK;
 }
+
+/* --- whatever it is */
 
 static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
 
@@ -177,10 +251,10 @@ static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_na
 static const struct tri_format *format_of(const struct judged_ask *ask)
 {
     const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
-    if (format == NULL || access(ask->base, F_OK) == 0)
+    if (format == NULL || tri_path_allows(ask->base, TRI_THERE))
         return format;
     char *node = tri_joined(ask->base, ".node");
-    const bool is_base = node != NULL && access(node, F_OK) == 0;
+    const bool is_base = node != NULL && tri_path_allows(node, TRI_THERE);
     free(node);
     return is_base ? NULL : format;
 }
@@ -232,5 +306,5 @@ void judged_files_free(struct judged_files *f)
     tri_elements_free(&f->elements);
     tri_pslg_free(&f->input);
     judged_text_close(&f->text);
-    judged_h5_close(f->h5);
+    close_h5_file(f->h5);
 }

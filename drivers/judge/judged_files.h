@@ -8,7 +8,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "drivers/judge/judged_h5.h"
 #include "drivers/judge/judged_text.h"
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/check/check.h"
@@ -17,6 +16,8 @@
 
 /* Bytes: less is not worth a refusal. */
 #define JUDGED_WORTH_A_LOOK 1e7
+
+struct judged_h5;
 
 struct judged_files {
     struct tri_check_source source; /* what they hold; its memory and scratch are those asked for */
@@ -32,7 +33,7 @@ struct judged_files {
     bool boundary_alone; /* it may have segments inside that its format does not keep */
     bool for_solvers;    /* its format leaves out points of the input that no triangle uses */
     struct judged_text text;
-    struct judged_h5 *h5;
+    struct judged_h5 *h5; /* NULL: the mesh is not in HDF5 */
 };
 
 struct judged_ask {

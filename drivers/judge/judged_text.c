@@ -1,13 +1,59 @@
 /* Headers and tables, as in triangle/text/read.c, with numbers of 64 bits. */
 #include "drivers/judge/judged_text.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "triangle/base/grow.h"
+#include "triangle/base/system.h"
 #include "triangle/text/window.h"
 
 enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows of them at most */
+
+/* --- rows of numbers, one after the other, with nothing between */
+
+/* In that folder; NULL: in memory. */
+static enum tri_status open_rows(struct scratch *s, const char *folder, size_t width, struct tri_error *error)
+{
+    *s = (struct scratch){.file = folder ? tri_scratch_file(folder) : TRI_NO_FILE, .width = width};
+    if (folder && s->file == TRI_NO_FILE)
+        return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot make a scratch file there: %s", strerror(errno));
+    return TRI_OK;
+}
+
+/* At the end, any number of times; then they are read. */
+static enum tri_status append_rows(struct scratch *s, const void *rows, int64_t n, struct tri_error *error)
+{
+    const int64_t at = s->n * (int64_t)s->width, size = n * (int64_t)s->width;
+    if (s->file == TRI_NO_FILE && !tri_grow_far(&s->bytes, &s->room, at + size, 1))
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    if (s->file == TRI_NO_FILE && size > 0)
+        memcpy(s->bytes + at, rows, (size_t)size);
+    if (s->file != TRI_NO_FILE && !tri_write_at(s->file, rows, (size_t)size, (uint64_t)at))
+        return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "cannot write a scratch file: %s", strerror(errno));
+    s->n += n;
+    return TRI_OK;
+}
+
+static enum tri_status read_rows(const struct scratch *s, int64_t first, int64_t n, void *rows, struct tri_error *error)
+{
+    if (s->file == TRI_NO_FILE)
+        memcpy(rows, s->bytes + first * (int64_t)s->width, (size_t)n * s->width);
+    else if (!tri_read_again(s->file, rows, (size_t)n * s->width, (uint64_t)first * s->width))
+        return tri_fail(error, TRI_CANNOT_READ, "", 0, "cannot read a scratch file");
+    return TRI_OK;
+}
+
+static void close_rows(struct scratch *s)
+{
+    if (s->width > 0)
+        (void)tri_file_close(s->file);
+    free(s->bytes);
+    *s = (struct scratch){.file = TRI_NO_FILE};
+}
+
+/* --- text */
 
 /* Rows of the stretch in hand: of one table, in the arrays that it has. */
 struct rows {
@@ -138,7 +184,7 @@ static enum tri_status append(struct rows *r, enum tri_check_array array, const 
                               struct tri_error *error)
 {
     bool given = (r->text->given >> array & 1) != 0;
-    return given ? scratch_append(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
+    return given ? append_rows(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
 }
 
 static enum tri_status append_middles(struct rows *r, size_t n, struct tri_error *error)
@@ -183,7 +229,7 @@ static enum tri_status open_array(struct judged_text *t, enum tri_check_array ar
                                   struct tri_error *error)
 {
     t->given |= 1u << array;
-    return scratch_open(&t->array[array], folder, width, error);
+    return open_rows(&t->array[array], folder, width, error);
 }
 
 /* --- files */
@@ -206,11 +252,11 @@ static enum tri_status check_attributes(const struct rows *r, struct tri_error *
     const int64_t n = r->fields[2];
     const char *name = r->window->text.name;
     const long line = (long)r->window->cursor.line;
-    struct stat file;
+    struct tri_file_facts facts;
     if (n < 0)
         return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of attributes is negative");
-    if (n > FREE_ATTRIBUTES && r->fields[0] > 0 && fstat(r->window->file, &file) == 0 &&
-        (n > INT32_MAX || n > (int64_t)file.st_size / r->fields[0]))
+    if (n > FREE_ATTRIBUTES && r->fields[0] > 0 && tri_file_look(r->window->file, &facts) &&
+        (n > INT32_MAX || n > (int64_t)facts.size / r->fields[0]))
         return tri_fail(error, TRI_BAD_INPUT, name, line, "%lld attributes are announced, more than the file can hold",
                         (long long)n);
     return TRI_OK;
@@ -367,14 +413,14 @@ enum tri_status judged_text_read(struct judged_text *t, const struct judged_name
 void judged_text_close(struct judged_text *t)
 {
     for (int k = 0; k < TRI_CHECK_N_ARRAYS; k++)
-        scratch_close(&t->array[k]);
+        close_rows(&t->array[k]);
 }
 
 static enum tri_status read_slice(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                   struct tri_error *error)
 {
     const struct judged_text *t = user;
-    return scratch_read(&t->array[array], first, n, out, error);
+    return read_rows(&t->array[array], first, n, out, error);
 }
 
 struct tri_check_source judged_text_source(struct judged_text *t)

@@ -4,8 +4,17 @@
 
 #include <stdbool.h>
 
-#include "drivers/judge/scratch.h"
+#include "triangle/base/system.h"
 #include "triangle/check/check.h"
+
+/* Rows of numbers in memory, or in a nameless file: written once from the first to the last, then read in slices. */
+struct scratch {
+    tri_file file; /* TRI_NO_FILE: in memory */
+    size_t width;  /* bytes of a row; 0: not open */
+    int64_t n;     /* rows */
+    char *bytes;   /* [room] in memory */
+    int64_t room;
+};
 
 struct judged_names { /* of files; NULL: there is none */
     const char *node, *ele, *poly, *neigh;

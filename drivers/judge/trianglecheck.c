@@ -1,19 +1,18 @@
 /* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <float.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "drivers/judge/judged_files.h"
-#include "drivers/judge/judged_words.h"
-#include "drivers/judge/verdict.h"
-#include "drivers/one_line.h"
-#include "drivers/resources.h"
 #include "drivers/start.h"
+#include "drivers/words.h"
 #include "sched/schedule/threads.h"
 #include "triangle/base/size_text.h"
+#include "triangle/base/system.h"
 #include "triangle/check/check.h"
 #include "triangle/text/decimal.h"
 
@@ -86,7 +85,7 @@ static double memory_to_use(const struct settings *s)
     enum { USUAL_PERCENT = 80 };
     if (s->memory > 0)
         return s->memory;
-    return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
+    return tri_memory_left() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
 /* Of the program itself: code, stacks, what allocators keep. */
@@ -124,9 +123,110 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
         options.n_threads = threads;
     }
     const struct tri_pslg *input = s->input != NULL ? &f->input : NULL;
-    f->source.beside = resources_memory_used() + TO_COME;
+    f->source.beside = tri_memory_used(NULL) + TO_COME;
     enum tri_status status = check_memory(f, input, error);
     return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
+}
+
+/* --- what the report says, in lines or in JSON */
+
+static void print_items(const struct tri_check_report *r, bool quiet)
+{
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        const struct tri_check_item *item = &r->item[k];
+        const char *name = tri_check_name((enum tri_check_kind)k);
+        if (item->state == TRI_CHECK_FAILED) {
+            printf("FAIL  %s: %" PRId64 ", first: %s\n", name, item->count, item->text);
+        } else if (!quiet) {
+            printf("%s  %s\n", item->state == TRI_CHECK_OK ? "ok  " : "-   ", name);
+        }
+    }
+}
+
+static void print_summary(const struct settings *s, const struct judged_files *f, const struct tri_check_report *r)
+{
+    printf("vertices %" PRId64 " (%" PRId64 " used), triangles %" PRId64 ", edges %" PRId64 ", boundary edges %" PRId64
+           ", subsegments %" PRId64 "\n",
+           f->n_nodes, r->n_used_points, f->source.n_triangles, r->n_edges, r->n_boundary_edges, f->source.n_segments);
+    if (f->source.n_triangles == 0)
+        return;
+    printf("angles: smallest %.10g (triangle %" PRId64 "), largest %.10g (triangle %" PRId64 ")\n", r->smallest_angle,
+           r->smallest_angle_at + f->base, r->largest_angle, r->largest_angle_at + f->base);
+    printf("areas: smallest %.10g (triangle %" PRId64 "), largest %.10g (triangle %" PRId64 "), total %.17g\n",
+           r->smallest_area, r->smallest_area_at + f->base, r->largest_area, r->largest_area_at + f->base,
+           r->total_area);
+    if (s->check.min_angle <= 0)
+        return;
+    printf("angles below %g: %" PRId64, s->check.min_angle, r->n_small);
+    if (r->n_small == 0) {
+        puts("");
+    } else if (r->n_small == r->n_small_explained) {
+        puts(", all at small input angles");
+    } else {
+        printf(", %" PRId64 " of them at small input angles\n", r->n_small_explained);
+    }
+}
+
+/* Points that no triangle uses, which make a solver's matrix singular. 0 without triangles. */
+static int64_t unused_points(const struct judged_files *f, const struct tri_check_report *r)
+{
+    return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;
+}
+
+static void print_lines(const struct settings *s, const struct judged_files *f, const struct tri_check_report *r)
+{
+    print_items(r, s->quiet);
+    if (!s->quiet) {
+        if (unused_points(f, r) > 0)
+            printf("warn  vertices in no triangle: %" PRId64 " (-j of ptriangle leaves them out)\n",
+                   unused_points(f, r));
+        print_summary(s, f, r);
+        puts(tri_check_passed(r) ? "no fault" : "FAULTS");
+    }
+}
+
+static void print_json_string(const char *text)
+{
+    putchar('"');
+    for (; *text != '\0'; text++) {
+        if (*text == '"' || *text == '\\')
+            putchar('\\');
+        if ((unsigned char)*text >= ' ')
+            putchar(*text);
+    }
+    putchar('"');
+}
+
+/* JSON has no infinities. */
+static void print_json_real(const char *key, double value)
+{
+    printf(isfinite(value) ? ", \"%s\": %.17g" : ", \"%s\": null", key, value);
+}
+
+static void print_json(const struct settings *s, const struct judged_files *f, const struct tri_check_report *r)
+{
+    static const char *const states[] = {"skipped", "ok", "failed"};
+    printf("{\"passed\": %s, \"base\": ", tri_check_passed(r) ? "true" : "false");
+    print_json_string(s->base);
+    printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"unused_vertices\": %" PRId64
+           ", \"triangles\": %" PRId64 ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64
+           ", \"subsegments\": %" PRId64,
+           f->n_nodes, r->n_used_points, unused_points(f, r), f->source.n_triangles, r->n_edges,
+           r->n_boundary_edges, f->source.n_segments);
+    print_json_real("smallest_angle", r->smallest_angle);
+    print_json_real("largest_angle", r->largest_angle);
+    print_json_real("smallest_area", r->smallest_area);
+    print_json_real("largest_area", r->largest_area);
+    print_json_real("total_area", r->total_area);
+    printf(", \"below_min_angle\": %" PRId64 ", \"below_min_angle_explained\": %" PRId64 ", \"checks\": [", r->n_small,
+           r->n_small_explained);
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        printf("%s{\"name\": \"%s\", \"state\": \"%s\", \"count\": %" PRId64 ", \"first\": ", k > 0 ? ", " : "",
+               tri_check_name((enum tri_check_kind)k), states[r->item[k].state], r->item[k].count);
+        print_json_string(r->item[k].text);
+        putchar('}');
+    }
+    puts("]}");
 }
 
 /* --- arguments */
@@ -183,7 +283,7 @@ static bool take_count(const char *text, int64_t *value)
 
 static bool take_real(const char *text, double *value)
 {
-    return resources_take_real(text, "", NULL, 0, DBL_MAX, value);
+    return words_take_real(text, "", NULL, 0, DBL_MAX, value);
 }
 
 /* Applies an option without value; false: it is none. */
@@ -221,7 +321,7 @@ static bool apply(void *settings, int option)
     case 'a': return take_real(optarg, &s->check.max_area);
     case SMALL_INPUT_ANGLE: return take_real(optarg, &s->check.small_input_angle);
     case THREADS: return take_count(optarg, &s->threads) && s->threads > 0;
-    case MEMORY: return resources_take_size(optarg, 1, &s->memory, &s->memory_share);
+    case MEMORY: return words_take_size(optarg, 1, &s->memory, &s->memory_share);
     case SCRATCH: s->scratch = optarg; return true;
     default: return apply_flag(s, option);
     }
@@ -230,10 +330,10 @@ static bool apply(void *settings, int option)
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+    static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
                                               "-:p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
-    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    enum words_end end = words_take_all(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)
         return end == WORDS_ANSWERED ? -1 : TROUBLE;
     s->is_base = judged_cut_text_suffix(mesh);
@@ -247,7 +347,7 @@ static int run(const struct settings *s, struct judged_files *f)
     struct tri_check_report report;
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
-    const char *scratch = s->scratch != NULL ? s->scratch : resources_scratch();
+    const char *scratch = s->scratch != NULL ? s->scratch : tri_scratch_folder();
     struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
                              .scratch = scratch, .executor = &executor};
     enum tri_status status = judged_read(f, &ask, &error);
@@ -262,8 +362,7 @@ static int run(const struct settings *s, struct judged_files *f)
         one_line_error(stderr, PTRIANGLE_NAME ": ", &error);
         return TROUBLE;
     }
-    struct verdict_style style = {s->base, s->check.min_angle, s->quiet};
-    (s->json ? verdict_print_json : verdict_print_lines)(&style, f, &report);
+    (s->json ? print_json : print_lines)(s, f, &report);
     if (fflush(stdout) == 0 && !ferror(stdout))
         return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
     fputs(PTRIANGLE_NAME ": cannot write to standard output\n", stderr);

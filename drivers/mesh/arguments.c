@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "triangle/base/system.h"
 #include "triangle/text/names.h"
 
 char *next_iteration(const char *name)
@@ -60,7 +60,7 @@ static void apply_suffix(struct arguments *arguments)
     char *name = arguments->input;
     struct tri_switches *switches = &arguments->switches;
     const struct tri_format *format = tri_format_of(name);
-    if (format && (access(name, F_OK) == 0 || !tri_name_ends(name, ".14"))) {
+    if (format && (tri_path_allows(name, TRI_THERE) || !tri_name_ends(name, ".14"))) {
         arguments->format = format;
         name[strlen(name) - strlen(format->suffix)] = 0;
         switches->mesh = switches->segments = true;

@@ -1,22 +1,17 @@
 /* Printing to people and to scripts that search for lines. */
 #include "drivers/mesh/console.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
-#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "drivers/one_line.h"
+#include "drivers/words.h"
+#include "triangle/base/system.h"
+
 
 void console_open(void)
 {
-    for (int file = 0; file <= STDERR_FILENO; file++)
-        if (fcntl(file, F_GETFD) < 0 && errno == EBADF)
-            (void)!open("/dev/null", O_RDWR); /* takes the lowest number that is free */
+    tri_standard_open();
     setvbuf(stdout, NULL, _IOLBF, 0); /* whoever reads it from a pipe or a log sees each line at once */
 }
 
@@ -50,35 +45,22 @@ void console_remark(const struct console *console, const char *format, ...)
 /* An error has been told, or that standard output is lost: nothing more is said of that. */
 static bool told;
 
-static bool are_one_place(int a, int b)
-{
-    struct stat at_a, at_b;
-    return fstat(a, &at_a) == 0 && fstat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
-}
-
 void console_error(const struct console *console, const struct tri_error *error)
 {
     one_line_error(stdout, "Error:  ", error);
     fflush(stdout);
     told = true;
-    if (are_one_place(STDOUT_FILENO, STDERR_FILENO))
+    if (tri_standard_is_one())
         return;
     if (!error->file[0])
         fprintf(stderr, "%s: ", console->program);
     one_line_error(stderr, "", error);
 }
 
-/* Has the reader of standard output closed the pipe? */
-static bool reader_is_gone(void)
-{
-    struct pollfd output = {STDOUT_FILENO, POLLOUT, 0};
-    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
-}
-
 enum tri_status console_flush(struct tri_error *error)
 {
     bool written = fflush(stdout) == 0 && !ferror(stdout);
-    return written || reader_is_gone()
+    return written || tri_standard_reader_is_gone()
                ? TRI_OK
                : tri_fail(error, TRI_CANNOT_WRITE, NULL, 0, "cannot write to standard output");
 }

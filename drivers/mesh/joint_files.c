@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/base/scratch_file.h"
+#include "triangle/base/system.h"
 
 static char spooled[] = ""; /* no name, but places */
 
@@ -43,9 +43,10 @@ static bool make_tickets(struct joint_files *j)
 
 static bool open_spool(const struct joint_files *j, struct tri_output *spool)
 {
-    *spool = (struct tri_output){.path = (char *)j->scratch, .temporary = spooled, .direct = -1, .stop = j->stop};
+    *spool = (struct tri_output){.path = (char *)j->scratch, .temporary = spooled, .direct = TRI_NO_FILE,
+                                  .stop = j->stop};
     spool->file = tri_scratch_file(j->scratch);
-    return spool->file >= 0;
+    return spool->file != TRI_NO_FILE;
 }
 
 static bool join_all(struct joint_files *j)
@@ -86,9 +87,9 @@ enum tri_status joint_files_open(struct joint_files *joint, bool wanted, enum tr
 {
     bool ready = true;
     for (int i = 0; i < JOINT_FILES; i++)
-        joint->file[i].file = -1;
+        joint->file[i].file = TRI_NO_FILE;
     for (int i = 0; i < JOINT_TEXTS; i++)
-        joint->spool[i].file = -1;
+        joint->spool[i].file = TRI_NO_FILE;
     joint->ticket = calloc(JOINT_FILES, sizeof *joint->ticket);
     if (!status && !joint->ticket)
         status = no_memory(error);

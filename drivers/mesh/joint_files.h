@@ -8,7 +8,7 @@
  *         how many bytes they have; then it copies them behind those of the ranks before it. The first line, whose
  *         numbers are known, and what follows the last rows are rank 0's.
  * What a rank has to write it writes through a descriptor of its own, by the temporary name that rank 0 has given the
- * file. Where not all ranks see that file (triangle/text/joined.h), none of them writes: then, as for formats that need
+ * file. Where not all ranks see that file (triangle/text/output.h), none of them writes: then, as for formats that need
  * the whole mesh, tiles go to rank 0 (sched/ranks/relay.h). */
 #ifndef DRIVERS_MESH_JOINT_FILES_H
 #define DRIVERS_MESH_JOINT_FILES_H
@@ -17,7 +17,7 @@
 #include "ptriangle/tiles.h"
 #include "sched/ranks/carrier.h"
 #include "triangle/hdf5/h5_write.h"
-#include "triangle/text/joined.h"
+#include "triangle/text/output.h"
 #include "triangle/text/stream.h"
 
 enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };

@@ -1,14 +1,13 @@
 /* One of several tasks: whose words are heard, and how they part. */
 #include "drivers/mesh/launch.h"
 
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
-#include <unistd.h>
+#include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/tasks.h"
+#include "drivers/start.h"
+#include "triangle/base/system.h"
 
 static void fall_silent(void)
 {
@@ -22,7 +21,7 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     *launch = (struct launch){0};
     if (tasks == 1)
         return TRI_OK;
-    launch->voice = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); /* a closed one stays closed */
+    launch->voice = tri_standard_error_again();
     if (task != 0)
         fall_silent();
     enum tri_status status = launch_ranks(launch, tasks, error);
@@ -56,11 +55,11 @@ int launch_agree(struct launch *launch, int code, struct tri_error *error)
     return code;
 }
 
-/* Sleeps so many tenths of a second. False: a signal has come before the time is over. */
-static bool pause_for(int tenths)
+static void say_loss(const struct launch *launch)
 {
-    const struct timespec time = {tenths / 10, tenths % 10 * 100000000L};
-    return nanosleep(&time, NULL) == 0;
+    char line[80];
+    snprintf(line, sizeof line, "ptriangle: task %d cannot reach the others\n", launch->rank);
+    (void)tri_write_next(launch->voice, line, strlen(line));
 }
 
 /* When this task aborts, the launcher kills the others, and task 0 may say nothing, or only that it was asked to end.
@@ -70,11 +69,11 @@ static bool pause_for(int tenths)
  * ends. */
 static void tell_loss(const struct launch *launch, bool told)
 {
-    enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 };
+    enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 }; /* tenths of a second, but for LAST */
     const int before = (launch->rank < LAST ? launch->rank : LAST) - 1;
-    if (launch->rank > 0 ? pause_for(ENDING + EACH * before) : !told)
-        dprintf(launch->voice, "ptriangle: task %d cannot reach the others\n", launch->rank);
-    (void)pause_for(READING);
+    if (launch->rank > 0 ? tri_pause((ENDING + EACH * before) / 10.0) : !told)
+        say_loss(launch);
+    (void)tri_pause(READING / 10.0);
 }
 
 int launch_leave(struct launch *launch, int code, struct tri_error *error)

@@ -4,11 +4,12 @@
 #define DRIVERS_MESH_LAUNCH_H
 
 #include "sched/ranks/carrier.h"
+#include "triangle/base/system.h"
 
 struct launch {
     int rank;                     /* 0 where there is one task */
     struct par_carrier *carrier;  /* NULL there */
-    int voice;                    /* of several: standard error, also of a task whose words are not heard */
+    tri_file voice;               /* of several: standard error, also of a task whose words are not heard */
 };
 
 /* Looks who started the program; of several tasks only the first one's words are heard from here on. TRI_BAD_INPUT:

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "drivers/mesh/streams.h"
-#include "drivers/resources.h"
+#include "drivers/words.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
@@ -130,12 +130,12 @@ static bool take_value(struct long_options *options, struct tri_switches *switch
     case THREADS: return take_whole(text, LONG_OPTIONS_MAX_THREADS, &options->threads);
     case PARTS: return take_whole(text, TRI_MOST_PARTS, &options->n_parts);
     case MAX_AREA:
-        return resources_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) &&
+        return words_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) &&
                (switches->area = true);
-    case MIN_ANGLE: return resources_take_real(text, "", NULL, 0, 60, &switches->min_angle) && (switches->angle = true);
-    case EVERY: return resources_take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
-    case TIME_LIMIT: return resources_take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
-    case MEMORY: return resources_take_size(text, 1e6, &options->memory, &options->memory_share);
+    case MIN_ANGLE: return words_take_real(text, "", NULL, 0, 60, &switches->min_angle) && (switches->angle = true);
+    case EVERY: return words_take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
+    case TIME_LIMIT: return words_take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
+    case MEMORY: return words_take_size(text, 1e6, &options->memory, &options->memory_share);
     case HOLES: return take_word(text, "points", "auto", &switches->even_odd);
     case NUMBERING: return take_word(text, "curve", "blocks", &options->by_block);
     default: return false;

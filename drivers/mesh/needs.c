@@ -5,8 +5,7 @@
 #include <math.h>
 
 #include "drivers/mesh/self_check.h"
-#include "drivers/resources.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/size/estimate.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop; time of the numbering against that of
@@ -169,7 +168,7 @@ static double seconds_so_far(const struct run *run)
     double sum = 0;
     for (int stage = 0; stage < RUN_STAGES; stage++)
         sum += run->seconds[stage];
-    return fmin(sum, resources_processor_seconds());
+    return fmin(sum, tri_process_seconds());
 }
 
 static double seconds_of(const struct run *run, double triangles, double disk)
@@ -201,7 +200,7 @@ static bool is_swept(const struct run *run)
 bool estimate_can_park(const struct run *run, double held)
 {
     const bool bounded = run->hooks->options->memory > 0;
-    return resources_memory_end() != RESOURCES_ADDRESS_SPACE || (bounded && held <= resources_memory());
+    return tri_memory_end() != TRI_ENDS_ADDRESS_SPACE || (bounded && held <= tri_memory_left());
 }
 
 /* The least memory that does, where some of what is held could go to files. */

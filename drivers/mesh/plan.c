@@ -4,19 +4,15 @@
  * a number. A likely estimate refuses, too, against a bound that somebody has set (--memory, or a limit of the
  * process), and against the most that a mesh holds where areas decide, since the mesh would fail there after all the
  * work. A mesh that fits stays in memory, which is quicker. */
-#define _DEFAULT_SOURCE /* access */
-
 #include "drivers/mesh/plan.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "drivers/resources.h"
 #include "triangle/base/size_text.h"
+#include "triangle/base/system.h"
 
 /* By how many times a mesh in memory may exceed its estimate: in general; where it must not; and where, as well, angles
  * above 31 degrees or diametral circles without vertices are asked for, of which an estimate knows least. Memory below
@@ -40,29 +36,29 @@ static const double BUFFER_BYTES = 3e7;
 /* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
 static bool is_strict(const struct run *run)
 {
-    return run->hooks->options->memory > 0 || resources_memory_end() != RESOURCES_SYSTEM;
+    return run->hooks->options->memory > 0 || tri_memory_end() != TRI_ENDS_SYSTEM;
 }
 
 /* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
 static double system_memory_left(const struct run *run)
 {
-    const bool counts_all = resources_memory_end() != RESOURCES_SYSTEM;
-    const double untouched = counts_all ? resources_stacks(run->hooks->threads) + BUFFER_BYTES : 0;
-    return fmax(resources_memory() - untouched, 0);
+    const bool counts_all = tri_memory_end() != TRI_ENDS_SYSTEM;
+    const double untouched = counts_all ? tri_memory_of_stacks(run->hooks->threads) + BUFFER_BYTES : 0;
+    return fmax(tri_memory_left() - untouched, 0);
 }
 
 double plan_memory_left(const struct run *run)
 {
     double allowed = run->hooks->options->memory, left = system_memory_left(run);
-    return allowed > 0 ? fmin(left, fmax(allowed - resources_memory_used(), 0)) : left;
+    return allowed > 0 ? fmin(left, fmax(allowed - tri_memory_used(NULL), 0)) : left;
 }
 
 /* --- the input */
 
 static double size_of(const char *name)
 {
-    struct stat status;
-    return stat(name, &status) == 0 ? (double)status.st_size : 0;
+    struct tri_file_facts facts;
+    return tri_path_look(name, &facts) ? (double)facts.size : 0;
 }
 
 /* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
@@ -105,7 +101,7 @@ enum tri_status plan_check_input(const struct run *run)
     const double needed = input_bytes(run);
     if (needed < WORTH_A_LOOK && !is_strict(run))
         return TRI_OK;
-    const double all = resources_memory_used() + plan_memory_left(run);
+    const double all = tri_memory_used(NULL) + plan_memory_left(run);
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
         return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0,
                         "to triangulate the input, %s points and %s segments,%s takes about %s of memory; there are %s",
@@ -187,7 +183,7 @@ static void suggest(const struct run *run, double needed, char *text, size_t siz
 {
     *text = 0;
     if (run->hooks->options->memory > 0 && needed <= system_memory_left(run))
-        snprintf(text, size, "; --memory %.0fM would do", ceil(1e-6 * (resources_memory_used() + needed)) + 1);
+        snprintf(text, size, "; --memory %.0fM would do", ceil(1e-6 * (tri_memory_used(NULL) + needed)) + 1);
 }
 
 static enum tri_status fail_memory(const struct run *run, const struct needs *n, bool sure, double needed, double left,
@@ -249,20 +245,17 @@ struct disk_place {
     double bytes;     /* that will be needed there */
 };
 
-static bool device_of(const struct disk_place *place, dev_t *device)
+static bool look_at(const struct disk_place *place, struct tri_file_facts *facts)
 {
-    char folder[RESOURCES_PATH];
-    struct stat info;
-    resources_folder(place->path, folder);
-    bool known = stat(folder, &info) == 0;
-    *device = known ? info.st_dev : 0;
-    return known;
+    char folder[TRI_PATH];
+    tri_path_folder(place->path, folder);
+    return tri_path_look(folder, facts);
 }
 
 static bool are_on_one_disk(const struct disk_place *a, const struct disk_place *b)
 {
-    dev_t one, other;
-    return a == b || (device_of(a, &one) && device_of(b, &other) && one == other);
+    struct tri_file_facts one, other;
+    return a == b || (look_at(a, &one) && look_at(b, &other) && one.device == other.device);
 }
 
 /* The first place on a disk that has less left than all places on it need; NULL: none. *needed receives that. */
@@ -272,7 +265,7 @@ static const struct disk_place *too_small(const struct disk_place places[DISK_PL
         *needed = 0;
         for (int k = 0; places[i].bytes > 0 && k < DISK_PLACES; k++)
             *needed += places[k].bytes > 0 && are_on_one_disk(&places[i], &places[k]) ? places[k].bytes : 0;
-        if (*needed > 0 && *needed > resources_disk(places[i].path))
+        if (*needed > 0 && *needed > tri_disk_left(places[i].path))
             return &places[i];
     }
     return NULL;
@@ -310,12 +303,12 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
         return tri_fail(run->error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
-                        tri_size_text(needed).text, tri_size_text(resources_disk(place->path)).text);
+                        tri_size_text(needed).text, tri_size_text(tri_disk_left(place->path)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;
     if (place)
         console_warn(&run->console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
                      place->path, place->what, tri_size_text(needed).text,
-                     tri_size_text(resources_disk(place->path)).text);
+                     tri_size_text(tri_disk_left(place->path)).text);
     return TRI_OK;
 }
 
@@ -323,7 +316,7 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
 static enum tri_status check_scratch(const struct run *run)
 {
     const char *folder = run->hooks->options->scratch;
-    if (access(folder, W_OK | X_OK) != 0)
+    if (!tri_path_allows(folder, TRI_TAKES_FILES))
         return tri_fail(run->error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
     return TRI_OK;
@@ -393,7 +386,7 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = obstacle_of(run);
     bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
-    *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
+    *plan = (struct run_plan){.swept = stream && !obstacle, .memory = tri_memory_used(NULL) + left,
                               .triangles = e->likely.triangles};
     plan->filed = !plan->swept && may_lie_in_files(run, e);
     enum tri_status status = plan->swept ? check_stream(run, e, left) : check_whole(run, e, left, obstacle);
@@ -449,12 +442,12 @@ void plan_print(const struct run *run, const struct estimate *e)
     printf("  Vertices: %s\n", tri_count_text(e->vertices).text);
     if (run->options.refine)
         printf("  Way: %s\n", way_of(run, e));
-    const double used = resources_memory_used();
+    const double used = tri_memory_used(NULL);
     print_bytes("Memory", fmax(used + more, input_bytes(run)), used + left, "in all");
-    print_bytes("Disk", n->files, resources_disk(places[0].path), "left");
+    print_bytes("Disk", n->files, tri_disk_left(places[0].path), "left");
     if (places[1].bytes > 0)
-        print_bytes("Disk for what does not fit in memory", places[1].bytes, resources_disk(places[1].path), "left");
+        print_bytes("Disk for what does not fit in memory", places[1].bytes, tri_disk_left(places[1].path), "left");
     if (places[2].bytes > 0)
-        print_bytes("Disk for the checkpoint", places[2].bytes, resources_disk(places[2].path), "left");
+        print_bytes("Disk for the checkpoint", places[2].bytes, tri_disk_left(places[2].path), "left");
     print_seconds(e->seconds, threads);
 }

@@ -4,17 +4,15 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <unistd.h>
 
-#include "drivers/resources.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/base/size_text.h"
 
 static const double SECONDS_BETWEEN_LINES = 0.1;
 
 struct progress progress_start(const char *program, enum long_options_progress wanted, bool quiet)
 {
-    bool terminal = isatty(STDERR_FILENO);
+    bool terminal = tri_standard_is_terminal();
     struct progress progress = {.program = program, .mode = PROGRESS_SILENT};
     if (!quiet && wanted != PROGRESS_NO)
         progress.mode = terminal ? PROGRESS_LINE : wanted == PROGRESS_YES ? PROGRESS_LOG : PROGRESS_SILENT;
@@ -59,7 +57,7 @@ static int print_time(double seconds)
 static int print_outlook(const struct progress *p, double time)
 {
     const double made = (double)(p->triangles - p->first), left = p->estimate - (double)p->triangles;
-    const double memory = resources_memory_used();
+    const double memory = tri_memory_used(NULL);
     int width = 0;
     if (made > 0 && left > 0) {
         width = fprintf(stderr, ", %.0f%%, ", floor(100 * (double)p->triangles / p->estimate));

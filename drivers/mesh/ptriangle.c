@@ -19,7 +19,6 @@
 #include "drivers/mesh/shared_input.h"
 #include "drivers/mesh/stages.h"
 #include "drivers/mesh/streams.h"
-#include "drivers/resources.h"
 #include "drivers/start.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule/cells.h"
@@ -28,6 +27,7 @@
 #include "sched/tiles/park.h"
 #include "sched/tiles/queue.h"
 #include "triangle/base/size_text.h"
+#include "triangle/base/system.h"
 #include "triangle/refine/census.h"
 #include "triangle/size/estimate.h"
 #include "triangle/text/decimal.h"
@@ -466,7 +466,7 @@ static char *scratch_of(const struct long_options *options, const struct argumen
 /* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */
 static enum tri_status settle_memory(struct long_options *options, struct tri_error *error)
 {
-    const double total = options->memory_share > 0 ? resources_memory_total() : 0;
+    const double total = options->memory_share > 0 ? tri_memory_total() : 0;
     if (total == HUGE_VAL)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--memory: the system does not tell how much memory there is; "
                         "give a size such as 4G");

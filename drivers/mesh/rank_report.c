@@ -2,7 +2,8 @@
 
 #include <stdlib.h>
 
-#include "drivers/resources.h"
+#include "triangle/base/system.h"
+
 
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
@@ -18,8 +19,8 @@ enum tri_status rank_report_gather(struct rank_report *report, struct par_carrie
                                    const struct par_report *schedule, enum tri_status status, struct tri_error *error)
 {
     int64_t mine[RANK_NUMBERS] = {[RANK_THREADS] = schedule->threads,
-                                  [RANK_PEAK_MEMORY] = resources_memory_peak(),
-                                  [RANK_NS_PROCESSOR] = nanoseconds(resources_processor_seconds()),
+                                  [RANK_PEAK_MEMORY] = tri_memory_peak(),
+                                  [RANK_NS_PROCESSOR] = nanoseconds(tri_process_seconds()),
                                   [RANK_NS_BLOCKS] = nanoseconds(block_seconds(schedule)),
                                   [RANK_NS_WAITING] = nanoseconds(carrier->seconds_waiting),
                                   [RANK_NS_MOVING] = nanoseconds(carrier->seconds_moving)};

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/resources.h"
+#include "triangle/base/system.h"
 #include "triangle/text/write.h"
 
 /* JSON has no infinity and no NaN: null stands for them. */
@@ -199,7 +199,7 @@ static json_t *ranks_of(const struct rank_report *report)
 static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
                          int threads)
 {
-    int64_t memory = resources_memory_peak(); /* before the report needs some */
+    int64_t memory = tri_memory_peak(); /* before the report needs some */
     const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());

@@ -1,11 +1,11 @@
 #include "drivers/mesh/restart.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/grow.h"
+#include "triangle/base/system.h"
 
 static const char version[] = PTRIANGLE_VERSION;
 
@@ -18,21 +18,32 @@ static enum tri_status check_options(const struct long_options *o, struct tri_er
     return TRI_OK;
 }
 
+/* A line that grows. */
+struct line {
+    char *text; /* malloc'ed; ends in a zero once something has come */
+    int64_t n, room;
+    bool no_memory;
+};
+
+static void add(struct line *line, const char *text)
+{
+    const int64_t n = (int64_t)strlen(text);
+    line->no_memory = line->no_memory || !tri_grow_far(&line->text, &line->room, line->n + n + 1, 1);
+    if (line->no_memory)
+        return;
+    memcpy(line->text + line->n, text, (size_t)n + 1);
+    line->n += n;
+}
+
 /* A word as a shell would need it. */
-static void print_word(FILE *to, const char *word)
+static void add_word(struct line *to, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-_./=:,%@";
-    if (*word && strspn(word, plain) == strlen(word)) {
-        fprintf(to, " %s", word);
-        return;
-    }
-    fputs(" '", to);
+    const bool is_plain = *word && strspn(word, plain) == strlen(word);
+    add(to, is_plain ? " " : " '");
     for (; *word; word++)
-        if (*word == '\'')
-            fputs("'\\''", to);
-        else
-            fputc(*word, to);
-    fputc('\'', to);
+        add(to, *word == '\'' ? "'\\''" : (char[]){*word, 0});
+    add(to, is_plain ? "" : "'");
 }
 
 /* Is this the option, in a word of its own or with its value behind a "="? */
@@ -50,18 +61,18 @@ static bool is_left_out(const char *word)
 
 /* The command that goes on: the words that were given, without the directory, which --resume names, and without the
  * limit of time, which was for the run that is over. */
-static void print_command(FILE *to, const struct restart *r, const char *program, const struct arguments *arguments)
+static void add_command(struct line *to, const struct restart *r, const char *program, const struct arguments *arguments)
 {
-    fputs(program, to);
+    add(to, program);
     for (int i = 1; i < arguments->argc; i++) {
         const char *word = arguments->argv[i];
         if (is_left_out(word))
             i += strchr(word, '=') == NULL;
         else
-            print_word(to, word);
+            add_word(to, word);
     }
-    print_word(to, "--resume");
-    print_word(to, r->checkpoint.directory);
+    add_word(to, "--resume");
+    add_word(to, r->checkpoint.directory);
 }
 
 static void tell_kept(void *user, int64_t triangles)
@@ -74,11 +85,10 @@ static void tell_kept(void *user, int64_t triangles)
 static enum tri_status follow(struct restart *r, const char *program, const struct arguments *arguments,
                               struct tri_error *error)
 {
-    size_t n;
-    FILE *text = open_memstream(&r->go_on, &n);
-    if (text)
-        print_command(text, r, program, arguments);
-    if (!text || fclose(text) != 0)
+    struct line line = {0};
+    add_command(&line, r, program, arguments);
+    r->go_on = line.text;
+    if (line.no_memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the command that goes on");
     r->checkpoint.told = tell_kept;
     r->checkpoint.told_user = r;

@@ -6,15 +6,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "drivers/interrupt.h"
 #include "drivers/mesh/help.h"
 #include "drivers/mesh/plan.h"
 #include "drivers/mesh/self_check.h"
 #include "drivers/mesh/summary.h"
-#include "drivers/resources.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/refine/census.h"
 
 static struct tri_output_set outputs; /* its temporary names are published to the handlers (interrupt.c) */
@@ -104,7 +102,7 @@ static void add_hint(const struct run *r)
 {
     const char *file = r->arguments->file;
     struct tri_error *error = r->error;
-    bool is_another = error->status == TRI_CANNOT_READ && access(file, F_OK) == 0 && strcmp(file, error->file) != 0;
+    bool is_another = error->status == TRI_CANNOT_READ && tri_path_allows(file, TRI_THERE) && strcmp(file, error->file) != 0;
     bool is_no_text = error->status == TRI_BAD_INPUT && strstr(error->text, "not a text file");
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
@@ -577,7 +575,7 @@ static enum tri_status run_file(struct run *r)
 {
     const struct long_options *limits = r->hooks->options;
     r->begin = r->mark = tri_seconds();
-    resources_save_address_space();
+    tri_memory_share_heap();
     if (!interrupt_start(r->hooks->program, limits->time_limit, patience_of(r->hooks)))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);

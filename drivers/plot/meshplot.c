@@ -10,11 +10,10 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/judge/judged_files.h"
-#include "drivers/judge/judged_words.h"
-#include "drivers/one_line.h"
 #include "drivers/plot/plot_part.h"
-#include "drivers/resources.h"
 #include "drivers/start.h"
+#include "drivers/words.h"
+#include "triangle/base/system.h"
 #include "triangle/mesh/pslg.h"
 #include "triangle/text/names.h"
 #include "triangle/text/text.h"
@@ -205,7 +204,7 @@ static enum tri_status take_part(struct settings *s, struct files *f, const stru
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
     const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .may_lack_triangles = true,
-                                   .memory = 0.8 * resources_memory(), .scratch = resources_scratch()};
+                                   .memory = 0.8 * tri_memory_left(), .scratch = tri_scratch_folder()};
     struct judged_files judged = {0};
     enum tri_status status = judged_read(&judged, &ask, error);
     if (status == TRI_OK)
@@ -369,7 +368,7 @@ static bool apply(void *settings, int option)
     bool known = true;
     switch (option) {
     case 'o': s->output = optarg; return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
-    case 's': return resources_take_real(optarg, "", NULL, 64, 12000, &s->style.width);
+    case 's': return words_take_real(optarg, "", NULL, 64, 12000, &s->style.width);
     case 'w': return s->has_window = parse_box(optarg, &s->style.window);
     case 'm': return s->style.has_mark = parse_box(optarg, &s->style.mark);
     case 't': s->style.title = optarg; break;
@@ -398,10 +397,10 @@ static bool apply(void *settings, int option)
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+    static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
                                               "-:o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
-    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    enum words_end end = words_take_all(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)
         return end == WORDS_ANSWERED ? -1 : MISUSE;
     if (s->output == NULL) {

@@ -1,28 +1,16 @@
 /* Files are those of the machine that wrote them: arrays as they lie in memory. A state goes to the disk past the
  * system's cache, where it can: two to five times as fast (measured), while somebody waits for the end of the run. */
-#define _GNU_SOURCE /* O_DIRECT */
-
 #include "sched/checkpoint/checkpoint.h"
 
 #include <assert.h>
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "sched/checkpoint/folder.h"
 #include "sched/checkpoint/spool.h"
 #include "sched/tunables.h"
-#include "triangle/base/at_place.h"
-#include "triangle/base/clock.h"
-
-#ifndef O_DIRECT
-#define O_DIRECT 0 /* the system has no such thing */
-#endif
+#include "triangle/base/system.h"
 
 static const uint64_t MANIFEST = UINT64_C(0x356863697274706b); /* a version, too */
 
@@ -43,12 +31,12 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
     return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
 }
 
-bool par_checkpoint_end_piece(const char *directory, const char *path, int file)
+bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file)
 {
-    const int folder = par_folder_open(directory);
-    const bool done = folder >= 0 && par_folder_end(AT_FDCWD, path, file) && par_folder_sync(folder);
-    if (folder >= 0)
-        close(folder);
+    const tri_file folder = tri_folder_open(directory, true);
+    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, strrchr(path, '/') + 1, file) &&
+                      tri_file_sync(folder);
+    (void)tri_file_close(folder);
     return done;
 }
 
@@ -68,11 +56,11 @@ static bool is_manifest(const struct par_manifest *m)
 static enum tri_status read_manifest(struct par_manifest *m, const struct par_checkpoint *c, struct tri_error *error)
 {
     const char *directory = c->directory;
-    int file = par_folder_read(c->folder, manifest_name);
-    if (file < 0)
+    const tri_file file = tri_folder_file(c->folder, manifest_name, TRI_FOLDER_READ);
+    if (file == TRI_NO_FILE)
         return tri_fail(error, TRI_BAD_INPUT, directory, 0, "holds no checkpoint: %s", strerror(errno));
     bool whole = tri_read_again(file, m, sizeof *m, 0) && is_manifest(m);
-    close(file);
+    (void)tri_file_close(file);
     if (whole)
         return TRI_OK;
     return tri_fail(error, TRI_BAD_INPUT, directory, 0, "the checkpoint's manifest is damaged, or of another version");
@@ -80,13 +68,13 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
 
 static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manifest m, struct tri_error *error)
 {
-    int file = par_folder_create(c->folder, fresh_name);
+    const tri_file file = tri_folder_create(c->folder, fresh_name);
     m.word = MANIFEST;
     m.hash = hash_of(&m);
-    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && par_folder_end(c->folder, fresh_name, file);
-    if (file >= 0)
-        done = close(file) == 0 && done;
-    if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !par_folder_sync(c->folder))
+    bool done = file != TRI_NO_FILE && tri_write_at(file, &m, sizeof m, 0) &&
+                tri_folder_end(c->folder, fresh_name, file);
+    done = tri_file_close(file) && done;
+    if (!done || !tri_folder_rename(c->folder, fresh_name, manifest_name) || !tri_file_sync(c->folder))
         return cannot_write(c->directory, manifest_name, error);
     c->manifest = m;
     if (c->told)
@@ -111,20 +99,21 @@ static bool is_piece(const char *name)
 }
 
 /* A new manifest that has not got its name, or has been begun. */
-static bool is_fresh_manifest(int folder)
+static bool is_fresh_manifest(tri_file folder)
 {
     struct par_manifest m;
-    int file = par_folder_read(folder, fresh_name);
-    off_t length = file >= 0 ? lseek(file, 0, SEEK_END) : -1;
-    bool is = length == 0 || (length == sizeof m && tri_read_again(file, &m, sizeof m, 0) && is_manifest(&m));
-    if (file >= 0)
-        close(file);
+    struct tri_file_facts facts;
+    const tri_file file = tri_folder_file(folder, fresh_name, TRI_FOLDER_READ);
+    const bool known = file != TRI_NO_FILE && tri_file_look(file, &facts);
+    const bool is = known && (facts.size == 0 || (facts.size == sizeof m && tri_read_again(file, &m, sizeof m, 0) &&
+                                                  is_manifest(&m)));
+    (void)tri_file_close(file);
     return is;
 }
 
 /* Would a file of that name, in a directory without a manifest, be written over or removed, though no run has made it?
  * Whatever runs make comes after the first manifest, and goes before the last one. */
-static bool is_foreign(int folder, const char *name)
+static bool is_foreign(tri_file folder, const char *name)
 {
     if (strcmp(name, fresh_name) == 0)
         return !is_fresh_manifest(folder);
@@ -132,28 +121,29 @@ static bool is_foreign(int folder, const char *name)
            is_piece(name);
 }
 
-/* Its own descriptor, which closedir closes; NULL: errno says why. */
-static DIR *list_folder(int folder)
+/* The first foreign name in a folder. */
+struct finding {
+    tri_file folder;
+    char name[PAR_CHECKPOINT_PATH]; /* empty: none */
+};
+
+static bool find_foreign(void *user, const char *name)
 {
-    const int again = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    DIR *list = again >= 0 ? fdopendir(again) : NULL;
-    if (again >= 0 && !list)
-        close(again);
-    return list;
+    struct finding *finding = user;
+    const bool found = is_foreign(finding->folder, name);
+    if (found)
+        snprintf(finding->name, sizeof finding->name, "%s", name);
+    return !found;
 }
 
 static enum tri_status check_names(const struct par_checkpoint *c, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    DIR *list = list_folder(c->folder);
-    if (!list)
+    struct finding finding = {.folder = c->folder};
+    if (!tri_folder_list(c->folder, find_foreign, &finding))
         return tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot be used: %s", strerror(errno));
-    for (const struct dirent *entry; !status && (entry = readdir(list));)
-        if (is_foreign(c->folder, entry->d_name))
-            status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                              "holds a file %s, but no checkpoint: choose another folder", entry->d_name);
-    closedir(list);
-    return status;
+    return finding.name[0] ? tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
+                                      "holds a file %s, but no checkpoint: choose another folder", finding.name)
+                           : TRI_OK;
 }
 
 /* --- opening and closing */
@@ -162,21 +152,20 @@ bool par_checkpoint_is_there(const char *directory)
 {
     char path[PAR_CHECKPOINT_PATH];
     path_of(path, directory, manifest_name);
-    return access(path, F_OK) == 0;
+    return tri_path_allows(path, TRI_THERE);
 }
 
 /* One process at a time; where there are no locks, nobody is kept out. */
 static bool take_directory(struct par_checkpoint *c)
 {
-    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    c->lock = par_folder_extend(c->folder, tiles_name);
-    return c->lock >= 0 && (fcntl(c->lock, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN));
+    c->lock = tri_folder_file(c->folder, tiles_name, TRI_FOLDER_EXTEND);
+    return c->lock != TRI_NO_FILE && tri_file_lock(c->lock) != TRI_LOCKED_BY_ANOTHER;
 }
 
 static enum tri_status check_run(const struct par_checkpoint *c, bool resume, uint64_t of, struct tri_error *error)
 {
     struct par_manifest m;
-    if (!resume && faccessat(c->folder, manifest_name, F_OK, 0) == 0)
+    if (!resume && tri_folder_has(c->folder, manifest_name))
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds the checkpoint of a run already");
     enum tri_status status = resume ? read_manifest(&m, c, error) : check_names(c, error);
     if (!status && resume && m.of != of)
@@ -187,8 +176,8 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
 /* `resume`: it is to be read before it is written. */
 static enum tri_status open_folder(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
-    c->folder = par_folder_open(c->directory);
-    if (c->folder >= 0)
+    c->folder = tri_folder_open(c->directory, true);
+    if (c->folder != TRI_NO_FILE)
         return TRI_OK;
     if (errno == EPERM)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "belongs to another user: choose another folder");
@@ -211,7 +200,7 @@ static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_er
 {
     if (take_directory(c))
         return resume ? read_manifest(&c->manifest, c, error) : TRI_OK;
-    if (c->lock >= 0)
+    if (c->lock != TRI_NO_FILE)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
     return cannot_write(c->directory, tiles_name, error);
 }
@@ -222,7 +211,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     *c = par_checkpoint_closed(directory);
     if (strlen(directory) > PAR_CHECKPOINT_PATH - 32)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
-    bool made = !resume && mkdir(directory, 0777) == 0;
+    bool made = !resume && tri_folder_make(directory);
     if (!resume && !made && errno != EEXIST)
         return tri_fail(error, TRI_CANNOT_WRITE, directory, 0, "cannot be made: %s", strerror(errno));
     enum tri_status status = open_folder(c, resume, error);
@@ -242,29 +231,28 @@ int64_t par_checkpoint_next(const struct par_checkpoint *c)
     return par_checkpoint_has_state(c) ? 1 - c->manifest.which : 0;
 }
 
-int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh)
+tri_file par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank,
+                              bool fresh)
 {
     char name[64];
     snprintf(name, sizeof name, "piece-%d-%d", (int)which, rank);
     path_of(path, directory, name);
-    const int folder = par_folder_open(directory);
-    if (folder < 0)
-        return -1;
-    const int file = fresh ? par_folder_create(folder, name) : par_folder_read(folder, name), fault = errno;
-    close(folder);
+    const tri_file folder = tri_folder_open(directory, true);
+    if (folder == TRI_NO_FILE)
+        return TRI_NO_FILE;
+    const tri_file file = fresh ? tri_folder_create(folder, name) : tri_folder_file(folder, name, TRI_FOLDER_READ);
+    const int fault = errno;
+    (void)tri_file_close(folder);
     errno = fault;
     return file;
 }
 
-/* Of however many ranks there have been. */
-static void remove_pieces(int folder)
+static bool remove_piece(void *user, const char *name)
 {
-    DIR *list = list_folder(folder);
-    for (const struct dirent *entry; list && (entry = readdir(list));)
-        if (is_piece(entry->d_name))
-            unlinkat(folder, entry->d_name, 0);
-    if (list)
-        closedir(list);
+    const struct par_checkpoint *c = user;
+    if (is_piece(name))
+        (void)tri_folder_drop(c->folder, name);
+    return true;
 }
 
 /* The manifest says of all the others that they are a run's: it goes last, and names no state as soon as that goes. */
@@ -272,26 +260,24 @@ static void remove_all(struct par_checkpoint *c)
 {
     const struct par_manifest m = c->manifest;
     (void)write_manifest(c, manifest_of_none(&m, m.kind), NULL);
-    remove_pieces(c->folder);
-    unlinkat(c->folder, state_name[0], 0);
-    unlinkat(c->folder, state_name[1], 0);
-    unlinkat(c->folder, tiles_name, 0);
-    unlinkat(c->folder, fresh_name, 0);
-    unlinkat(c->folder, manifest_name, 0);
+    (void)tri_folder_list(c->folder, remove_piece, c); /* of however many ranks there have been */
+    (void)tri_folder_drop(c->folder, state_name[0]);
+    (void)tri_folder_drop(c->folder, state_name[1]);
+    (void)tri_folder_drop(c->folder, tiles_name);
+    (void)tri_folder_drop(c->folder, fresh_name);
+    (void)tri_folder_drop(c->folder, manifest_name);
     if (m.made_directory)
-        rmdir(c->directory);
+        (void)tri_folder_remove(c->directory);
 }
 
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
 {
-    assert(!remove || c->lock >= 0);
+    assert(!remove || c->lock != TRI_NO_FILE);
     if (remove)
         remove_all(c);
-    if (c->lock >= 0)
-        close(c->lock);
-    if (c->folder >= 0)
-        close(c->folder);
-    c->lock = c->folder = c->spool.file = -1;
+    (void)tri_file_close(c->lock);
+    (void)tri_file_close(c->folder);
+    c->lock = c->folder = c->spool.file = TRI_NO_FILE;
 }
 
 /* --- what it is of */
@@ -302,8 +288,8 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, stru
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of another run: of another input, or with other switches");
     c->manifest.run = run;
-    assert(c->lock >= 0);
-    if (ftruncate(c->spool.file, (off_t)c->spool.length) != 0)
+    assert(c->lock != TRI_NO_FILE);
+    if (!tri_file_cut(c->spool.file, (uint64_t)c->spool.length))
         return cannot_write(c->directory, tiles_name, error);
     return TRI_OK;
 }
@@ -314,7 +300,7 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
     if (status)
         return status;
     c->spool.length = c->spool.sent = 0;
-    return ftruncate(c->spool.file, 0) == 0 ? TRI_OK : cannot_write(c->directory, tiles_name, error);
+    return tri_file_cut(c->spool.file, 0) ? TRI_OK : cannot_write(c->directory, tiles_name, error);
 }
 
 /* --- a state's file */
@@ -326,15 +312,14 @@ static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcm
  * does all where the file system knows no other. */
 static bool write_waiting(struct par_state_file *f, size_t n)
 {
-    const int64_t place = f->place - (int64_t)n;
-    const int flags = fcntl(f->file, F_GETFL);
+    const uint64_t place = (uint64_t)f->place - n;
     f->hash = par_hash(f->hash, f->waiting, n);
     if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
     const double began = tri_seconds();
-    bool done = n == PAR_STATE_WRITE && tri_write_at(f->file, f->waiting, n, place);
-    if (!done && (n < PAR_STATE_WRITE || (flags & O_DIRECT)))
-        done = fcntl(f->file, F_SETFL, flags & ~O_DIRECT) == 0 && tri_write_at(f->file, f->waiting, n, place);
+    const bool passes = n == PAR_STATE_WRITE && f->direct != TRI_NO_FILE;
+    const bool done = (passes && tri_write_at(f->direct, f->waiting, n, place)) ||
+                      tri_write_at(f->file, f->waiting, n, place);
     f->writing += tri_seconds() - began;
     return done;
 }
@@ -360,7 +345,7 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
         put_bytes(f, bytes, n);
         return;
     }
-    f->failed = !tri_read_again(f->file, bytes, n, f->place);
+    f->failed = !tri_read_again(f->file, bytes, n, (uint64_t)f->place);
     f->place += (int64_t)n;
 }
 
@@ -368,23 +353,24 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
 static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
                                    par_state_walk *walk, void *user, struct tri_error *error)
 {
-    *to = (struct par_state_file){.file = par_folder_create(c->folder, name)};
-    to->failed = to->file < 0;
-    if (posix_memalign((void **)&to->waiting, 1 << 12, PAR_STATE_WRITE) != 0) {
-        close(to->file);
+    *to = (struct par_state_file){.file = tri_folder_create(c->folder, name), .direct = TRI_NO_FILE,
+                                  .waiting = tri_page_alloc(PAR_STATE_WRITE)};
+    to->failed = to->file == TRI_NO_FILE;
+    if (!to->waiting) {
+        (void)tri_file_close(to->file);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a checkpoint");
     }
     if (!to->failed)
-        (void)fcntl(to->file, F_SETFL, fcntl(to->file, F_GETFL) | O_DIRECT);
+        to->direct = tri_file_direct(to->file);
     enum tri_status status = walk(to, user, error);
     bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
-                ftruncate(to->file, (off_t)to->place) == 0;
+                tri_file_cut(to->file, (uint64_t)to->place);
     const double began = tri_seconds();
-    done = done && par_folder_end(c->folder, name, to->file);
+    done = done && tri_folder_end(c->folder, name, to->file);
     const int fault = errno;
     to->writing += tri_seconds() - began;
-    if (to->file >= 0)
-        done = close(to->file) == 0 && done;
+    done = tri_file_close(to->direct) && done;
+    done = tri_file_close(to->file) && done;
     free(to->waiting);
     errno = fault;
     return status || done ? status : cannot_write(c->directory, name, error);
@@ -399,7 +385,7 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
     enum tri_status status = write_state(c, state_name[m.which], &to, walk, user, error);
     if (status)
         return status;
-    if (fsync(c->spool.file) != 0)
+    if (!tri_file_sync(c->spool.file))
         return cannot_write(c->directory, tiles_name, error);
     m.kind = kind;
     m.state_bytes = to.place;
@@ -420,7 +406,7 @@ static enum tri_status damaged(const struct par_checkpoint *c, struct tri_error 
 }
 
 /* Is all of it what has been written? */
-static enum tri_status check(const struct par_checkpoint *c, int file, struct tri_error *error)
+static enum tri_status check(const struct par_checkpoint *c, tri_file file, struct tri_error *error)
 {
     const int64_t all = c->manifest.state_bytes;
     const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
@@ -429,7 +415,7 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
     bool sound = true, stopped = false;
     for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
-        sound = tri_read_again(file, bytes, n, place);
+        sound = tri_read_again(file, bytes, n, (uint64_t)place);
         hash = sound ? par_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }
@@ -445,13 +431,14 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
 enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_walk *walk, void *user,
                                     struct tri_error *error)
 {
-    struct par_state_file from = {.file = par_folder_read(c->folder, state_name[c->manifest.which]), .reads = true};
-    if (from.file < 0)
+    const char *name = state_name[c->manifest.which];
+    struct par_state_file from = {.file = tri_folder_file(c->folder, name, TRI_FOLDER_READ), .reads = true};
+    if (from.file == TRI_NO_FILE)
         return damaged(c, error);
     enum tri_status status = check(c, from.file, error);
     status = status ? status : walk(&from, user, error);
     if (!status && (from.failed || from.place != c->manifest.state_bytes))
         status = damaged(c, error);
-    close(from.file);
+    (void)tri_file_close(from.file);
     return status;
 }

@@ -16,7 +16,7 @@
 #define SCHED_CHECKPOINT_CHECKPOINT_H
 
 #include "sched/checkpoint/spool.h"
-#include "triangle/base/stop.h"
+#include "triangle/base/status.h"
 
 enum { PAR_CHECKPOINT_PATH = 4096 };
 
@@ -44,8 +44,8 @@ struct par_checkpoint {
     double seconds;              /* between two states at least; 0: one after each step. To be set after opening */
     const char *directory;       /* borrowed */
     struct par_manifest manifest; /* as it is on the disk */
-    int folder;                  /* the directory, open; -1: it is not */
-    int lock;                    /* the directory's, held by this process */
+    tri_file folder;             /* the directory, open; TRI_NO_FILE: it is not */
+    tri_file lock;               /* the tiles, open, with the directory's lock; TRI_NO_FILE: this process has it not */
     int saved;                   /* states written by this process */
     double last;                 /* when the last was, or when the run began */
     double cost, writing;        /* seconds that it took; those until what was written of it was on the disk */
@@ -64,7 +64,8 @@ struct par_checkpoint {
 /* One that is not open. */
 static inline struct par_checkpoint par_checkpoint_closed(const char *directory)
 {
-    return (struct par_checkpoint){.directory = directory, .folder = -1, .lock = -1, .spool = {.file = -1}};
+    return (struct par_checkpoint){.directory = directory, .folder = TRI_NO_FILE, .lock = TRI_NO_FILE,
+                                   .spool = {.file = TRI_NO_FILE}};
 }
 
 /* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
@@ -112,7 +113,8 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *checkpoint, enum pa
 
 /* A state's file on its way: the same walk writes it and reads it. */
 struct par_state_file {
-    int file;
+    tri_file file;
+    tri_file direct; /* the same, past the system's cache; TRI_NO_FILE: there is no such way */
     bool reads;
     bool failed;   /* it could not be written or read; whoever walks need not ask */
     int64_t place;
@@ -138,11 +140,12 @@ enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par
                                     struct tri_error *error);
 
 /* Of a state of ranks: which of the two is to be written next, and a rank's piece of one: its path, for messages, and
- * the file, to read, or a new one to write; -1: errno says why. */
+ * the file, to read, or a new one to write; TRI_NO_FILE: errno says why. */
 int64_t par_checkpoint_next(const struct par_checkpoint *checkpoint);
-int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh);
+tri_file par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank,
+                              bool fresh);
 
 /* The new one is complete: it is on the disk, and has its name. */
-bool par_checkpoint_end_piece(const char *directory, const char *path, int file);
+bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file);
 
 #endif

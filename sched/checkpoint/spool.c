@@ -2,13 +2,10 @@
 #include "sched/checkpoint/spool.h"
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
-#include "triangle/base/at_place.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const uint64_t TILE = UINT64_C(0x32656c6974697274); /* a version as well */
 
@@ -121,7 +118,7 @@ static void send_off(struct par_spool *spool)
 {
     if (spool->length - spool->sent < PAR_SPOOL_SHIP)
         return;
-    (void)posix_fadvise(spool->file, (off_t)spool->sent, (off_t)(spool->length - spool->sent), POSIX_FADV_DONTNEED);
+    tri_file_send_off(spool->file, (uint64_t)spool->sent, (uint64_t)(spool->length - spool->sent));
     spool->sent = spool->length;
 }
 
@@ -141,7 +138,7 @@ static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile
     if (!pack(arrays, tile, spool->n_attributes))
         status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
     h->hash = hash_of(h, arrays);
-    if (!status && !tri_write_at(spool->file, h, sizeof *h + n, spool->length))
+    if (!status && !tri_write_at(spool->file, h, sizeof *h + n, (uint64_t)spool->length))
         status = fail_writing(spool, error);
     spool->length += status ? 0 : (int64_t)(sizeof *h + n);
     send_off(spool);
@@ -196,13 +193,13 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
 {
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
-    if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, place) || h->word != TILE || h->bytes < 0 ||
+    if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, (uint64_t)place) || h->word != TILE || h->bytes < 0 ||
         h->bytes > left || h->n_attributes != spool->n_attributes)
         return fail_damaged(spool, place, error);
     *arrays = malloc((size_t)h->bytes + 1);
     if (!*arrays)
         return no_memory(spool, error);
-    if (!tri_read_again(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
+    if (!tri_read_again(spool->file, *arrays, (size_t)h->bytes, (uint64_t)place + sizeof *h) ||
         h->hash != hash_of(h, *arrays) || (size_t)h->bytes != bytes_of(&h->tile, h->n_attributes))
         return fail_damaged(spool, place, error);
     return TRI_OK;

@@ -11,9 +11,10 @@
 
 #include "ptriangle/tiles.h"
 #include "triangle/base/status.h"
+#include "triangle/base/system.h"
 
 struct par_spool {
-    int file;               /* open for reading and writing; -1: none */
+    tri_file file;          /* open for reading and writing; TRI_NO_FILE: none */
     const char *path;       /* for messages; borrowed */
     const struct tri_sink *to;
     int64_t length;         /* bytes of whole tiles in the file */

@@ -8,7 +8,7 @@
 
 #include "sched/schedule/phase.h"
 #include "sched/tunables.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/base/grow.h"
 
 /* --- of which run */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/base/grow.h"
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more)

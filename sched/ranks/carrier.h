@@ -13,7 +13,6 @@
 #include <stdint.h>
 
 #include "triangle/base/status.h"
-#include "triangle/base/stop.h"
 
 /* Bytes that grow. */
 struct par_bytes {

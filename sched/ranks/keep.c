@@ -7,7 +7,7 @@
 #include "sched/checkpoint/state.h"
 #include "sched/ranks/pieces.h"
 #include "sched/schedule/room.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 
 /* What a rank has written. */
 struct writer {

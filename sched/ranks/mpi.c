@@ -4,11 +4,11 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "sched/ranks/mpi_carrier.h"
 #include "sched/ranks/rank_stream.h"
 #include "sched/tunables.h"
+#include "triangle/base/system.h"
 
 /* Counts of MPI are ints. */
 enum { MOST_BYTES = 1 << 30 };
@@ -28,12 +28,12 @@ struct messenger {
 /* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
 static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
-    struct timespec nap = {0, PAR_FIRST_NAP};
+    double nap = 1e-9 * PAR_FIRST_NAP;
     int done = 0;
     while (MPI_Testall(n, request, &done, m->state) == MPI_SUCCESS && !done) {
         (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
-        nanosleep(&nap, NULL);
-        nap.tv_nsec = nap.tv_nsec < PAR_LONGEST_NAP ? 2 * nap.tv_nsec : nap.tv_nsec;
+        (void)tri_pause(nap);
+        nap = nap < 1e-9 * PAR_LONGEST_NAP ? 2 * nap : nap;
     }
     return done;
 }

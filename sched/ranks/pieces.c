@@ -1,12 +1,11 @@
 /* Tile by tile: what has a corner in it, told as to another rank. */
 #include "sched/ranks/pieces.h"
-#include "triangle/base/at_place.h"
+#include "triangle/base/system.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const uint64_t PIECES = UINT64_C(0x3273656365697074); /* a version as well */
 
@@ -146,7 +145,7 @@ static enum tri_status cannot_write(const char *path, struct tri_error *error)
 }
 
 /* Pieces one after the other, then their offsets, then the head. */
-static enum tri_status write_all(const struct sorting *s, int file, const char *path, struct head head,
+static enum tri_status write_all(const struct sorting *s, tri_file file, const char *path, struct head head,
                                  int64_t *offset, struct tri_error *error)
 {
     struct par_bytes bytes = {0};
@@ -156,7 +155,7 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     for (int32_t tile = 0; !status && tile < s->n_tiles; tile++) {
         if (!pack_piece(s, tile, &bytes))
             status = par_ranks_no_memory(error);
-        else if (!tri_write_at(file, bytes.at, bytes.n, offset[tile]))
+        else if (!tri_write_at(file, bytes.at, bytes.n, (uint64_t)offset[tile]))
             status = cannot_write(path, error);
         offset[tile + 1] = offset[tile] + (int64_t)bytes.n;
     }
@@ -166,7 +165,7 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     return status;
 }
 
-static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t *hash,
+static enum tri_status write_file(const struct sorting *s, tri_file file, const char *path, uint64_t *hash,
                                   struct tri_error *error)
 {
     const struct par_territory *territory = &s->ranks->territory;
@@ -186,15 +185,15 @@ enum tri_status par_pieces_write(const struct par_ranks *r, int64_t which, uint6
     const char *directory = r->state->options->checkpoint->directory;
     char path[PAR_CHECKPOINT_PATH];
     struct sorting s;
-    const int file = par_checkpoint_piece(path, directory, which, r->carrier->rank, true);
-    if (file < 0)
+    const tri_file file = par_checkpoint_piece(path, directory, which, r->carrier->rank, true);
+    if (file == TRI_NO_FILE)
         return cannot_write(path, error);
     par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : write_file(&s, file, path, hash, error);
     if (!status && !par_checkpoint_end_piece(directory, path, file))
         status = cannot_write(path, error);
-    close(file);
+    (void)tri_file_close(file);
     free_sorting(&s);
     return status;
 }
@@ -207,7 +206,7 @@ static enum tri_status damaged(const char *path, struct tri_error *error)
 }
 
 /* The file's offsets, malloc'ed; NULL: it is not what was written. */
-static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t run, uint64_t hash)
+static int64_t *read_offsets(tri_file file, int32_t first, int32_t n_tiles, uint64_t run, uint64_t hash)
 {
     const struct head wanted = {PIECES, run, first, n_tiles};
     struct head head;
@@ -220,7 +219,7 @@ static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t 
     return NULL;
 }
 
-static enum tri_status read_piece(struct par_ranks *r, int file, const char *path, const int64_t offset[2],
+static enum tri_status read_piece(struct par_ranks *r, tri_file file, const char *path, const int64_t offset[2],
                                   struct tri_error *error)
 {
     struct par_bytes bytes = {.n = 0};
@@ -230,7 +229,8 @@ static enum tri_status read_piece(struct par_ranks *r, int file, const char *pat
     if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
         return par_ranks_no_memory(error);
     bytes.n = (size_t)(offset[1] - offset[0]);
-    enum tri_status status = tri_read_again(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
+    const bool whole = tri_read_again(file, bytes.at, bytes.n, (uint64_t)offset[0]);
+    enum tri_status status = whole ? TRI_OK : damaged(path, error);
     status = status ? status : par_borrow_from(r, &talk, &bytes, error);
     par_talk_free(&talk);
     free(bytes.at);
@@ -245,14 +245,14 @@ enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file
     char path[PAR_CHECKPOINT_PATH];
     if (first >= end)
         return TRI_OK;
-    const int file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
-    if (file < 0)
+    const tri_file file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
+    if (file == TRI_NO_FILE)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
     int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
     for (int32_t tile = first; !status && tile < end; tile++)
         status = read_piece(r, file, path, &offset[tile - of->first], error);
     free(offset);
-    close(file);
+    (void)tri_file_close(file);
     return status;
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "sched/tunables.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/size/estimate.h"
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. */

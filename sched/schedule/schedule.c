@@ -20,7 +20,7 @@
 #include "sched/tiles/remain.h"
 #include "sched/tiles/sweep.h"
 #include "sched/tunables.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 #include "triangle/base/size_text.h"
 #include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"

@@ -2,23 +2,12 @@
 #include "sched/schedule/threads.h"
 
 #include <assert.h>
-#include <signal.h>
-
 #ifdef _OPENMP
 #include <omp.h>
 #include <stdatomic.h>
-#include <unistd.h>
-#endif
 
-bool par_thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    bool started = pthread_create(thread, NULL, run, user) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
+#include "triangle/base/system.h"
+#endif
 
 #ifdef _OPENMP
 
@@ -27,29 +16,32 @@ bool par_thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
 static bool is_forked(void)
 {
     static _Atomic(long) first_process;
-    long none = 0, self = (long)getpid();
+    long none = 0, self = tri_process();
     return !atomic_compare_exchange_strong(&first_process, &none, self) && none != self;
 }
 
 static void *wait_for_end(void *gate)
 {
-    pthread_mutex_lock(gate);
-    pthread_mutex_unlock(gate);
+    tri_monitor_enter(gate);
+    tri_monitor_leave(gate);
     return NULL;
 }
 
 /* How many threads can there be beside this one, if no more than n are wanted? */
 static int try_threads(int n)
 {
-    pthread_t thread[PAR_MOST_THREADS];
-    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    struct tri_thread *thread[PAR_MOST_THREADS];
+    struct tri_monitor *gate = tri_monitor_new();
     int made = 0;
-    pthread_mutex_lock(&gate);
-    while (made < n && par_thread_start(&thread[made], wait_for_end, &gate))
+    if (!gate)
+        return 0;
+    tri_monitor_enter(gate);
+    while (made < n && (thread[made] = tri_thread_start(wait_for_end, gate)))
         made++;
-    pthread_mutex_unlock(&gate);
+    tri_monitor_leave(gate);
     for (int i = 0; i < made; i++)
-        pthread_join(thread[i], NULL);
+        tri_thread_join(thread[i]);
+    tri_monitor_free(gate);
     return made;
 }
 

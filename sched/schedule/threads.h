@@ -2,7 +2,6 @@
 #ifndef SCHED_SCHEDULE_THREADS_H
 #define SCHED_SCHEDULE_THREADS_H
 
-#include <pthread.h>
 #include <stdbool.h>
 
 #include "triangle/base/executor.h"
@@ -16,9 +15,6 @@ enum { PAR_MOST_THREADS = 1024 };
  * thread. What is left after that, and is not found, is memory that runs out later, while that library makes its
  * threads; it then prints a line and calls exit(1). */
 int par_threads(int asked, bool wary);
-
-/* Starts a thread that signals do not find: they are for the others. False: there are no more. */
-bool par_thread_start(pthread_t *thread, void *(*run)(void *user), void *user);
 
 /* An executor that runs tasks on this many threads (<= 0: what OpenMP would use); it lives as long as *threads. The one
  * way in which anything in sched/ runs in parallel. */

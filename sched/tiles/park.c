@@ -3,30 +3,18 @@
  * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
  * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a part of
  * the bound for what is to come before they grow again. */
-#define _DEFAULT_SOURCE /* malloc_trim */
-
 #include "sched/tiles/park.h"
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
-#include "sched/schedule/threads.h"
 #include "sched/tunables.h"
-#include "triangle/base/at_place.h"
-#include "triangle/base/mapped_file.h"
 #include "triangle/base/size_text.h"
+#include "triangle/base/system.h"
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS };
 
@@ -34,45 +22,31 @@ struct par_park {
     const char *folder;         /* NULL: what does not fit is an error */
     double memory, others;      /* the bound; the most seen in memory beside the arrays, since it was trimmed */
     double files;               /* bytes of pages of files to begin with: libraries */
-    struct tri_mapped_file sheet[SHEETS]; /* arrays, then extras; changed under the lock */
+    struct tri_mapped_file sheet[SHEETS]; /* arrays, then extras; changed inside the monitor */
     struct tri_storage storage;
     struct tri_bound bound;
     size_t most, wanted;        /* bytes of disk; with those of the reservation that failed */
     int fault;                  /* errno of that; 0: none */
-    pthread_mutex_t lock;
+    struct tri_monitor *monitor;
     const struct tri_stop *outer; /* the mesh's own */
     struct tri_stop stop;
     struct tri_executor inner;
-    pthread_t watch;
-    bool watched;
+    struct tri_thread *watch;   /* NULL: there is none yet */
     atomic_bool away, over;     /* arrays are in files; the watch ends */
 };
 
 /* --- what is in memory */
 
-struct resident {
-    double all, files; /* bytes; the second: pages of files, libraries among them */
-};
-
 /* More than any bound where the system does not tell. */
-static struct resident resident(void)
+static double resident(double *of_files)
 {
-    char text[128];
-    unsigned long long all, files;
-    const double page = (double)sysconf(_SC_PAGESIZE);
-    int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-    ssize_t n = file >= 0 ? read(file, text, sizeof text - 1) : 0;
-    if (file >= 0)
-        close(file);
-    text[n > 0 ? n : 0] = 0;
-    if (sscanf(text, "%*u %llu %llu", &all, &files) != 2)
-        return (struct resident){INFINITY, 0};
-    return (struct resident){(double)all * page, (double)files * page};
+    const double all = tri_memory_used(of_files);
+    return all > 0 ? all : INFINITY;
 }
 
 static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
 {
-    const double others = resident().all - (mesh->storage ? 0 : (double)tri_mesh_bytes_used(mesh));
+    const double others = resident(NULL) - (mesh->storage ? 0 : (double)tri_mesh_bytes_used(mesh));
     park->others = others > park->others ? others : park->others;
 }
 
@@ -96,11 +70,11 @@ static int64_t bytes_now(const struct par_park *park)
 static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet, size_t bytes)
 {
     const size_t wanted = (bytes + PAR_PARK_GROWTH - 1) / PAR_PARK_GROWTH * PAR_PARK_GROWTH;
-    pthread_mutex_lock(&park->lock);
+    tri_monitor_enter(park->monitor);
     const int fault = wanted > sheet->size ? tri_mapped_file_extend(sheet, park->folder, wanted) : 0;
     const size_t now = (size_t)bytes_now(park);
     park->most = now > park->most ? now : park->most;
-    pthread_mutex_unlock(&park->lock);
+    tri_monitor_leave(park->monitor);
     if (!fault)
         return sheet->at;
     park->fault = fault;
@@ -110,9 +84,9 @@ static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet,
 
 static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
 {
-    pthread_mutex_lock(&park->lock);
+    tri_monitor_enter(park->monitor);
     tri_mapped_file_close(sheet);
-    pthread_mutex_unlock(&park->lock);
+    tri_monitor_leave(park->monitor);
 }
 
 /* --- the storage */
@@ -172,18 +146,18 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
 
 static void unmap_pages(struct par_park *park)
 {
-    pthread_mutex_lock(&park->lock);
+    tri_monitor_enter(park->monitor);
     for (int k = 0; k < SHEETS; k++)
         tri_mapped_file_release_pages(&park->sheet[k]);
-    pthread_mutex_unlock(&park->lock);
+    tri_monitor_leave(park->monitor);
 }
 
 static void look(struct par_park *park)
 {
     if (!atomic_load_explicit(&park->away, memory_order_relaxed))
         return;
-    const struct resident now = resident();
-    const double ours = now.files - park->files, left = park->memory - (now.all - ours);
+    double files;
+    const double all = resident(&files), ours = files - park->files, left = park->memory - (all - ours);
     if (ours > PAR_TOUCHED * (left > 0 ? left : 0))
         unmap_pages(park);
 }
@@ -226,23 +200,14 @@ struct tri_executor par_park_executor(struct par_park *park, struct tri_executor
 static void *watch(void *user)
 {
     struct par_park *park = user;
-    const struct timespec pause = {0, PAR_LOOK_NANOSECONDS};
     while (!atomic_load(&park->over)) {
         look(park);
-        nanosleep(&pause, NULL);
+        (void)tri_pause(1e-9 * PAR_LOOK_NANOSECONDS);
     }
     return NULL;
 }
 
 /* --- the move */
-
-/* Memory that was freed goes back to the system. */
-static void trim(void)
-{
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
-}
 
 static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error *error)
 {
@@ -259,10 +224,11 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     for (int k = 0; k < TRI_ARRAYS; k++) /* of a mesh that was dropped */
         drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
-    trim();
+    tri_memory_trim();
     atomic_store(&park->away, true);
-    park->watched = park->watched || (!status && par_thread_start(&park->watch, watch, park));
-    if (!status && !park->watched)
+    if (!status && !park->watch)
+        park->watch = tri_thread_start(watch, park);
+    if (!status && !park->watch)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
     return par_park_status(park, status, error);
 }
@@ -272,7 +238,7 @@ enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, si
     const size_t all = tri_mesh_bytes_used(mesh) + bytes;
     if (!park || mesh->storage || allows(park, mesh, all))
         return TRI_OK;
-    trim(); /* what was used for the same before, and is free now, is not counted twice */
+    tri_memory_trim(); /* what was used for the same before, and is free now, is not counted twice */
     park->others = 0;
     return allows(park, mesh, all) ? TRI_OK : leave(park, mesh, error);
 }
@@ -284,18 +250,20 @@ enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, con
 {
     struct par_park *p = calloc(1, sizeof *p);
     *park = NULL;
-    if (!p || pthread_mutex_init(&p->lock, NULL) != 0) {
+    if (p)
+        p->monitor = tri_monitor_new();
+    if (!p || !p->monitor) {
         free(p);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a mesh that may be parked");
     }
     p->folder = folder;
     p->memory = (double)memory;
-    p->files = resident().files;
+    (void)tri_memory_used(&p->files);
     p->storage = (struct tri_storage){
         .reserve = reserve, .fill = fill, .extra = extra, .extra_free = extra_free, .user = p};
     p->bound = (struct tri_bound){allows, leave, p};
     for (int k = 0; k < SHEETS; k++)
-        p->sheet[k].file = -1;
+        p->sheet[k].file = TRI_NO_FILE;
     p->outer = mesh->stop;
     p->stop = (struct tri_stop){is_asked, p};
     mesh->stop = &p->stop;
@@ -315,10 +283,10 @@ void par_park_close(struct par_park *park, struct tri_mesh *mesh)
         mesh->stop = park->outer;
     }
     atomic_store(&park->over, true);
-    if (park->watched)
-        pthread_join(park->watch, NULL);
+    if (park->watch)
+        tri_thread_join(park->watch);
     for (int k = 0; k < SHEETS; k++)
         drop_sheet(park, &park->sheet[k]);
-    pthread_mutex_destroy(&park->lock);
+    tri_monitor_free(park->monitor);
     free(park);
 }

@@ -8,15 +8,17 @@
 #include "sched/tiles/pipeline.h"
 
 #include <assert.h>
-#include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "triangle/base/system.h"
+
+static _Thread_local char this_thread; /* whose address no other thread has */
+
 struct works {
     const struct par_pipeline *p;
-    pthread_t caller;
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
+    const void *caller;          /* its this_thread */
+    struct tri_monitor *monitor; /* of all that follows */
     bool *made;               /* [n_slots] what is in the slot */
     int32_t begun, taken;
     enum tri_status status;
@@ -29,9 +31,9 @@ typedef enum tri_status (*step_call)(void *context, int32_t i, int32_t slot, str
 static void step(struct works *w, step_call call, int32_t i)
 {
     struct tri_error error = {0};
-    pthread_mutex_unlock(&w->lock);
+    tri_monitor_leave(w->monitor);
     enum tri_status status = call ? call(w->p->context, i, i % w->p->n_slots, &error) : TRI_OK;
-    pthread_mutex_lock(&w->lock);
+    tri_monitor_enter(w->monitor);
     if (status && !w->status) {
         w->status = status;
         if (w->error)
@@ -46,7 +48,7 @@ static bool may_begin(const struct works *w)
 
 static bool may_take(const struct works *w)
 {
-    return w->taken < w->begun && w->made[w->taken % w->p->n_slots] && pthread_equal(pthread_self(), w->caller);
+    return w->taken < w->begun && w->made[w->taken % w->p->n_slots] && w->caller == &this_thread;
 }
 
 static void make_next(struct works *w)
@@ -68,44 +70,34 @@ static void work(void *context, size_t worker)
 {
     struct works *w = context;
     (void)worker;
-    pthread_mutex_lock(&w->lock);
+    tri_monitor_enter(w->monitor);
     while (!w->status && w->taken < w->p->n) {
         if (may_take(w))
             take_next(w);
         else if (may_begin(w))
             make_next(w);
         else {
-            pthread_cond_wait(&w->changed, &w->lock);
+            tri_monitor_wait(w->monitor);
             continue;
         }
-        pthread_cond_broadcast(&w->changed);
+        tri_monitor_wake(w->monitor);
     }
-    pthread_mutex_unlock(&w->lock);
-}
-
-static bool begin(struct works *w)
-{
-    w->made = calloc((size_t)w->p->n_slots, sizeof *w->made);
-    if (w->made && pthread_mutex_init(&w->lock, NULL) == 0) {
-        if (pthread_cond_init(&w->changed, NULL) == 0)
-            return true;
-        pthread_mutex_destroy(&w->lock);
-    }
-    free(w->made);
-    return false;
+    tri_monitor_leave(w->monitor);
 }
 
 enum tri_status par_pipeline_run(const struct par_pipeline *pipeline, const struct tri_executor *executor,
                                  struct tri_error *error)
 {
-    struct works w = {.p = pipeline, .caller = pthread_self(), .error = error};
+    struct works w = {.p = pipeline, .caller = &this_thread, .error = error};
     assert(pipeline->n_slots > 0 && pipeline->n_threads > 0);
-    if (!begin(&w))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a pipeline");
-    tri_execute(executor, (size_t)pipeline->n_threads, work, &w);
+    w.made = calloc((size_t)pipeline->n_slots, sizeof *w.made);
+    w.monitor = tri_monitor_new();
+    if (w.made && w.monitor)
+        tri_execute(executor, (size_t)pipeline->n_threads, work, &w);
+    else
+        w.status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a pipeline");
     assert(w.status || w.taken == pipeline->n);
-    pthread_cond_destroy(&w.changed);
-    pthread_mutex_destroy(&w.lock);
+    tri_monitor_free(w.monitor);
     free(w.made);
     return w.status;
 }

@@ -5,9 +5,9 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "sched/schedule/threads.h"
 #include "sched/tiles/tile_arrays.h"
 #include "triangle/base/status.h"
+#include "triangle/base/system.h"
 
 struct par_queued {
     struct par_queued *next;
@@ -34,7 +34,7 @@ static struct par_queued *copy_of(const struct tri_tile *tile, int32_t n_attribu
 static struct par_queued *next_of(struct par_queue *q)
 {
     while (!q->first && !q->closing)
-        pthread_cond_wait(&q->changed, &q->lock);
+        tri_monitor_wait(q->monitor);
     struct par_queued *next = q->first;
     if (next)
         q->first = next->next;
@@ -48,38 +48,39 @@ static void *hand_on(void *user)
     struct par_queue *q = user;
     struct tri_error error = {0};
     struct par_queued *next;
-    pthread_mutex_lock(&q->lock);
+    tri_monitor_enter(q->monitor);
     while ((next = next_of(q))) {
         const bool wanted = q->status == TRI_OK;
-        pthread_mutex_unlock(&q->lock);
+        tri_monitor_leave(q->monitor);
         const enum tri_status status = wanted ? q->to->take(q->to->user, &next->tile, &error) : TRI_OK;
         const int64_t bytes = next->bytes;
         free(next);
-        pthread_mutex_lock(&q->lock);
+        tri_monitor_enter(q->monitor);
         q->bytes -= bytes;
         if (status) {
             q->status = status;
             q->error = error;
         }
-        pthread_cond_broadcast(&q->changed);
+        tri_monitor_wake(q->monitor);
     }
-    pthread_mutex_unlock(&q->lock);
+    tri_monitor_leave(q->monitor);
     return NULL;
 }
 
 /* Waits until all tiles have been handed on, or, where they are to be dropped, until the one in hand has. */
 static void finish(struct par_queue *q, bool drop)
 {
-    if (!q->running)
+    if (!q->thread)
         return;
-    pthread_mutex_lock(&q->lock);
+    tri_monitor_enter(q->monitor);
     q->closing = true;
     if (drop && !q->status)
         q->status = TRI_STOPPED;
-    pthread_cond_broadcast(&q->changed);
-    pthread_mutex_unlock(&q->lock);
-    pthread_join(q->thread, NULL);
-    q->running = q->closing = false;
+    tri_monitor_wake(q->monitor);
+    tri_monitor_leave(q->monitor);
+    tri_thread_join(q->thread);
+    q->thread = NULL;
+    q->closing = false;
     assert(!q->first && q->bytes == 0);
 }
 
@@ -100,23 +101,23 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     q->n_attributes = stream->n_attributes;
     enum tri_status status = q->to->begin ? q->to->begin(q->to->user, stream, error) : TRI_OK;
     if (!status)
-        q->running = par_thread_start(&q->thread, hand_on, q);
+        q->thread = tri_thread_start(hand_on, q);
     return status;
 }
 
 static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct tri_error *error)
 {
-    pthread_mutex_lock(&q->lock);
+    tri_monitor_enter(q->monitor);
     while (!q->status && q->bytes > 0 && q->bytes + copy->bytes > q->most_bytes)
-        pthread_cond_wait(&q->changed, &q->lock);
+        tri_monitor_wait(q->monitor);
     const enum tri_status status = tell(q, error);
     if (!status) {
         *(q->last ? &q->last->next : &q->first) = copy;
         q->last = copy;
         q->bytes += copy->bytes;
-        pthread_cond_broadcast(&q->changed);
+        tri_monitor_wake(q->monitor);
     }
-    pthread_mutex_unlock(&q->lock);
+    tri_monitor_leave(q->monitor);
     if (status)
         free(copy);
     return status;
@@ -125,7 +126,7 @@ static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct 
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_queue *q = user;
-    if (!q->running)
+    if (!q->thread)
         return q->to->take(q->to->user, tile, error);
     struct par_queued *copy = copy_of(tile, q->n_attributes);
     if (copy)
@@ -145,13 +146,8 @@ static enum tri_status end(void *user, struct tri_error *error)
 
 bool par_queue_begin(struct par_queue *queue, const struct tri_sink *to, int64_t most_bytes)
 {
-    *queue = (struct par_queue){.to = to, .most_bytes = most_bytes};
-    if (pthread_mutex_init(&queue->lock, NULL) != 0)
-        return false;
-    if (pthread_cond_init(&queue->changed, NULL) == 0)
-        return true;
-    pthread_mutex_destroy(&queue->lock);
-    return false;
+    *queue = (struct par_queue){.to = to, .most_bytes = most_bytes, .monitor = tri_monitor_new()};
+    return queue->monitor;
 }
 
 struct tri_sink par_queue_sink(struct par_queue *queue) { return (struct tri_sink){queue, begin, take, end}; }
@@ -159,6 +155,5 @@ struct tri_sink par_queue_sink(struct par_queue *queue) { return (struct tri_sin
 void par_queue_free(struct par_queue *queue)
 {
     finish(queue, true);
-    pthread_cond_destroy(&queue->changed);
-    pthread_mutex_destroy(&queue->lock);
+    tri_monitor_free(queue->monitor);
 }

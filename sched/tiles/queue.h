@@ -7,23 +7,22 @@
 #ifndef SCHED_TILES_QUEUE_H
 #define SCHED_TILES_QUEUE_H
 
-#include <pthread.h>
-
 #include "ptriangle/tiles.h"
+
+struct tri_monitor;
+struct tri_thread;
 
 struct par_queue {
     const struct tri_sink *to; /* borrowed */
     int64_t most_bytes;        /* that wait; one tile may be larger */
     int32_t n_attributes;
-    bool running;              /* there is a thread; what follows is shared with it, under the lock */
+    struct tri_thread *thread; /* NULL: there is none; what follows is shared with it, inside the monitor */
+    struct tri_monitor *monitor;
     bool closing;              /* no more tiles come: it ends when none is left */
     struct par_queued *first, *last;
     int64_t bytes;             /* of the tiles that wait, and of the one that is handed on */
     enum tri_status status;    /* what `to` has said; tiles are dropped from then on */
     struct tri_error error;
-    pthread_t thread;
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
 };
 
 /* *queue may not move. False: no memory. */

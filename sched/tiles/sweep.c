@@ -5,7 +5,7 @@
 #include "sched/tiles/ahead.h"
 #include "sched/tiles/park.h"
 #include "sched/tiles/remain.h"
-#include "triangle/base/clock.h"
+#include "triangle/base/system.h"
 
 static enum tri_status no_memory(struct tri_error *error)
 {

@@ -3,9 +3,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "triangle/api/figure.h"
+#include "triangle/base/system.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
@@ -16,14 +16,14 @@
 static enum tri_status read_mesh(const struct tri_names *names, struct tri_read_options *options, struct tri_pslg *pslg,
                                  struct tri_elements *elements, struct tri_error *error)
 {
-    bool has_poly = access(names->poly, R_OK) == 0, points_in_poly;
+    bool has_poly = tri_path_allows(names->poly, TRI_READABLE), points_in_poly;
     int32_t base;
     options->refining = true;
     enum tri_status status = has_poly ? tri_read_poly(names->poly, names->node, options, pslg, &base, &points_in_poly,
                                                       error)
                                       : tri_read_node(names->node, options, pslg, &base, error);
     status = status ? status : tri_read_ele(names->ele, options, base, pslg->n_points, elements, error);
-    if (!status && access(names->area, R_OK) == 0)
+    if (!status && tri_path_allows(names->area, TRI_READABLE))
         status = tri_read_area(names->area, options, base, elements, error);
     return status;
 }

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
                          const char *format, ...)
@@ -17,4 +18,10 @@ enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const 
         va_end(arguments);
     }
     return status;
+}
+
+enum tri_status tri_fail_system(struct tri_error *error, enum tri_status status, const char *file, const char *what,
+                                int error_number)
+{
+    return tri_fail(error, status, file, 0, "%s: %s", what, strerror(error_number));
 }

@@ -4,16 +4,15 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/base/scratch_file.h"
+#include "triangle/base/system.h"
 
 enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 
 struct file {
-    int descriptor; /* -1: not there yet */
-    int64_t n;      /* half-edges in it */
+    tri_file kept; /* TRI_NO_FILE: not there yet */
+    int64_t n;     /* half-edges in it */
 };
 
 struct check_store {
@@ -29,7 +28,7 @@ enum tri_status tri_check_store_new(struct checker *c)
     if (c->store == NULL)
         return TRI_NO_MEMORY;
     for (int k = 0; k < N_FILES; k++)
-        c->store->file[k].descriptor = -1;
+        c->store->file[k].kept = TRI_NO_FILE;
     c->store->most = INT64_MAX;
     if (c->source->memory <= 0)
         return TRI_OK;
@@ -43,10 +42,8 @@ enum tri_status tri_check_store_new(struct checker *c)
 
 void tri_check_store_free(struct check_store *s)
 {
-    for (int k = 0; s != NULL && k < N_FILES; k++) {
-        if (s->file[k].descriptor >= 0)
-            (void)close(s->file[k].descriptor);
-    }
+    for (int k = 0; s != NULL && k < N_FILES; k++)
+        (void)tri_file_close(s->file[k].kept);
     if (s != NULL)
         free(s->here.at);
     free(s);
@@ -89,31 +86,9 @@ static enum tri_status fail(struct checker *c)
 
 static bool open_file(const struct checker *c, struct file *file)
 {
-    if (file->descriptor < 0)
-        file->descriptor = tri_scratch_file(folder_of(c));
-    return file->descriptor >= 0;
-}
-
-static bool write_all(int descriptor, const void *data, size_t n)
-{
-    for (size_t done = 0; done < n;) {
-        ssize_t put = write(descriptor, (const char *)data + done, n - done);
-        if (put < 0 && errno != EINTR)
-            return false;
-        done += put > 0 ? (size_t)put : 0;
-    }
-    return true;
-}
-
-static bool read_all(int descriptor, void *data, size_t n)
-{
-    for (size_t done = 0; done < n;) {
-        ssize_t got = pread(descriptor, (char *)data + done, n - done, (off_t)done);
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return false;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return true;
+    if (file->kept == TRI_NO_FILE)
+        file->kept = tri_scratch_file(folder_of(c));
+    return file->kept != TRI_NO_FILE;
 }
 
 /* All that is in memory goes to the files. */
@@ -127,7 +102,8 @@ static enum tri_status spill(struct checker *c)
         struct file *file = &s->file[file_of(s, &at[i])];
         for (j = i + 1; j < s->here.n && file_of(s, &at[j]) == file_of(s, &at[i]); j++) {
         }
-        if (!open_file(c, file) || !write_all(file->descriptor, at + i, (size_t)(j - i) * sizeof *at))
+        if (!open_file(c, file) ||
+            !tri_write_at(file->kept, at + i, (size_t)(j - i) * sizeof *at, (uint64_t)file->n * sizeof *at))
             return fail(c);
         file->n += j - i;
     }
@@ -153,10 +129,10 @@ static enum tri_status fetch(struct checker *c, struct file *file)
         here->room = file->n;
     }
     here->n = file->n;
-    if (!read_all(file->descriptor, here->at, (size_t)here->n * sizeof *here->at))
+    if (!tri_read_again(file->kept, here->at, (size_t)here->n * sizeof *here->at, 0))
         return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was kept there");
-    (void)close(file->descriptor);
-    *file = (struct file){-1, 0};
+    (void)tri_file_close(file->kept);
+    *file = (struct file){TRI_NO_FILE, 0};
     return TRI_OK;
 }
 

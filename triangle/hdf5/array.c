@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
-#include "triangle/text/text.h"
+#include "triangle/base/system.h"
 
 static size_t chunk_bytes(const struct tri_h5_laid *laid)
 {
@@ -141,7 +140,7 @@ static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from
 {
     struct tri_output *output = array->file->output;
     const size_t bytes = chunk_bytes(array->laid), half = bytes / 2;
-    const ssize_t got = tri_read_at(output->file, buffer, half, (uint64_t)from);
+    const int64_t got = tri_read_at(output->file, buffer, half, (uint64_t)from);
     if (got < 0)
         return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot read again", errno);
     memset(buffer + got, 0, half - (size_t)got);

@@ -1,4 +1,4 @@
-/* A large piece is written by POSIX's asynchronous writing, past the system's cache where the file system allows that:
+/* A large piece is written behind its caller's back, past the system's cache where the file system allows that:
  * what a mesh of many gigabytes would push out of the cache stays there, processors copy nothing, and little is left to
  * sync at the end.
  *
@@ -6,21 +6,20 @@
  * not been written; all that have come before have been, or are on their way from the other buffer. */
 #include "triangle/hdf5/buffer.h"
 
-#include <aio.h>
 #include <assert.h>
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "triangle/base/system.h"
 #include "triangle/text/stream.h"
 
-enum { BUFFER_BYTES = 1 << 20, PAGE_BYTES = 4096 }; /* what is a multiple of the latter may pass the system's cache */
+enum { BUFFER_BYTES = 1 << 20 };
 
-/* At most one piece at a time. All 0: nothing is under way. May not move while something is. */
+/* At most one piece at a time. */
 struct behind {
-    bool under_way;
-    const char *data; /* lent */
-    struct aiocb control;
+    struct tri_behind *under_way; /* NULL: nothing is */
+    const char *data;             /* lent */
+    size_t size;
+    uint64_t place;
 };
 
 struct strip {
@@ -49,43 +48,30 @@ static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_erro
 
 static bool is_aligned(uint64_t place, const char *data, size_t size)
 {
-    return (place | (uint64_t)(uintptr_t)data | size) % PAGE_BYTES == 0;
+    return (place | (uint64_t)(uintptr_t)data | size) % TRI_PAGE_BYTES == 0;
 }
 
 /* Begins to write to a place; nothing is under way. The data are lent until it is waited for. Returns 0 or what
  * tri_output_conclude makes an error of. */
-static int behind_start(struct behind *behind, struct tri_output *output, uint64_t place, const char *data,
-                     size_t size)
+static int start_behind(struct behind *behind, struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
     assert(!behind->under_way && tri_output_has_places(output));
     if (tri_stop_is_asked(output->stop))
         return TRI_OUTPUT_STOPPED;
-    memset(&behind->control, 0, sizeof behind->control);
-    behind->control.aio_fildes = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
-    behind->control.aio_offset = (off_t)place;
-    behind->data = data;
-    behind->control.aio_buf = (void *)data; /* is read alone */
-    behind->control.aio_nbytes = size;
-    behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
-    behind->under_way = aio_write(&behind->control) == 0;
+    const tri_file file = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
+    *behind = (struct behind){tri_behind_start(file, data, size, place), data, size, place};
     return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
 }
 
 /* Waits for what is under way, if anything is: then it is written. Returns the same. What cannot be asked for, or is
  * done in part only, is written as everything else is. */
-static int behind_wait(struct behind *behind, const struct tri_output *output)
+static int wait_behind(struct behind *behind, const struct tri_output *output)
 {
-    const struct aiocb *const control = &behind->control;
     if (!behind->under_way)
         return 0;
-    while (aio_error(control) == EINPROGRESS)
-        (void)aio_suspend(&control, 1, NULL);
-    const int fault = aio_error(control);
-    const ssize_t written = aio_return(&behind->control);
-    const size_t done = fault == 0 && written > 0 ? (size_t)written : 0;
-    behind->under_way = false;
-    return tri_output_write_at(output, (uint64_t)control->aio_offset + done, behind->data + done,
-                               control->aio_nbytes - done);
+    const size_t done = tri_behind_wait(behind->under_way);
+    behind->under_way = NULL;
+    return tri_output_write_at(output, behind->place + done, behind->data + done, behind->size - done);
 }
 
 /* --- one array */
@@ -93,9 +79,7 @@ static int behind_wait(struct behind *behind, const struct tri_output *output)
 /* Where bytes go that may pass the system's cache. */
 static char *new_buffer(const struct strip *s)
 {
-    void *buffer = NULL;
-    const size_t bytes = (size_t)s->room * tri_h5_row_bytes(s->laid);
-    return posix_memalign(&buffer, PAGE_BYTES, bytes) == 0 ? buffer : NULL;
+    return tri_page_alloc((size_t)s->room * tri_h5_row_bytes(s->laid));
 }
 
 static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
@@ -109,12 +93,12 @@ static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
 /* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
 static int send(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
 {
-    int result = behind_wait(&s->behind, part->file);
+    int result = wait_behind(&s->behind, part->file);
     s->other = part->alone && !s->other ? new_buffer(s) : s->other;
     if (result || !s->other)
         return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
     char *buffer = s->buffer;
-    result = behind_start(&s->behind, part->file, place, buffer, bytes);
+    result = start_behind(&s->behind, part->file, place, buffer, bytes);
     s->buffer = s->other;
     s->other = buffer;
     return result;
@@ -172,7 +156,7 @@ enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kin
 {
     struct strip *s = &part->strip[kind];
     enum tri_status status = flush(part, s, error);
-    status = status ? status : tri_output_conclude(part->file, behind_wait(&s->behind, part->file), error);
+    status = status ? status : tri_output_conclude(part->file, wait_behind(&s->behind, part->file), error);
     if (status)
         return status;
     free(s->buffer);
@@ -227,7 +211,7 @@ void tri_h5_part_free(struct tri_h5_part *part)
 {
     for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
         struct strip *s = &part->strip[kind];
-        (void)behind_wait(&s->behind, part->file);
+        (void)wait_behind(&s->behind, part->file);
         free(s->buffer);
         free(s->other);
     }

@@ -10,12 +10,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #if H5_VERSION_GE(1, 13, 0)
 #include <H5FDdevelop.h>
 #endif
 
-#include "triangle/base/at_place.h"
+#include "triangle/base/system.h"
 
 enum { PAGE_BYTES = 4096, LARGE_BYTES = 1 << 16 }; /* what is large begins at a page */
 
@@ -82,7 +81,7 @@ static herr_t note(struct tri_h5_file *file, int failure)
 static herr_t read_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, void *data)
 {
     const struct driven *driven = (const struct driven *)head;
-    const ssize_t got = tri_read_at(driven->file->output->file, data, size, place);
+    const int64_t got = tri_read_at(driven->file->output->file, data, size, place);
     (void)kind, (void)transfer;
     if (got < 0)
         return note(driven->file, errno);
@@ -113,8 +112,7 @@ static herr_t truncate_driven(H5FD_t *head, hid_t transfer, hbool_t closing)
     driven->written = driven->allocated;
     if (driven->file->failure != 0)
         return 0;
-    int result = ftruncate(driven->file->output->file, (off_t)driven->allocated);
-    return note(driven->file, result == 0 ? 0 : errno);
+    return note(driven->file, tri_file_cut(driven->file->output->file, driven->allocated) ? 0 : errno);
 }
 
 static const H5FD_class_t driver = {

@@ -8,15 +8,13 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "triangle/base/system.h"
 #include "triangle/hdf5/array.h"
 #include "triangle/hdf5/layout.h"
 
@@ -181,15 +179,15 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
 /* HDF5 does not tell a file that is not there from one that is none of its own. */
 static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
 {
-    struct stat state;
-    int file = open(h5->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0)
+    struct tri_file_facts facts;
+    const tri_file file = tri_file_open(h5->path, TRI_OPEN_LOOK);
+    if (file == TRI_NO_FILE)
         return tri_fail(error, TRI_CANNOT_READ, h5->path, 0, "cannot open: %s", strerror(errno));
-    const bool regular = fstat(file, &state) == 0 && S_ISREG(state.st_mode);
-    close(file);
+    const bool regular = tri_file_look(file, &facts) && facts.kind == TRI_REGULAR;
+    (void)tri_file_close(file);
     if (!regular)
         return tri_fail(error, TRI_CANNOT_READ, h5->path, 0, "not a regular file");
-    h5->bytes = (int64_t)state.st_size;
+    h5->bytes = (int64_t)facts.size;
     h5->file = H5Fopen(h5->path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (h5->file < 0)
         return tri_fail(error, TRI_CANNOT_READ, h5->path, 0, "not an HDF5 file that can be opened: \"%s\"",

@@ -4,10 +4,8 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "triangle/base/at_place.h"
-#include "triangle/text/text.h"
+#include "triangle/base/system.h"
 
 enum { END_BYTES = TRI_H5_KEPT_SEGMENTS * 16, BATCH_BYTES = TRI_H5_KEPT_SEGMENTS * 20 };
 
@@ -68,7 +66,7 @@ enum tri_status tri_h5_segments_next(struct tri_h5_segments *s, struct tri_tile 
     enum tri_status status = TRI_OK;
     if (spooled && s->n_read == 0) /* the last batch makes room for the first */
         status = write_batch(s, error);
-    if (!status && spooled && !(left > 0 ? read_batch(s) : ftruncate(s->spool->file, 0) == 0))
+    if (!status && spooled && !(left > 0 ? read_batch(s) : tri_file_cut(s->spool->file, 0)))
         status = tri_fail_system(error, TRI_CANNOT_WRITE, s->spool->path, "cannot read segments again", errno);
     *tile = (struct tri_tile){.ends = (const int64_t(*)[2])s->ends, .segment_markers = s->markers,
                               .first_segment = s->n_read};

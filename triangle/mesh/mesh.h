@@ -25,7 +25,6 @@
 #include "triangle/base/executor.h"
 #include "triangle/base/ids.h"
 #include "triangle/base/status.h"
-#include "triangle/base/stop.h"
 #include "triangle/geometry/shape.h"
 #include "triangle/mesh/pslg.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "triangle/base/size_text.h"
-#include "triangle/base/stop.h"
+#include "triangle/base/status.h"
 #include "triangle/size/asked.h"
 #include "triangle/size/crowd.h"
 #include "triangle/size/integral.h"

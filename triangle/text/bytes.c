@@ -1,21 +1,17 @@
 #include "triangle/text/bytes.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "triangle/base/at_place.h"
-#include "triangle/text/text.h"
+#include "triangle/base/system.h"
 
-static enum tri_status read_all(struct tri_bytes *bytes, int file, size_t size, const char *path,
+static enum tri_status read_all(struct tri_bytes *bytes, tri_file file, size_t size, const char *path,
                                 struct tri_error *error)
 {
     bytes->data = malloc(size + 1);
     if (!bytes->data)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for %zu bytes", size);
-    const ssize_t got = tri_read_at(file, bytes->data, size, 0);
+    const int64_t got = tri_read_at(file, bytes->data, size, 0);
     if (got < 0)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot read", errno);
     if ((size_t)got < size)
@@ -27,16 +23,16 @@ static enum tri_status read_all(struct tri_bytes *bytes, int file, size_t size, 
 
 enum tri_status tri_bytes_load(struct tri_bytes *bytes, const char *path, struct tri_error *error)
 {
-    struct stat state;
+    struct tri_file_facts facts;
     *bytes = (struct tri_bytes){0};
-    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe that nobody writes would hang */
-    if (file < 0)
+    const tri_file file = tri_file_open(path, TRI_OPEN_LOOK); /* a pipe that nobody writes would hang */
+    if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
     enum tri_status status = TRI_OK;
-    if (fstat(file, &state) != 0 || !S_ISREG(state.st_mode))
+    if (!tri_file_look(file, &facts) || facts.kind != TRI_REGULAR)
         status = tri_fail(error, TRI_CANNOT_READ, path, 0, "not a regular file");
-    status = status ? status : read_all(bytes, file, (size_t)state.st_size, path, error);
-    close(file);
+    status = status ? status : read_all(bytes, file, (size_t)facts.size, path, error);
+    (void)tri_file_close(file);
     return status;
 }
 

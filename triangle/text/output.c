@@ -2,37 +2,19 @@
  *
  * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
  * be replaced gets a second name, by which it can be put back. */
-#define _GNU_SOURCE /* O_DIRECT, sync_file_range */
-
 #include "triangle/text/output.h"
 
 #include <assert.h>
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <time.h>
 
-#include "triangle/base/at_place.h"
+#include "triangle/base/system.h"
 #include "triangle/text/names.h"
-#include "triangle/text/text.h"
-
-#ifndef O_DIRECT
-#define O_DIRECT 0 /* the system has no such thing */
-#endif
-#ifndef SYNC_FILE_RANGE_WRITE
-#define SYNC_FILE_RANGE_WRITE 0
-#define SYNC_FILE_RANGE_WAIT_AFTER 0
-#define sync_file_range(file, place, bytes, how) 0
-#endif
 
 enum {
-    MAX_LINKS = 40,
-    MAX_PATH = 4096,
     MAX_NAMES = 1000, /* temporary names to try */
     HOST_BYTES = 100, /* of the host's name in a temporary name, at most */
     NAME_BYTES = 200  /* of a temporary name: file systems allow 255 */
@@ -53,64 +35,6 @@ static char *beside(const char *directory_of, const char *name)
     return tri_name(directory_of, directory_length(directory_of), name);
 }
 
-static bool stat_directory(const char *path, struct stat *status)
-{
-    char name[MAX_PATH];
-    const size_t length = directory_length(path);
-    if (length + 2 > sizeof name)
-        return false;
-    memcpy(name, path, length);
-    strcpy(name + length, ".");
-    return stat(name, status) == 0;
-}
-
-/* Made by this user, the administrator or who owns the directory? Anybody else's may lead to what only we can write. */
-static bool is_trusted_link(const char *path)
-{
-    struct stat link, directory;
-    return lstat(path, &link) == 0 && stat_directory(path, &directory) &&
-           (link.st_uid == geteuid() || link.st_uid == 0 || link.st_uid == directory.st_uid);
-}
-
-/* What a symbolic link at path points to, malloc'ed; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
-static char *follow(const char *path)
-{
-    char target[MAX_PATH];
-    const ssize_t length = readlink(path, target, sizeof target);
-    if (length < 0)
-        return NULL;
-    if (!is_trusted_link(path)) {
-        errno = EPERM;
-        return NULL;
-    }
-    if ((size_t)length == sizeof target) {
-        errno = ENAMETOOLONG;
-        return NULL;
-    }
-    target[length] = 0;
-    return beside(target[0] == '/' ? "" : path, target);
-}
-
-/* The path behind all symbolic links, existing or not, malloc'ed; NULL and errno on failure. Renaming onto it keeps the
- * links. */
-static char *resolve(const char *path)
-{
-    char *resolved = beside("", path);
-    for (int i = 0; resolved && i < MAX_LINKS; i++) {
-        char *const next = follow(resolved);
-        if (!next && (errno == EINVAL || errno == ENOENT))
-            return resolved;
-        const int reason = errno;
-        free(resolved);
-        errno = reason;
-        resolved = next;
-    }
-    if (resolved)
-        errno = ELOOP;
-    free(resolved);
-    return NULL;
-}
-
 static enum tri_status cannot_create(const struct tri_output *output, struct tri_error *error)
 {
     const int reason = errno;
@@ -124,9 +48,8 @@ static enum tri_status cannot_create(const struct tri_output *output, struct tri
 /* ".tri-<host>-", with which the names of this host begin. */
 static void put_prefix(char name[NAME_BYTES])
 {
-    char host[HOST_BYTES] = "";
-    if (gethostname(host, sizeof host - 1) != 0) /* a longer name is cut, with or without an error */
-        host[sizeof host - 1] = 0;
+    char host[HOST_BYTES];
+    (void)tri_host_name(host, sizeof host);
     for (char *at = host; *at; at++)
         if (*at == '/')
             *at = '_';
@@ -140,7 +63,7 @@ static char *temporary_name(const char *path, int i)
     char name[NAME_BYTES];
     put_prefix(name);
     size_t length = strlen(name);
-    snprintf(name + length, sizeof name - length, "%ld-%d.tmp", (long)getpid(), i);
+    snprintf(name + length, sizeof name - length, "%ld-%d.tmp", tri_process(), i);
     return beside(path, name);
 }
 
@@ -158,45 +81,43 @@ static long process_of(const char *name, const char *prefix)
     return number > 0 && strcmp(at + process + 1 + number, ".tmp") == 0 ? strtol(at, NULL, 10) : 0;
 }
 
-enum lock { LOCKED, HELD_BY_ANOTHER, NO_LOCKS };
+/* Temporary files in one folder. */
+struct leftovers {
+    tri_file folder;
+    char prefix[NAME_BYTES]; /* of this host's */
+};
 
-/* The lock goes when this process closes the file, by any descriptor, or dies. */
-static enum lock try_lock(int file)
+/* Removes the file if its process is gone and nobody works on it. Who makes one looks, once he has the lock, whether it
+ * is still there. A file of this process is never opened: to close it again would drop its lock. */
+static bool remove_if_left(void *user, const char *name)
 {
-    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    if (fcntl(file, F_SETLK, &whole) == 0)
-        return LOCKED;
-    return errno == EACCES || errno == EAGAIN ? HELD_BY_ANOTHER : NO_LOCKS;
+    const struct leftovers *left = user;
+    const long process = process_of(name, left->prefix);
+    if (process <= 0 || process == tri_process() || !tri_process_is_gone(process))
+        return true;
+    const tri_file file = tri_folder_file(left->folder, name, TRI_FOLDER_CHANGE);
+    if (file != TRI_NO_FILE && tri_file_lock(file) == TRI_LOCKED)
+        (void)tri_folder_drop(left->folder, name);
+    (void)tri_file_close(file);
+    return true;
 }
 
-/* Removes the file if nobody works on it. Who makes one looks, once he has the lock, whether it is still there. */
-static void remove_if_left(int directory, const char *name)
+static tri_file open_folder_of(const char *path)
 {
-    struct stat status;
-    int file = openat(directory, name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    if (file < 0)
-        return;
-    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() && try_lock(file) == LOCKED)
-        unlinkat(directory, name, 0);
-    close(file);
+    char *name = beside(path, ".");
+    const tri_file folder = name ? tri_folder_open(name, false) : TRI_NO_FILE;
+    free(name);
+    return folder;
 }
 
-/* Temporary files beside `path` whose processes are gone. A file of this process is never opened: to close it again
- * would drop its lock. */
+/* Temporary files beside `path` whose processes are gone. */
 static void remove_left(const char *path)
 {
-    char prefix[NAME_BYTES];
-    char *name = beside(path, ".");
-    DIR *directory = name ? opendir(name) : NULL;
-    free(name);
-    put_prefix(prefix);
-    for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        long process = process_of(entry->d_name, prefix);
-        if (process > 0 && process != (long)getpid() && kill((pid_t)process, 0) != 0 && errno == ESRCH)
-            remove_if_left(dirfd(directory), entry->d_name);
-    }
-    if (directory)
-        closedir(directory);
+    struct leftovers left = {.folder = open_folder_of(path)};
+    put_prefix(left.prefix);
+    if (left.folder != TRI_NO_FILE)
+        (void)tri_folder_list(left.folder, remove_if_left, &left);
+    (void)tri_file_close(left.folder);
 }
 
 static bool is_same_directory(const char *a, const char *b)
@@ -214,30 +135,29 @@ static void tidy_up(const struct tri_output_set *set, const char *path)
 }
 
 /* Is the file ours, and still there? Somebody who tidied up may have come between its making and its lock. */
-static bool is_kept(int file)
+static bool is_kept(tri_file file)
 {
-    struct stat status;
-    return try_lock(file) != HELD_BY_ANOTHER && fstat(file, &status) == 0 && status.st_nlink > 0;
+    struct tri_file_facts facts;
+    return tri_file_lock(file) != TRI_LOCKED_BY_ANOTHER && tri_file_look(file, &facts) && facts.names > 0;
 }
 
-/* O_EXCL decides between processes and threads that try the same name. The mode is that of any new file, so that the
- * process's mask applies. */
+/* The system decides between processes and threads that try the same name. */
 static enum tri_status create_temporary(struct tri_output_set *set, struct tri_output *output, struct tri_error *error)
 {
     for (int i = 0; i < MAX_NAMES; i++) {
         char *const name = temporary_name(output->path, set->next_name++);
         if (!name)
             return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
-        output->file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (output->file >= 0 && is_kept(output->file)) {
+        output->file = tri_file_open(name, TRI_OPEN_NEW);
+        if (output->file != TRI_NO_FILE && is_kept(output->file)) {
             output->temporary = name;
             return TRI_OK;
         }
         const int reason = errno;
         free(name);
-        if (output->file >= 0) {
-            close(output->file);
-            output->file = -1;
+        if (output->file != TRI_NO_FILE) {
+            (void)tri_file_close(output->file);
+            output->file = TRI_NO_FILE;
         } else if (reason != EEXIST && reason != EINTR) {
             errno = reason;
             return cannot_create(output, error);
@@ -252,38 +172,41 @@ static enum tri_status create_temporary(struct tri_output_set *set, struct tri_o
 static enum tri_status open_in_place(struct tri_output *output, struct tri_error *error)
 {
     do
-        output->file = open(output->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    while (output->file < 0 && errno == EINTR && !tri_stop_is_asked(output->stop)); /* a pipe that nobody reads */
-    if (output->file < 0)
+        output->file = tri_file_open(output->path, TRI_OPEN_DEVICE);
+    while (output->file == TRI_NO_FILE && errno == EINTR && !tri_stop_is_asked(output->stop));
+    if (output->file == TRI_NO_FILE)
         return errno == EINTR ? tri_fail_stopped(error) : cannot_create(output, error);
-    struct stat now;
-    const int known = fstat(output->file, &now);
-    if (known == 0 && !S_ISREG(now.st_mode))
+    struct tri_file_facts now;
+    if (tri_file_look(output->file, &now) && now.kind != TRI_REGULAR)
         return TRI_OK;
-    close(output->file);
-    output->file = -1;
+    (void)tri_file_close(output->file);
+    output->file = TRI_NO_FILE;
     return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "has become another file since it was looked at");
 }
 
 /* Refuses what cannot become a file. */
-static enum tri_status check_target(const struct tri_output *output, const struct stat *old, struct tri_error *error)
+static enum tri_status check_target(const struct tri_output *output, const struct tri_file_facts *old,
+                                    struct tri_error *error)
 {
     const bool has_name = output->path[directory_length(output->path)] != 0;
-    if (!has_name || (old && S_ISDIR(old->st_mode))) {
+    if (!has_name || (old && old->kind == TRI_FOLDER)) {
         errno = EISDIR;
         return cannot_create(output, error);
     }
-    return old && access(output->path, W_OK) != 0 ? cannot_create(output, error) : TRI_OK;
+    return old && !tri_path_allows(output->path, TRI_WRITABLE) ? cannot_create(output, error) : TRI_OK;
 }
 
 /* old: of the file at path; NULL: there is none. */
-static struct tri_output_place place_of(const char *path, const struct stat *old)
+static struct tri_output_place place_of(const char *path, const struct tri_file_facts *old)
 {
-    struct stat directory;
-    const bool is_known = old ? S_ISREG(old->st_mode) : stat_directory(path, &directory);
-    const struct stat *at = old ? old : &directory;
-    return is_known ? (struct tri_output_place){true, old != NULL, (uint64_t)at->st_dev, (uint64_t)at->st_ino}
-                    : (struct tri_output_place){0};
+    char folder[TRI_PATH];
+    struct tri_file_facts at;
+    snprintf(folder, sizeof folder, "%.*s.", (int)directory_length(path), path);
+    const bool is_known = old ? old->kind == TRI_REGULAR : tri_path_look(folder, &at);
+    if (!is_known)
+        return (struct tri_output_place){0};
+    at = old ? *old : at;
+    return (struct tri_output_place){true, old != NULL, at.device, at.node};
 }
 
 static bool is_same_place(const struct tri_output_place *a, const char *path_a, const struct tri_output_place *b,
@@ -295,9 +218,9 @@ static bool is_same_place(const struct tri_output_place *a, const char *path_a, 
 
 bool tri_is_same_file(const char *a, const char *b)
 {
-    struct stat old;
-    const struct tri_output_place of_a = place_of(a, stat(a, &old) == 0 ? &old : NULL);
-    const struct tri_output_place of_b = place_of(b, stat(b, &old) == 0 ? &old : NULL);
+    struct tri_file_facts old;
+    const struct tri_output_place of_a = place_of(a, tri_path_look(a, &old) ? &old : NULL);
+    const struct tri_output_place of_b = place_of(b, tri_path_look(b, &old) ? &old : NULL);
     return is_same_place(&of_a, a, &of_b, b);
 }
 
@@ -315,9 +238,10 @@ static enum tri_status check_others(const struct tri_output_set *set, const stru
 static enum tri_status open_output(struct tri_output_set *set, struct tri_output *output, const char *path,
                                    struct tri_error *error)
 {
-    struct stat old;
-    const bool exists = stat(path, &old) == 0, replaces = exists && S_ISREG(old.st_mode);
-    output->path = !exists || replaces ? resolve(path) : beside("", path); /* /dev/stdout must not be followed */
+    struct tri_file_facts old;
+    const bool exists = tri_path_look(path, &old), replaces = exists && old.kind == TRI_REGULAR;
+    output->path = !exists || replaces ? tri_path_resolve(path)
+                                       : beside("", path); /* /dev/stdout must not be followed */
     if (!output->path && errno == EPERM)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "is a link that another user made, which is not followed");
     if (!output->path)
@@ -333,32 +257,30 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
     tidy_up(set, output->path);
     status = create_temporary(set, output, error);
     output->replaces = replaces;
-    if (status == TRI_OK && replaces && fchmod(output->file, old.st_mode & 0777) != 0)
+    if (status == TRI_OK && replaces && !tri_file_permit(output->file, &old))
         return cannot_create(output, error);
     return status;
 }
 
-/* Closing any descriptor of a file drops its lock: so this comes right before the other one is closed. */
+/* Closing any opening of a file drops its lock: so this comes right before the other one is closed. */
 static void close_direct(struct tri_output *output)
 {
-    if (output->direct >= 0)
-        close(output->direct);
-    output->direct = -1;
+    (void)tri_file_close(output->direct);
+    output->direct = TRI_NO_FILE;
 }
 
 static void discard(struct tri_output *output)
 {
     close_direct(output);
-    if (output->file >= 0)
-        close(output->file);
+    (void)tri_file_close(output->file);
     if (output->temporary)
-        unlink(output->temporary);
+        (void)tri_path_remove(output->temporary);
     if (output->old)
-        unlink(output->old);
+        (void)tri_path_remove(output->old);
     free(output->old);
     free(output->temporary);
     free(output->path);
-    *output = (struct tri_output){.file = -1, .direct = -1};
+    *output = (struct tri_output){.file = TRI_NO_FILE, .direct = TRI_NO_FILE};
 }
 
 enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
@@ -367,7 +289,7 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
     *output = NULL;
     if (set->n == TRI_MAX_OUTPUTS)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "more than %d files at a time", TRI_MAX_OUTPUTS);
-    struct tri_output new = {.file = -1, .direct = -1, .stop = set->stop};
+    struct tri_output new = {.file = TRI_NO_FILE, .direct = TRI_NO_FILE, .stop = set->stop};
     const enum tri_status status = open_output(set, &new, path, error);
     if (status != TRI_OK) {
         discard(&new);
@@ -380,7 +302,7 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
 
 enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *error)
 {
-    if (!tri_output_has_places(output) || ftruncate(output->file, 0) != 0)
+    if (!tri_output_has_places(output) || !tri_file_cut(output->file, 0))
         return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "cannot be written a second time");
     output->size = 0;
     output->failed = false;
@@ -389,11 +311,10 @@ enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *
 
 /* --- writing and closing */
 
-/* write() or, for files, pwrite() of as much as the system takes at once. */
-static ssize_t write_some(const struct tri_output *output, uint64_t place, const char *data, size_t size)
+static int64_t write_some(const struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
-    return tri_output_has_places(output) ? pwrite(output->file, data, size, (off_t)place)
-                                         : write(output->file, data, size);
+    return tri_output_has_places(output) ? tri_write_some(output->file, data, size, place)
+                                         : tri_write_next(output->file, data, size);
 }
 
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size)
@@ -401,7 +322,7 @@ int tri_output_write_at(const struct tri_output *output, uint64_t place, const c
     while (size > 0) {
         if (tri_stop_is_asked(output->stop))
             return TRI_OUTPUT_STOPPED;
-        const ssize_t written = write_some(output, place, data, size);
+        const int64_t written = write_some(output, place, data, size);
         if (written < 0 && errno != EINTR)
             return errno;
         if (written > 0) {
@@ -423,42 +344,30 @@ enum tri_status tri_output_conclude(struct tri_output *output, int result, struc
     return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", result);
 }
 
-int tri_output_direct(struct tri_output *output)
+tri_file tri_output_direct(struct tri_output *output)
 {
-    char name[64];
     assert(tri_output_has_places(output));
-    if (output->direct < 0 && !output->no_direct) {
-        snprintf(name, sizeof name, "/proc/self/fd/%d", output->file);
-        output->direct = O_DIRECT ? open(name, O_WRONLY | O_DIRECT | O_CLOEXEC) : -1;
-        output->no_direct = output->direct < 0;
+    if (output->direct == TRI_NO_FILE && !output->no_direct) {
+        output->direct = tri_file_direct(output->file);
+        output->no_direct = output->direct == TRI_NO_FILE;
     }
-    return output->direct >= 0 ? output->direct : output->file;
-}
-
-/* 0, or why not; systems that cannot be asked for it are not. */
-static int sync_to_disk(int file)
-{
-    int result;
-    do
-        result = fsync(file);
-    while (result != 0 && errno == EINTR);
-    return result == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+    return output->no_direct ? output->file : output->direct;
 }
 
 enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error)
 {
-    return tri_output_conclude(output, sync_to_disk(output->file), error);
+    return tri_output_conclude(output, tri_file_sync(output->file) ? 0 : errno, error);
 }
 
 /* Starts the writing of an open file to the disk, if the system has a call for that. Returns its bytes; 0: it is not
  * open. */
 static uint64_t send_off(const struct tri_output *output)
 {
-    struct stat status;
-    if (!tri_output_has_places(output) || fstat(output->file, &status) != 0)
+    struct tri_file_facts facts;
+    if (!tri_output_has_places(output) || !tri_file_look(output->file, &facts))
         return 0;
-    (void)sync_file_range(output->file, 0, 0, SYNC_FILE_RANGE_WRITE);
-    return (uint64_t)status.st_size;
+    tri_file_send_off(output->file, 0, 0);
+    return facts.size;
 }
 
 /* In pieces, between which whoever asks for the end is heard. */
@@ -467,7 +376,7 @@ static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_erro
     enum { PIECE = 1 << 24 };
     const uint64_t bytes = send_off(output);
     for (uint64_t place = 0; place < bytes; place += PIECE) {
-        (void)sync_file_range(output->file, (off_t)place, PIECE, SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+        tri_file_await(output->file, place, PIECE);
         if (tri_stop_is_asked(output->stop))
             return tri_fail_stopped(error);
     }
@@ -517,7 +426,7 @@ static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *
         done += n;
     }
     output->size = end + (uint64_t)by;
-    if (!result && by < 0 && ftruncate(output->file, (off_t)output->size) != 0)
+    if (!result && by < 0 && !tri_file_cut(output->file, output->size))
         result = errno;
     return result;
 }
@@ -533,17 +442,20 @@ enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64
     return tri_output_conclude(output, result, error);
 }
 
-/* Some file systems report only here that the data found no room. */
+/* Closes the file, if it is open. */
+static enum tri_status close_file(struct tri_output *output, struct tri_error *error)
+{
+    const bool closed = tri_file_close(output->file);
+    output->file = TRI_NO_FILE;
+    return closed ? TRI_OK : tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
+}
+
 static enum tri_status close_output(struct tri_output *output, struct tri_error *error)
 {
     if (output->failed)
         return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "the file is not complete");
     close_direct(output);
-    const int result = output->file < 0 ? 0 : close(output->file);
-    output->file = -1;
-    if (result != 0 && errno != EINTR) /* after EINTR the descriptor is closed all the same */
-        return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
-    return TRI_OK;
+    return close_file(output, error);
 }
 
 /* --- final names */
@@ -553,7 +465,7 @@ static void keep_old(struct tri_output_set *set, struct tri_output *output)
 {
     for (int i = 0; output->temporary && !output->old && i < MAX_NAMES; i++) {
         char *const name = temporary_name(output->path, set->next_name++);
-        if (name && link(output->path, name) == 0) {
+        if (name && tri_path_link(output->path, name)) {
             output->old = name;
             return;
         }
@@ -568,7 +480,7 @@ static enum tri_status rename_output(struct tri_output *output, struct tri_error
 {
     if (!output->temporary)
         return TRI_OK;
-    if (rename(output->temporary, output->path) != 0)
+    if (!tri_path_rename(output->temporary, output->path))
         return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", errno);
     free(output->temporary);
     output->temporary = NULL;
@@ -579,23 +491,20 @@ static enum tri_status rename_output(struct tri_output *output, struct tri_error
 /* What stood under the name before stands there again: the old file, or none. */
 static void put_back(struct tri_output *output)
 {
-    if (output->renamed && output->old && rename(output->old, output->path) == 0) {
+    if (output->renamed && output->old && tri_path_rename(output->old, output->path)) {
         free(output->old);
         output->old = NULL;
     } else if (output->renamed && !output->old && !output->replaces) {
-        unlink(output->path);
+        (void)tri_path_remove(output->path);
     }
 }
 
 /* So the new name is on the disk. A folder that cannot be read is passed over. */
 static enum tri_status sync_folder(const struct tri_output *output, struct tri_error *error)
 {
-    char *name = beside(output->path, ".");
-    const int folder = name ? open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
-    const int result = folder >= 0 ? sync_to_disk(folder) : 0;
-    if (folder >= 0)
-        close(folder);
-    free(name);
+    const tri_file folder = open_folder_of(output->path);
+    const int result = folder == TRI_NO_FILE || tri_file_sync(folder) ? 0 : errno;
+    (void)tri_file_close(folder);
     return result ? tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", result) : TRI_OK;
 }
 
@@ -624,3 +533,75 @@ void tri_outputs_abort(struct tri_output_set *set)
     set->n = 0;
 }
 
+/* --- files that several processes write */
+
+static bool put_words(char *at, size_t room, const char *text)
+{
+    const size_t n = text ? strlen(text) + 1 : room + 1;
+    if (n <= room)
+        memcpy(at, text, n);
+    return n <= room;
+}
+
+bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
+{
+    enum { MOST = 1 << 16 };
+    struct timespec now = {0};
+    struct tri_file_facts facts;
+    char *temporary = output->temporary ? tri_path_from_root(output->temporary) : NULL;
+    bool made = put_words(ticket->temporary, TRI_TICKET_PATH, temporary) &&
+                put_words(ticket->path, TRI_TICKET_PATH, output->path) &&
+                tri_host_name(ticket->host, TRI_TICKET_HOST) && timespec_get(&now, TIME_UTC) == TIME_UTC;
+    free(temporary);
+    ticket->length = made ? 1 + (uint64_t)(now.tv_nsec / 16 + tri_process()) % MOST : 0;
+    made = made && tri_file_cut(output->file, ticket->length) && tri_file_look(output->file, &facts);
+    ticket->inode = made ? facts.node : 0;
+    if (!made)
+        ticket->path[0] = 0;
+    return made;
+}
+
+bool tri_output_join(struct tri_output *output, struct tri_ticket *ticket, const struct tri_stop *stop)
+{
+    struct tri_file_facts facts;
+    *output = (struct tri_output){.path = ticket->path, .temporary = ticket->temporary, .direct = TRI_NO_FILE,
+                                  .stop = stop, .file = tri_file_open(ticket->temporary, TRI_OPEN_JOIN)};
+    if (output->file == TRI_NO_FILE)
+        return false;
+    if (tri_file_look(output->file, &facts) && facts.node == ticket->inode && facts.size == ticket->length &&
+        tri_file_keeps_apart(output->file, ticket->host))
+        return true;
+    (void)tri_file_close(output->file);
+    output->file = TRI_NO_FILE;
+    return false;
+}
+
+enum tri_status tri_output_leave(struct tri_output *output, bool on_disk, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (on_disk && output->file != TRI_NO_FILE)
+        status = tri_output_sync(output, error);
+    const enum tri_status closed = close_file(output, status ? NULL : error);
+    return status ? status : closed;
+}
+
+enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output *to, uint64_t place, uint64_t n,
+                                struct tri_error *error)
+{
+    enum { PIECE = 1 << 20 };
+    int result = 0;
+    char *buffer = malloc(PIECE);
+    if (!buffer)
+        return tri_fail(error, TRI_NO_MEMORY, to->path, 0, "no memory to write the file");
+    for (uint64_t done = 0; done < n && !result; done += PIECE) {
+        const size_t piece = n - done < PIECE ? (size_t)(n - done) : PIECE;
+        if (!tri_read_again(from->file, buffer, piece, done)) {
+            const int reason = errno;
+            free(buffer);
+            return tri_fail_system(error, TRI_CANNOT_WRITE, from->path, "cannot read again", reason);
+        }
+        result = tri_output_write_at(to, place + done, buffer, piece);
+    }
+    free(buffer);
+    return tri_output_conclude(to, result, error);
+}

@@ -18,7 +18,7 @@
 #include <stdint.h>
 
 #include "triangle/base/status.h"
-#include "triangle/base/stop.h"
+#include "triangle/base/system.h"
 
 enum { TRI_MAX_OUTPUTS = 544 };
 
@@ -36,8 +36,8 @@ struct tri_output {
     char *old;       /* while files are renamed: a second name of the one that is replaced; NULL: none */
     bool replaces;   /* there was a file of that name */
     bool renamed;    /* it has its name */
-    int file;        /* descriptor; -1: closed */
-    int direct;      /* another one for the same file, past the system's cache; -1: none */
+    tri_file file;   /* TRI_NO_FILE: closed */
+    tri_file direct; /* the same file, past the system's cache; TRI_NO_FILE: not opened */
     bool no_direct;  /* there can be none */
     uint64_t size;   /* bytes written or reserved */
     bool failed;     /* something could not be written */
@@ -84,9 +84,9 @@ enum { TRI_OUTPUT_STOPPED = -1 };
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
 enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
 
-/* A descriptor of a file that has places, past the system's cache where that can be: then memory, sizes and places must
- * be aligned for it. Stays open until the output is closed. */
-int tri_output_direct(struct tri_output *output);
+/* A file that has places, past the system's cache where that can be: then memory, sizes and places must be aligned for
+ * it (tri_file_direct). It is the output's. */
+tri_file tri_output_direct(struct tri_output *output);
 
 /* All that has been written is on the disk afterwards. Where there is no way to ask for it, nothing happens. */
 enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error);
@@ -113,5 +113,37 @@ void tri_outputs_abort(struct tri_output_set *set);
 /* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
  * link itself? */
 bool tri_is_same_file(const char *a, const char *b);
+
+/* --- an output that several processes write, maybe on several machines, each to places of its
+ * own: one of them has opened it, and commits or aborts it; the others join in by a ticket.
+ *
+ * That a name means the same file elsewhere is not taken for granted: a ticket holds the file's number in its file
+ * system, and the file is given a length that tells it from others as long as tickets are out. Nobody reads the file
+ * for that: a system that keeps pages of it in mind might write them back later, with what it has read. Systems that
+ * write back whole pages (NFS, SMB) do not keep rows apart that meet in a page and come from two machines: there only
+ * processes of the machine that has opened the file join in. */
+
+enum { TRI_TICKET_PATH = 1024, TRI_TICKET_HOST = 256 };
+
+struct tri_ticket {
+    char path[TRI_TICKET_PATH];      /* as errors name the file; empty: no ticket */
+    char temporary[TRI_TICKET_PATH]; /* where it is now, from the root */
+    char host[TRI_TICKET_HOST];      /* the machine that has opened it */
+    uint64_t inode, length;
+};
+
+/* False: there can be none. Before anything is written; tri_output_restart ends it, once all have joined. */
+bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output);
+
+/* False: the file is not seen from here, or may not be written, or what is written here might not keep apart. The
+ * output borrows the ticket, and may be written to at places, by tri_output_write_at; to be left, not discarded. */
+bool tri_output_join(struct tri_output *output, struct tri_ticket *ticket, const struct tri_stop *stop);
+
+/* Closes it, if it is open, so that others see what has been written; on_disk: and it is safe there. */
+enum tri_status tri_output_leave(struct tri_output *output, bool on_disk, struct tri_error *error);
+
+/* Writes the first n bytes of one output, which has places, into another, from this place on. */
+enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output *to, uint64_t place, uint64_t n,
+                                struct tri_error *error);
 
 #endif

@@ -17,7 +17,6 @@
 
 #include "triangle/base/executor.h"
 #include "triangle/base/status.h"
-#include "triangle/base/stop.h"
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/pslg.h"
 

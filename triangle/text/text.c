@@ -5,15 +5,12 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "triangle/base/at_place.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/system.h"
 
 enum { DEFAULT_CHUNK = 1 << 18 };
 
@@ -41,15 +38,6 @@ const uint8_t tri_character_kind[256] = {
 };
 #undef J
 #undef S
-
-enum tri_status tri_fail_system(struct tri_error *error, enum tri_status status, const char *file, const char *what,
-                                int error_number)
-{
-    char reason[256];
-    if (strerror_r(error_number, reason, sizeof reason) != 0)
-        strcpy(reason, "unknown error");
-    return tri_fail(error, status, file, 0, "%s: %s", what, reason);
-}
 
 /* --- fields */
 
@@ -98,7 +86,7 @@ static const char *next_line(const char *at, const char *end)
 
 struct load {
     struct tri_text *text;
-    int file;
+    tri_file file;
     size_t file_size;
     int *errors; /* [n_chunks] error number of each chunk's read; -1: the file has become shorter */
 };
@@ -111,7 +99,7 @@ static void read_chunk(void *context, size_t i)
     const size_t begin = i * load->text->chunk_bytes;
     const size_t left = load->file_size - begin;
     const size_t n = left < load->text->chunk_bytes ? left : load->text->chunk_bytes;
-    const ssize_t got = tri_read_at(load->file, load->text->data + begin, n, begin);
+    const int64_t got = tri_read_at(load->file, load->text->data + begin, n, begin);
     load->errors[i] = got < 0 ? errno : (size_t)got < n ? -1 : 0;
 }
 
@@ -137,7 +125,7 @@ static enum tri_status read_sized(struct load *load, const struct tri_executor *
 }
 
 /* A pipe, or a file that does not say its size, to its end. */
-static enum tri_status read_stream(struct tri_text *text, int file, struct tri_error *error)
+static enum tri_status read_stream(struct tri_text *text, tri_file file, struct tri_error *error)
 {
     enum { PIECE = 1 << 16 };
     int64_t room = 0;
@@ -146,7 +134,7 @@ static enum tri_status read_stream(struct tri_text *text, int file, struct tri_e
             return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the file");
         if (tri_stop_is_asked(text->stop))
             return tri_fail_stopped(error);
-        const ssize_t got = read(file, text->data + text->size, (size_t)room - 1 - text->size);
+        const int64_t got = tri_read_next(file, text->data + text->size, (size_t)room - 1 - text->size);
         if (got == 0)
             return TRI_OK;
         if (got < 0 && errno != EINTR)
@@ -158,17 +146,17 @@ static enum tri_status read_stream(struct tri_text *text, int file, struct tri_e
     }
 }
 
-static enum tri_status read_open_file(struct tri_text *text, int file, const struct tri_executor *executor,
+static enum tri_status read_open_file(struct tri_text *text, tri_file file, const struct tri_executor *executor,
                                       struct tri_error *error)
 {
-    struct stat status;
-    if (fstat(file, &status) != 0)
+    struct tri_file_facts facts;
+    if (!tri_file_look(file, &facts))
         return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot read", errno);
-    if (S_ISDIR(status.st_mode))
+    if (facts.kind == TRI_FOLDER)
         return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "cannot read: this is a directory");
-    if (!S_ISREG(status.st_mode) || status.st_size == 0)
+    if (facts.kind != TRI_REGULAR || facts.size == 0)
         return read_stream(text, file, error);
-    struct load load = {text, file, (size_t)status.st_size, NULL};
+    struct load load = {text, file, (size_t)facts.size, NULL};
     const enum tri_status result = read_sized(&load, executor, error);
     free(load.errors);
     return result;
@@ -176,16 +164,16 @@ static enum tri_status read_open_file(struct tri_text *text, int file, const str
 
 static enum tri_status read_file(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
 {
-    int file;
+    tri_file file;
     do
-        file = open(text->name, O_RDONLY | O_CLOEXEC);
-    while (file < 0 && errno == EINTR && !tri_stop_is_asked(text->stop)); /* a pipe that nobody writes */
-    if (file < 0 && errno == EINTR)
+        file = tri_file_open(text->name, TRI_OPEN_READ);
+    while (file == TRI_NO_FILE && errno == EINTR && !tri_stop_is_asked(text->stop));
+    if (file == TRI_NO_FILE && errno == EINTR)
         return tri_fail_stopped(error);
-    if (file < 0)
+    if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot open", errno);
     const enum tri_status result = read_open_file(text, file, executor, error);
-    close(file);
+    (void)tri_file_close(file);
     return result;
 }
 

@@ -20,7 +20,6 @@
 
 #include "triangle/base/executor.h"
 #include "triangle/base/status.h"
-#include "triangle/base/stop.h"
 #include "triangle/text/decimal.h"
 
 struct tri_text_chunk {
@@ -52,10 +51,6 @@ void tri_text_free(struct tri_text *text);
 
 /* Indexes data[size], which end in a newline, anew. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
 enum tri_status tri_text_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error);
-
-/* tri_fail with the system's words for error_number behind `what`. */
-enum tri_status tri_fail_system(struct tri_error *error, enum tri_status status, const char *file, const char *what,
-                                int error_number);
 
 /* --- fields of one record */
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/base/mapped_file.h"
+#include "triangle/base/system.h"
 #include "triangle/text/stream.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
@@ -41,7 +41,7 @@ static void *extra(void *user, size_t bytes)
 {
     struct tri_tile_store *s = user;
     for (int k = KINDS; k < SHEETS; k++)
-        if (s->sheet[k].file < 0) {
+        if (s->sheet[k].file == TRI_NO_FILE) {
             const int fault = tri_mapped_file_extend(&s->sheet[k], s->folder, bytes + 1);
             void *at = s->sheet[k].at;
             if (fault)
@@ -125,7 +125,7 @@ enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *fo
     s->folder = folder;
     s->storage = (struct tri_storage){.extra = extra, .extra_free = extra_free, .user = s, .let_go = let_go};
     for (int k = 0; k < SHEETS; k++)
-        s->sheet[k].file = -1;
+        s->sheet[k].file = TRI_NO_FILE;
     *sink = (struct tri_sink){s, begin, take, NULL};
     return TRI_OK;
 }

@@ -3,10 +3,8 @@
 #include "triangle/text/window.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "triangle/base/grow.h"
 
@@ -14,7 +12,7 @@
 static enum tri_status fill(struct tri_window *w, struct tri_error *error)
 {
     while (!w->at_end && w->used + 1 < w->room) { /* a byte is kept for a final newline */
-        ssize_t got = read(w->file, w->data + w->used, w->room - 1 - w->used);
+        const int64_t got = tri_read_next(w->file, w->data + w->used, w->room - 1 - w->used);
         if (got < 0 && errno != EINTR)
             return tri_fail_system(error, TRI_CANNOT_READ, w->text.name, "cannot read", errno);
         w->at_end = got == 0;
@@ -71,21 +69,21 @@ enum tri_status tri_window_open(struct tri_window *w, const char *path, size_t b
     *w = (struct tri_window){.text = {.name = path, .chunk_bytes = 1 << 18}, .executor = executor};
     w->room = bytes + 1;
     w->data = malloc(w->room);
-    w->file = w->data ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    w->file = w->data ? tri_file_open(path, TRI_OPEN_READ) : TRI_NO_FILE;
     if (!w->data)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory for %zu bytes of text", bytes);
-    if (w->file < 0)
+    if (w->file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
     return move_on(w, error);
 }
 
 void tri_window_free(struct tri_window *w)
 {
-    if (w->data && w->file >= 0)
-        close(w->file);
+    if (w->data)
+        (void)tri_file_close(w->file);
     free(w->data);
     free(w->text.chunks);
-    *w = (struct tri_window){.file = -1};
+    *w = (struct tri_window){.file = TRI_NO_FILE};
 }
 
 /* Until there is a record in the stretch. */

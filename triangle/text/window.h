@@ -3,12 +3,13 @@
 #ifndef TRIANGLE_TEXT_WINDOW_H
 #define TRIANGLE_TEXT_WINDOW_H
 
+#include "triangle/base/system.h"
 #include "triangle/text/text.h"
 
 struct tri_window {
     struct tri_text text;     /* the stretch; its data are all of `data` up to the last whole line */
     struct tri_cursor cursor;
-    int file;                 /* -1: not open */
+    tri_file file;            /* TRI_NO_FILE: not open */
     char *data;
     size_t room, used;        /* bytes */
     bool at_end;              /* nothing is left to be read */

@@ -1,0 +1,622 @@
+/* The system is POSIX 2008, with what Linux has beside it where it has that: files without a name, /proc, writing past
+ * the cache. */
+#define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, sync_file_range, madvise, malloc_trim */
+#include "triangle/base/system.h"
+
+#include <aio.h>
+#include <assert.h>
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#ifdef __linux__
+#include <sys/vfs.h>
+#endif
+
+#ifndef O_DIRECT
+#define O_DIRECT 0 /* the system has no such thing */
+#endif
+#ifndef SYNC_FILE_RANGE_WRITE
+#define SYNC_FILE_RANGE_WRITE 0
+#define SYNC_FILE_RANGE_WAIT_AFTER 0
+#define sync_file_range(file, place, bytes, how) 0
+#endif
+
+/* --- files */
+
+tri_file tri_file_open(const char *path, enum tri_opening opening)
+{
+    static const int flags[] = {
+        [TRI_OPEN_READ] = O_RDONLY, [TRI_OPEN_LOOK] = O_RDONLY | O_NONBLOCK, [TRI_OPEN_DEVICE] = O_WRONLY | O_NOCTTY,
+        [TRI_OPEN_JOIN] = O_WRONLY | O_NOFOLLOW, [TRI_OPEN_NEW] = O_RDWR | O_CREAT | O_EXCL};
+    return open(path, flags[opening] | O_CLOEXEC, 0666); /* of which the process's mask takes */
+}
+
+bool tri_file_close(tri_file file)
+{
+    return file == TRI_NO_FILE || close((int)file) == 0 || errno == EINTR; /* after which it is closed all the same */
+}
+
+/* Closes a file that is not to be used; errno says why. */
+static tri_file refuse(int file, int why)
+{
+    close(file);
+    errno = why;
+    return TRI_NO_FILE;
+}
+
+static bool facts_of(bool known, const struct stat *at, struct tri_file_facts *facts)
+{
+    if (known)
+        *facts = (struct tri_file_facts){.size = (uint64_t)at->st_size, .device = (uint64_t)at->st_dev,
+                                         .node = (uint64_t)at->st_ino, .names = (unsigned)at->st_nlink,
+                                         .permissions = at->st_mode & 0777u,
+                                         .kind = S_ISREG(at->st_mode)   ? TRI_REGULAR
+                                                 : S_ISDIR(at->st_mode) ? TRI_FOLDER
+                                                                        : TRI_OTHER_FILE};
+    return known;
+}
+
+bool tri_path_look(const char *path, struct tri_file_facts *facts)
+{
+    struct stat at;
+    return facts_of(stat(path, &at) == 0, &at, facts);
+}
+
+bool tri_file_look(tri_file file, struct tri_file_facts *facts)
+{
+    struct stat at;
+    return facts_of(fstat((int)file, &at) == 0, &at, facts);
+}
+
+bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
+{
+    return fchmod((int)file, (mode_t)as->permissions) == 0;
+}
+
+/* --- what is in them */
+
+int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
+{
+    size_t done = 0;
+    while (done < n) {
+        const ssize_t got = pread((int)file, (char *)at + done, n - done, (off_t)(place + done));
+        if (got == 0)
+            break;
+        if (got < 0 && errno != EINTR)
+            return -1;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return (int64_t)done;
+}
+
+bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place)
+{
+    const int64_t got = tri_read_at(file, at, n, place);
+    if (got >= 0 && (uint64_t)got < n)
+        errno = EIO;
+    return got >= 0 && (uint64_t)got == n;
+}
+
+bool tri_write_at(tri_file file, const void *at, size_t n, uint64_t place)
+{
+    for (size_t done = 0; done < n;) {
+        const ssize_t put = pwrite((int)file, (const char *)at + done, n - done, (off_t)(place + done));
+        if (put < 0 && errno != EINTR)
+            return false;
+        done += put > 0 ? (size_t)put : 0;
+    }
+    return true;
+}
+
+int64_t tri_read_next(tri_file file, void *at, size_t n) { return read((int)file, at, n); }
+
+int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place)
+{
+    return pwrite((int)file, at, n, (off_t)place);
+}
+
+int64_t tri_write_next(tri_file file, const void *at, size_t n) { return write((int)file, at, n); }
+
+bool tri_file_cut(tri_file file, uint64_t size) { return ftruncate((int)file, (off_t)size) == 0; }
+
+bool tri_file_sync(tri_file file)
+{
+    int result;
+    do
+        result = fsync((int)file);
+    while (result != 0 && errno == EINTR);
+    return result == 0 || errno == EINVAL || errno == EROFS;
+}
+
+void tri_file_send_off(tri_file file, uint64_t place, uint64_t n)
+{
+    (void)file, (void)place, (void)n;
+    (void)sync_file_range((int)file, (off_t)place, (off_t)n, SYNC_FILE_RANGE_WRITE);
+}
+
+void tri_file_await(tri_file file, uint64_t place, uint64_t n)
+{
+    (void)file, (void)place, (void)n;
+    (void)sync_file_range((int)file, (off_t)place, (off_t)n, SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+}
+
+tri_file tri_file_direct(tri_file file)
+{
+    char name[64];
+    snprintf(name, sizeof name, "/proc/self/fd/%d", (int)file);
+    return O_DIRECT ? open(name, O_WRONLY | O_DIRECT | O_CLOEXEC) : TRI_NO_FILE;
+}
+
+void *tri_page_alloc(size_t bytes)
+{
+    void *pages = NULL;
+    return posix_memalign(&pages, TRI_PAGE_BYTES, bytes) == 0 ? pages : NULL;
+}
+
+struct tri_behind {
+    struct aiocb control;
+};
+
+struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place)
+{
+    struct tri_behind *behind = calloc(1, sizeof *behind);
+    if (!behind)
+        return NULL;
+    behind->control.aio_fildes = (int)file;
+    behind->control.aio_offset = (off_t)place;
+    behind->control.aio_buf = (void *)at; /* is read alone */
+    behind->control.aio_nbytes = n;
+    behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
+    if (aio_write(&behind->control) == 0)
+        return behind;
+    free(behind);
+    return NULL;
+}
+
+size_t tri_behind_wait(struct tri_behind *behind)
+{
+    const struct aiocb *const control = &behind->control;
+    while (aio_error(control) == EINPROGRESS)
+        (void)aio_suspend(&control, 1, NULL);
+    const int fault = aio_error(control);
+    const ssize_t written = aio_return(&behind->control);
+    free(behind);
+    return fault == 0 && written > 0 ? (size_t)written : 0;
+}
+
+enum tri_lock tri_file_lock(tri_file file)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    if (fcntl((int)file, F_SETLK, &whole) == 0)
+        return TRI_LOCKED;
+    return errno == EACCES || errno == EAGAIN ? TRI_LOCKED_BY_ANOTHER : TRI_NO_LOCKS;
+}
+
+bool tri_file_keeps_apart(tri_file file, const char *host)
+{
+    char here[TRI_PATH];
+    if (tri_host_name(here, sizeof here) && strcmp(here, host) == 0)
+        return true;
+#ifdef __linux__
+    enum { NFS = 0x6969, SMB = 0x517b };
+    const uint32_t CIFS = 0xff534d42, SMB2 = 0xfe534d42;
+    struct statfs system;
+    if (fstatfs((int)file, &system) != 0)
+        return false;
+    const uint32_t type = (uint32_t)system.f_type;
+    return type != NFS && type != SMB && type != CIFS && type != SMB2;
+#else
+    (void)file;
+    return false;
+#endif
+}
+
+/* --- scratch files */
+
+/* The name is taken back before a signal to this thread can end the process (but for SIGKILL). */
+static tri_file make_nameless(char *path)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int file = mkstemp(path), fault = errno;
+    if (file >= 0)
+        (void)unlink(path);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = fault;
+    return file;
+}
+
+/* The first n bytes of a path, and a name; NULL: no memory. */
+static char *joined(const char *path, size_t n, const char *name)
+{
+    const size_t length = strlen(name) + 1;
+    char *both = malloc(n + length);
+    if (!both)
+        errno = ENOMEM;
+    if (!both)
+        return NULL;
+    memcpy(both, path, n);
+    memcpy(both + n, name, length);
+    return both;
+}
+
+tri_file tri_scratch_file(const char *folder)
+{
+#ifdef O_TMPFILE
+    const int file = open(folder, O_TMPFILE | O_RDWR | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (file >= 0)
+        return file;
+#endif
+    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* for any system and file system */
+    const tri_file made = path ? make_nameless(path) : TRI_NO_FILE;
+    const int fault = errno;
+    free(path);
+    errno = fault;
+    return made;
+}
+
+/* --- names of files */
+
+bool tri_path_allows(const char *path, enum tri_access allowed)
+{
+    static const int modes[] = {
+        [TRI_THERE] = F_OK, [TRI_READABLE] = R_OK, [TRI_WRITABLE] = W_OK, [TRI_TAKES_FILES] = W_OK | X_OK};
+    return access(path, modes[allowed]) == 0;
+}
+
+bool tri_path_remove(const char *path) { return unlink(path) == 0; }
+bool tri_path_rename(const char *from, const char *to) { return rename(from, to) == 0; }
+bool tri_path_link(const char *path, const char *second) { return link(path, second) == 0; }
+char *tri_path_from_root(const char *path) { return realpath(path, NULL); }
+
+/* Length of the directory part, final slash included; 0: the working directory. */
+static size_t directory_length(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+static bool stat_directory(const char *path, struct stat *status)
+{
+    char name[TRI_PATH];
+    const size_t length = directory_length(path);
+    if (length + 2 > sizeof name)
+        return false;
+    memcpy(name, path, length);
+    strcpy(name + length, ".");
+    return stat(name, status) == 0;
+}
+
+/* Made by this user, the administrator or who owns the directory? Anybody else's may lead to what only we can write. */
+static bool is_trusted_link(const char *path)
+{
+    struct stat at, directory;
+    return lstat(path, &at) == 0 && stat_directory(path, &directory) &&
+           (at.st_uid == geteuid() || at.st_uid == 0 || at.st_uid == directory.st_uid);
+}
+
+/* What a symbolic link at path points to; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
+static char *follow_link(const char *path)
+{
+    char target[TRI_PATH];
+    const ssize_t length = readlink(path, target, sizeof target);
+    if (length < 0)
+        return NULL;
+    const bool trusted = is_trusted_link(path);
+    if (!trusted || (size_t)length == sizeof target) {
+        errno = trusted ? ENAMETOOLONG : EPERM;
+        return NULL;
+    }
+    target[length] = 0;
+    return joined(path, target[0] == '/' ? 0 : directory_length(path), target);
+}
+
+char *tri_path_resolve(const char *path)
+{
+    enum { MOST_LINKS = 40 };
+    char *resolved = joined(path, 0, path);
+    for (int i = 0; resolved && i < MOST_LINKS; i++) {
+        char *const next = follow_link(resolved);
+        if (!next && (errno == EINVAL || errno == ENOENT))
+            return resolved;
+        const int reason = errno;
+        free(resolved);
+        errno = reason;
+        resolved = next;
+    }
+    if (resolved)
+        errno = ELOOP;
+    free(resolved);
+    return NULL;
+}
+
+void tri_path_folder(const char *path, char folder[TRI_PATH])
+{
+    struct tri_file_facts facts;
+    const size_t length = directory_length(path);
+    if (tri_path_look(path, &facts) && facts.kind == TRI_FOLDER)
+        snprintf(folder, TRI_PATH, "%s", path);
+    else
+        snprintf(folder, TRI_PATH, "%.*s", length > 0 ? (int)length : 1, length > 0 ? path : ".");
+}
+
+/* --- folders */
+
+bool tri_folder_make(const char *path) { return mkdir(path, 0777) == 0; }
+bool tri_folder_remove(const char *path) { return rmdir(path) == 0; }
+
+tri_file tri_folder_open(const char *path, bool own)
+{
+    struct stat folder;
+    const int file = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0 || !own)
+        return file;
+    if (fstat(file, &folder) != 0)
+        return refuse(file, errno);
+    return folder.st_uid == geteuid() ? file : refuse(file, EPERM);
+}
+
+tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_opening opening)
+{
+    static const int flags[] = {
+        [TRI_FOLDER_READ] = O_RDONLY, [TRI_FOLDER_CHANGE] = O_RDWR, [TRI_FOLDER_EXTEND] = O_RDWR | O_CREAT};
+    struct stat at;
+    const int file = openat((int)folder, name, flags[opening] | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (file < 0)
+        return TRI_NO_FILE;
+    if (fstat(file, &at) != 0)
+        return refuse(file, errno);
+    const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* the other may be one that somebody linked */
+    return S_ISREG(at.st_mode) && at.st_uid == geteuid() && alone ? file : refuse(file, EPERM);
+}
+
+tri_file tri_folder_create(tri_file folder, const char *name)
+{
+    if (!tri_folder_drop(folder, name) && errno != ENOENT)
+        return TRI_NO_FILE;
+#ifdef O_TMPFILE
+    if (access("/proc/self/fd", X_OK) == 0) { /* by which it will get its name */
+        const int unnamed = openat((int)folder, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+        if (unnamed >= 0)
+            return unnamed;
+    }
+#endif
+    return openat((int)folder, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+bool tri_folder_end(tri_file folder, const char *name, tri_file file)
+{
+    char path[64];
+    struct stat at;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", (int)file);
+    return tri_file_sync(file) && fstat((int)file, &at) == 0 &&
+           (at.st_nlink > 0 || linkat(AT_FDCWD, path, (int)folder, name, AT_SYMLINK_FOLLOW) == 0);
+}
+
+bool tri_folder_has(tri_file folder, const char *name) { return faccessat((int)folder, name, F_OK, 0) == 0; }
+bool tri_folder_drop(tri_file folder, const char *name) { return unlinkat((int)folder, name, 0) == 0; }
+
+bool tri_folder_rename(tri_file folder, const char *from, const char *to)
+{
+    return renameat((int)folder, from, (int)folder, to) == 0;
+}
+
+bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name), void *user)
+{
+    const int again = openat((int)folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* which closedir() closes */
+    DIR *list = again >= 0 ? fdopendir(again) : NULL;
+    if (!list && again >= 0)
+        (void)refuse(again, errno);
+    if (!list)
+        return false;
+    for (const struct dirent *entry; (entry = readdir(list)) && each(user, entry->d_name);)
+        ;
+    closedir(list);
+    return true;
+}
+
+/* --- files in memory */
+
+static bool has_file(struct tri_mapped_file *f, const char *folder)
+{
+    if (f->file == TRI_NO_FILE)
+        f->file = tri_scratch_file(folder);
+    return f->file != TRI_NO_FILE;
+}
+
+/* 0, or an errno. A file beyond the limit would bring a signal. */
+static int reserve_space(struct tri_mapped_file *f, size_t size)
+{
+    struct rlimit limit;
+    int fault;
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && size > limit.rlim_cur)
+        return EFBIG;
+    do
+        fault = posix_fallocate((int)f->file, (off_t)f->size, (off_t)(size - f->size));
+    while (fault == EINTR);
+    return fault;
+}
+
+static void *map_bytes(tri_file file, size_t size)
+{
+    void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, (int)file, 0);
+    return at != MAP_FAILED ? at : NULL;
+}
+
+int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t size)
+{
+    assert(size > f->size);
+    if (!has_file(f, folder))
+        return errno;
+    const int fault = reserve_space(f, size);
+    if (fault)
+        return fault;
+    void *at = map_bytes(f->file, size);
+    if (!at)
+        return errno;
+    if (f->at)
+        munmap(f->at, f->size);
+    f->at = at;
+    f->size = size;
+    return 0;
+}
+
+bool tri_mapped_file_append(struct tri_mapped_file *f, const char *folder, const void *bytes, size_t n)
+{
+    assert(!f->at);
+    if (!has_file(f, folder) || !tri_write_at(f->file, bytes, n, f->size))
+        return false;
+    f->size += n;
+    return true;
+}
+
+bool tri_mapped_file_map(struct tri_mapped_file *f)
+{
+    if (!f->at && f->size > 0)
+        f->at = map_bytes(f->file, f->size);
+    return f->at || f->size == 0;
+}
+
+void tri_mapped_file_release_pages(const struct tri_mapped_file *f)
+{
+    if (f->at)
+        madvise(f->at, f->size, MADV_DONTNEED);
+}
+
+void tri_mapped_file_close(struct tri_mapped_file *f)
+{
+    const int fault = errno;
+    if (f->at)
+        munmap(f->at, f->size);
+    (void)tri_file_close(f->file);
+    *f = (struct tri_mapped_file){.file = TRI_NO_FILE};
+    errno = fault;
+}
+
+/* --- memory */
+
+double tri_memory_used(double *of_files)
+{
+    char text[128];
+    unsigned long long all, files;
+    const double page = (double)sysconf(_SC_PAGESIZE);
+    const tri_file file = tri_file_open("/proc/self/statm", TRI_OPEN_READ);
+    const int64_t n = file != TRI_NO_FILE ? tri_read_next(file, text, sizeof text - 1) : 0;
+    (void)tri_file_close(file);
+    text[n > 0 ? n : 0] = 0;
+    const bool known = sscanf(text, "%*u %llu %llu", &all, &files) == 2;
+    if (of_files)
+        *of_files = known ? (double)files * page : 0;
+    return known ? (double)all * page : 0;
+}
+
+void tri_memory_trim(void)
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+/* --- time */
+
+static double seconds_by(clockid_t clock)
+{
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double tri_seconds(void) { return seconds_by(CLOCK_MONOTONIC); }
+double tri_thread_seconds(void) { return seconds_by(CLOCK_THREAD_CPUTIME_ID); }
+double tri_process_seconds(void) { return seconds_by(CLOCK_PROCESS_CPUTIME_ID); }
+
+bool tri_pause(double seconds)
+{
+    struct timespec time = {.tv_sec = (time_t)seconds};
+    time.tv_nsec = (long)(1e9 * (seconds - (double)time.tv_sec));
+    return nanosleep(&time, NULL) == 0;
+}
+
+/* --- processes and hosts */
+
+long tri_process(void) { return (long)getpid(); }
+bool tri_process_is_gone(long process) { return kill((pid_t)process, 0) != 0 && errno == ESRCH; }
+
+bool tri_host_name(char *name, size_t room)
+{
+    memset(name, 0, room);
+    return gethostname(name, room - 1) == 0 || name[0]; /* a longer name is cut, with or without an error */
+}
+
+/* --- threads */
+
+struct tri_thread {
+    pthread_t thread;
+};
+
+struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user)
+{
+    sigset_t all, before;
+    struct tri_thread *thread = malloc(sizeof *thread);
+    if (!thread)
+        return NULL;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const bool started = pthread_create(&thread->thread, NULL, run, user) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (started)
+        return thread;
+    free(thread);
+    return NULL;
+}
+
+void tri_thread_join(struct tri_thread *thread)
+{
+    pthread_join(thread->thread, NULL);
+    free(thread);
+}
+
+struct tri_monitor {
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+};
+
+struct tri_monitor *tri_monitor_new(void)
+{
+    struct tri_monitor *monitor = malloc(sizeof *monitor);
+    if (monitor && pthread_mutex_init(&monitor->lock, NULL) == 0) {
+        if (pthread_cond_init(&monitor->changed, NULL) == 0)
+            return monitor;
+        pthread_mutex_destroy(&monitor->lock);
+    }
+    free(monitor);
+    return NULL;
+}
+
+void tri_monitor_free(struct tri_monitor *monitor)
+{
+    if (!monitor)
+        return;
+    pthread_cond_destroy(&monitor->changed);
+    pthread_mutex_destroy(&monitor->lock);
+    free(monitor);
+}
+
+void tri_monitor_enter(struct tri_monitor *monitor) { pthread_mutex_lock(&monitor->lock); }
+void tri_monitor_leave(struct tri_monitor *monitor) { pthread_mutex_unlock(&monitor->lock); }
+void tri_monitor_wait(struct tri_monitor *monitor) { pthread_cond_wait(&monitor->changed, &monitor->lock); }
+void tri_monitor_wake(struct tri_monitor *monitor) { pthread_cond_broadcast(&monitor->changed); }

@@ -1,0 +1,333 @@
+/* What programs alone ask of the system: limits, the terminal, interrupts. Facts of memory and load are in small files
+ * of the kernel's, read line by line. */
+#define _GNU_SOURCE /* mallopt, F_DUPFD_CLOEXEC */
+#include "triangle/base/system.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+/* --- memory and disk */
+
+enum { LINE_BYTES = 512 };
+
+/* What is asked of every limit: what is left below it, or all that it gives. */
+enum extent { LEFT, ALL };
+
+/* The number behind the word that begins a line of a file; -1: there is none. word "": the first line's number. */
+static double find_number(const char *path, const char *word)
+{
+    char line[LINE_BYTES];
+    double value = -1;
+    FILE *file = fopen(path, "r");
+    while (file && value < 0 && fgets(line, sizeof line, file)) {
+        size_t length = strlen(word);
+        char *end;
+        if (strncmp(line, word, length) != 0)
+            continue;
+        unsigned long long number = strtoull(line + length, &end, 10);
+        value = end > line + length ? (double)number : HUGE_VAL; /* "max" */
+    }
+    if (file)
+        fclose(file);
+    return value;
+}
+
+static double of_machine(enum extent extent)
+{
+    static const char file[] = "/proc/meminfo";
+    if (extent == ALL) {
+        double total = find_number(file, "MemTotal:");
+        return total < 0 ? HUGE_VAL : 1024 * total;
+    }
+    double available = find_number(file, "MemAvailable:"), swap = find_number(file, "SwapFree:");
+    return available < 0 ? HUGE_VAL : 1024 * (available + fmax(swap, 0));
+}
+
+static double of_limit(int resource, double used)
+{
+    struct rlimit limit;
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return HUGE_VAL;
+    return fmax((double)limit.rlim_cur - used, 0);
+}
+
+static double of_status(const char *word) { return 1024 * fmax(find_number("/proc/self/status", word), 0); }
+
+static double of_address_space(enum extent extent)
+{
+    return of_limit(RLIMIT_AS, extent == LEFT ? of_status("VmSize:") : 0);
+}
+
+static double of_data(enum extent extent) { return of_limit(RLIMIT_DATA, extent == LEFT ? of_status("VmData:") : 0); }
+
+struct files {
+    const char *limit, *usage, *cache; /* the last: the word in memory.stat for what the kernel gives back */
+};
+
+/* Of a group, and every group above it. path is shortened. */
+static double of_group(char *path, size_t root, const struct files *files, enum extent extent)
+{
+    double least = HUGE_VAL;
+    for (;;) {
+        char file[TRI_PATH + 64];
+        snprintf(file, sizeof file, "%s/%s", path, files->limit);
+        double limit = find_number(file, "");
+        snprintf(file, sizeof file, "%s/%s", path, files->usage);
+        double usage = extent == LEFT ? find_number(file, "") : 0;
+        snprintf(file, sizeof file, "%s/memory.stat", path);
+        double cache = extent == LEFT ? find_number(file, files->cache) : 0;
+        if (limit >= 0 && usage >= 0)
+            least = fmin(least, fmax(limit - usage + fmax(cache, 0), 0));
+        char *slash = strrchr(path, '/');
+        if (strlen(path) <= root || !slash)
+            return least;
+        *slash = 0;
+    }
+}
+
+/* The group that this process is in, by a line of /proc/self/cgroup; where the tree is mounted at the group itself, as
+ * in containers, its path does not exist, and the root is all that is looked at. */
+static double of_group_line(const char *line, enum extent extent)
+{
+    static const struct files first = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "},
+                              second = {"memory.max", "memory.current", "inactive_file "};
+    bool unified = strncmp(line, "0::", 3) == 0, memory = strstr(line, ":memory:") != NULL;
+    const char *group = strchr(line, ':') ? strchr(strchr(line, ':') + 1, ':') : NULL;
+    if ((!unified && !memory) || !group)
+        return HUGE_VAL;
+    char path[TRI_PATH];
+    const char *root = unified ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
+    snprintf(path, sizeof path, "%s%.*s", root, (int)strcspn(group + 1, "\n"), group + 1);
+    if (access(path, F_OK) != 0)
+        snprintf(path, sizeof path, "%s", root);
+    while (strlen(path) > strlen(root) && path[strlen(path) - 1] == '/')
+        path[strlen(path) - 1] = 0;
+    return of_group(path, strlen(root), unified ? &second : &first, extent);
+}
+
+static double of_groups(enum extent extent)
+{
+    char line[LINE_BYTES];
+    double least = HUGE_VAL;
+    FILE *file = fopen("/proc/self/cgroup", "r");
+    while (file && fgets(line, sizeof line, file))
+        least = fmin(least, of_group_line(line, extent));
+    if (file)
+        fclose(file);
+    return least;
+}
+
+static double of_system(enum extent extent) { return fmin(of_machine(extent), of_groups(extent)); }
+
+static double least_of(enum extent extent)
+{
+    return fmin(of_system(extent), fmin(of_address_space(extent), of_data(extent)));
+}
+
+enum tri_memory_end tri_memory_end(void)
+{
+    const double system = of_system(LEFT), data = of_data(LEFT), space = of_address_space(LEFT);
+    if (system <= fmin(data, space))
+        return TRI_ENDS_SYSTEM;
+    return space <= data ? TRI_ENDS_ADDRESS_SPACE : TRI_ENDS_DATA;
+}
+
+double tri_memory_left(void) { return least_of(LEFT); }
+
+void tri_memory_share_heap(void)
+{
+#ifdef __GLIBC__
+    if (fmin(of_address_space(ALL), of_data(ALL)) < HUGE_VAL)
+        mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
+double tri_memory_of_stacks(int threads)
+{
+    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* the first is glibc's, on most processors */
+    const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
+    return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : unlimited);
+}
+
+double tri_memory_total(void) { return least_of(ALL); }
+
+/* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
+int64_t tri_memory_peak(void)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage))
+        return 0;
+#ifdef __APPLE__
+    return (int64_t)usage.ru_maxrss;
+#else
+    return (int64_t)usage.ru_maxrss * 1024;
+#endif
+}
+
+double tri_disk_left(const char *path)
+{
+    char folder[TRI_PATH];
+    struct statvfs disk;
+    tri_path_folder(path, folder);
+    return statvfs(folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
+}
+
+const char *tri_scratch_folder(void)
+{
+    const char *folder = getenv("TMPDIR");
+    return folder && *folder ? folder : "/tmp";
+}
+
+/* --- the program */
+
+bool tri_own_path(char path[TRI_PATH])
+{
+    const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);
+    const bool whole = n > 0 && n < TRI_PATH;
+    path[whole ? n : 0] = '\0';
+    return whole;
+}
+
+/* The first word of /proc/loadavg behind the averages tells how many threads run or wait. */
+bool tri_work(long *running, long *processors)
+{
+    char text[128] = "";
+    FILE *file = fopen("/proc/loadavg", "r");
+    if (!file)
+        return false;
+    const bool is_read = fgets(text, sizeof text, file) != NULL;
+    fclose(file);
+    *processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return is_read && sscanf(text, "%*s %*s %*s %ld/", running) == 1;
+}
+
+void tri_start_again(const char *path, char **argv, const char *variable, const char *value)
+{
+    if (setenv(variable, value, 1) == 0)
+        execv(path, argv);
+}
+
+/* --- the terminal */
+
+void tri_standard_open(void)
+{
+    for (int file = 0; file <= STDERR_FILENO; file++)
+        if (fcntl(file, F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", O_RDWR); /* takes the lowest number that is free */
+}
+
+bool tri_standard_is_one(void)
+{
+    struct tri_file_facts output, error;
+    return tri_file_look(STDOUT_FILENO, &output) && tri_file_look(STDERR_FILENO, &error) &&
+           output.device == error.device && output.node == error.node;
+}
+
+bool tri_standard_is_terminal(void) { return isatty(STDERR_FILENO); }
+
+bool tri_standard_reader_is_gone(void)
+{
+    struct pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
+}
+
+tri_file tri_standard_error_again(void) { return fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); }
+
+void tri_say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text)); }
+
+/* --- interrupts */
+
+static struct tri_interrupts handlers; /* set before the first signal can come */
+static timer_t timer;
+
+static const struct kind {
+    int number;
+    const char *name;
+} ends[] = {
+    {SIGHUP, "SIGHUP"},   {SIGINT, "SIGINT"},   {SIGQUIT, "SIGQUIT"}, {SIGTERM, "SIGTERM"},
+    {SIGALRM, "SIGALRM"}, {SIGUSR1, "SIGUSR1"}, {SIGUSR2, "SIGUSR2"}, {SIGXCPU, "SIGXCPU"},
+    {SIGVTALRM, "SIGVTALRM"}, {SIGPROF, "SIGPROF"},
+};
+static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
+
+enum { N_ENDS = sizeof ends / sizeof *ends, N_CRASHES = sizeof crashes / sizeof *crashes };
+
+const char *tri_interrupt_name(int number)
+{
+    for (int i = 0; i < N_ENDS; i++)
+        if (ends[i].number == number)
+            return ends[i].name;
+    return NULL;
+}
+
+void tri_alarm(double seconds)
+{
+    struct itimerspec once = {.it_value.tv_sec = (time_t)seconds};
+    once.it_value.tv_nsec = (long)(1e9 * (seconds - (double)once.it_value.tv_sec));
+    timer_settime(timer, 0, &once, NULL);
+}
+
+static void handle_end(int number, siginfo_t *info, void *context)
+{
+    const int reason = errno;
+    (void)context;
+    if (number == SIGALRM && info->si_code == SI_TIMER)
+        handlers.time_is_up();
+    else
+        handlers.asked(number);
+    errno = reason;
+}
+
+static void handle_crash(int number)
+{
+    handlers.crashed();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void catch_end(int number)
+{
+    struct sigaction action = {.sa_sigaction = handle_end, .sa_flags = SA_SIGINFO}, old;
+    sigfillset(&action.sa_mask);
+    if (sigaction(number, NULL, &old) == 0 && (number == SIGALRM || old.sa_handler != SIG_IGN))
+        sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that nobody reads must end */
+}
+
+/* Handlers of others, such as those of sanitizers, stay. */
+static void catch_crash(int number)
+{
+    struct sigaction action = {.sa_handler = handle_crash}, old;
+    sigfillset(&action.sa_mask);
+    if (sigaction(number, NULL, &old) == 0 && !(old.sa_flags & SA_SIGINFO) && old.sa_handler == SIG_DFL)
+        sigaction(number, &action, NULL);
+}
+
+bool tri_interrupts_catch(const struct tri_interrupts *to)
+{
+    sigset_t alarm;
+    handlers = *to;
+    const bool has_timer = timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; /* sends SIGALRM */
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    for (int i = 0; i < N_ENDS; i++)
+        catch_end(ends[i].number);
+    for (int i = 0; i < N_CRASHES; i++)
+        catch_crash(crashes[i]);
+    sigemptyset(&alarm);
+    sigaddset(&alarm, SIGALRM);
+    sigprocmask(SIG_UNBLOCK, &alarm, NULL); /* a caller's mask is inherited */
+    return has_timer;
+}
