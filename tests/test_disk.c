@@ -237,7 +237,8 @@ static struct tri_pslg doubled_hatching(uint64_t seed)
     return pslg;
 }
 
-/* Adds the circles that stay, by reason, to total. Which side of a subsegment is called the left one does not matter. */
+/* Adds the circles that stay, by reason, to total. Which side of a subsegment is called the left one makes no
+ * difference. */
 static void count_by_place(const struct tri_pslg *pslg, int64_t total[TRI_EXCUSES])
 {
     int64_t count[TRI_EXCUSES], turned[TRI_EXCUSES], beyond = 0;

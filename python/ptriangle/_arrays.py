@@ -46,7 +46,9 @@ def _refuse_other_ints(rows: Array, name: str) -> None:
 def as_int32(given: Any, name: str) -> Array:
     """Integers of 32 bits, also of numbers of another type with such values; nothing wraps."""
     rows = numbers(given, name)
-    if rows.dtype != np.int32 and rows.size and not (rows.max() <= np.iinfo(np.int32).max and rows.min() >= np.iinfo(np.int32).min):
+    if rows.dtype == np.int32:
+        return rows
+    if rows.size and not (rows.max() <= np.iinfo(np.int32).max and rows.min() >= np.iinfo(np.int32).min):
         raise InputError("%s: beyond the range of 32 bits" % name)
     return rows.astype(np.int32, copy=False)
 
