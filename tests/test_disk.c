@@ -211,16 +211,39 @@ static bool is_beyond_coordinates(const struct tri_mesh *mesh, const struct tri_
            tri_is_encroached_from(mesh, s, s->side[side], &split);
 }
 
-/* In a bundle of lines some 10^-9 of their length apart: at small angles and between segments lies what would take too
- * many parts, and nothing that is to be split. Which side of a subsegment is called the left one does not matter. */
-static void test_what_would_take_too_many_parts_is_counted_by_place(void **state)
+/* Slanted lines across a square, each drawn two or three times, 10^-14 to 10^-11 apart, and others across them. */
+static struct tri_pslg doubled_hatching(uint64_t seed)
 {
-    (void)state;
+    enum { LINES = 8 };
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(4 + 12 * LINES, 4 + 6 * LINES, 0, 0);
+    const double slope = support_unit(&random), gap = ldexp(1, -37 - support_below(&random, 10));
+    for (int k = 0; k < 4; k++)
+        support_add_point(&pslg, k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1);
+    for (int k = 0; k < 4; k++)
+        support_add_segment(&pslg, k, (k + 1) % 4);
+    for (int i = 0; i < 2 * LINES; i++) {
+        const int times = 1 + support_below(&random, 3);
+        for (int k = 0; k < times; k++) {
+            double off = -0.9 + 1.8 * (i / 2) / LINES + (k > 0 ? gap * (2 * support_unit(&random) - 1) : 0);
+            double from = -1.2 * support_unit(&random), to = 1.2 * support_unit(&random), s = slope;
+            int32_t a = i % 2 ? support_add_point(&pslg, from - off * s, from * s + off)
+                              : support_add_point(&pslg, off + from * s, off * s - from);
+            int32_t b = i % 2 ? support_add_point(&pslg, to - off * s, to * s + off)
+                              : support_add_point(&pslg, off + to * s, off * s - to);
+            support_add_segment(&pslg, a, b);
+        }
+    }
+    return pslg;
+}
+
+/* Adds the circles that stay, by reason, to total. Which side of a subsegment is called the left one makes no
+ * difference. */
+static void count_by_place(const struct tri_pslg *pslg, int64_t total[TRI_EXCUSES])
+{
     int64_t count[TRI_EXCUSES], turned[TRI_EXCUSES], beyond = 0;
-    struct tri_pslg pslg;
     struct tri_report report;
-    assert_true(support_read("regress/bundle_levels.poly", &pslg));
-    struct tri_mesh mesh = conforming(&pslg, 20, &report);
+    struct tri_mesh mesh = conforming(pslg, 20, &report);
     struct tri_quality options = {.conforming = true};
     tri_count_encroached(&mesh, &options, &report.quality, count);
     for (tri_sub_id i = 0; i < mesh.n_subs; i++) {
@@ -237,9 +260,28 @@ static void test_what_would_take_too_many_parts_is_counted_by_place(void **state
     tri_count_encroached(&mesh, &options, &report.quality, turned);
     assert_memory_equal(turned, count, sizeof count);
     assert_int_equal(count[TRI_EXCUSE_PRECISION], beyond);
-    assert_true(count[TRI_EXCUSE_INPUT_ANGLE] > 0 && count[TRI_EXCUSE_NARROW_GAP] > 0);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        total[k] += count[k];
     tri_mesh_free(&mesh);
+}
+
+/* In bundles of lines, and between lines that were computed twice: at small angles and between segments lies what would
+ * take too many parts, and elsewhere what coordinates do not resolve. */
+static void test_what_would_take_too_many_parts_is_counted_by_place(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    int64_t total[TRI_EXCUSES] = {0};
+    assert_true(support_read("regress/bundle_levels.poly", &pslg));
+    count_by_place(&pslg, total);
     tri_pslg_free(&pslg);
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        pslg = doubled_hatching(seed);
+        count_by_place(&pslg, total);
+        tri_pslg_free(&pslg);
+    }
+    assert_true(total[TRI_EXCUSE_PRECISION] > 0);
+    assert_true(total[TRI_EXCUSE_INPUT_ANGLE] > 0 && total[TRI_EXCUSE_NARROW_GAP] > 0);
 }
 
 /* Segments a few units in the last place apart: it is for the coordinates that circles are not empty, not for what
@@ -273,32 +315,6 @@ static void judge_growth(const struct tri_pslg *pslg, double angle, int64_t most
     assert_in_range(mesh.n_triangles, 0, most * plain.n_triangles);
     tri_mesh_free(&mesh);
     tri_mesh_free(&plain);
-}
-
-/* Slanted lines across a square, each drawn two or three times, 10^-14 to 10^-11 apart, and others across them. */
-static struct tri_pslg doubled_hatching(uint64_t seed)
-{
-    enum { LINES = 8 };
-    struct support_random random = {seed};
-    struct tri_pslg pslg = support_pslg(4 + 12 * LINES, 4 + 6 * LINES, 0, 0);
-    const double slope = support_unit(&random), gap = ldexp(1, -37 - support_below(&random, 10));
-    for (int k = 0; k < 4; k++)
-        support_add_point(&pslg, k == 1 || k == 2 ? 1 : -1, k >= 2 ? 1 : -1);
-    for (int k = 0; k < 4; k++)
-        support_add_segment(&pslg, k, (k + 1) % 4);
-    for (int i = 0; i < 2 * LINES; i++) {
-        const int times = 1 + support_below(&random, 3);
-        for (int k = 0; k < times; k++) {
-            double off = -0.9 + 1.8 * (i / 2) / LINES + (k > 0 ? gap * (2 * support_unit(&random) - 1) : 0);
-            double from = -1.2 * support_unit(&random), to = 1.2 * support_unit(&random), s = slope;
-            int32_t a = i % 2 ? support_add_point(&pslg, from - off * s, from * s + off)
-                              : support_add_point(&pslg, off + from * s, off * s - from);
-            int32_t b = i % 2 ? support_add_point(&pslg, to - off * s, to * s + off)
-                              : support_add_point(&pslg, off + to * s, off * s - to);
-            support_add_segment(&pslg, a, b);
-        }
-    }
-    return pslg;
 }
 
 /* Lines that were computed twice: the space between is not filled, and their circles take no 10^12 pieces. */

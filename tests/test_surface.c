@@ -87,8 +87,8 @@ static void test_thin_triangles(void **state)
         }
         struct tri_mesh mesh = mesh_of(xy, 3, attributes, 2);
         const double *made = made_at(&mesh, p);
-        assert_true(fabs(made[0] - (p.x - far)) <= 0x1p-49 + 0x1p-53);
-        assert_true(fabs(made[1] - (3 + p.y - far)) <= 0x1p-49 + 4 * 0x1p-53);
+        assert_true(fabs(made[0] - (p.x - far)) <= 0x1p-48 + 0x1p-53);
+        assert_true(fabs(made[1] - (3 + p.y - far)) <= 0x1p-48 + 4 * 0x1p-53);
         tri_mesh_free(&mesh);
         tried++;
     }

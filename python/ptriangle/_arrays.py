@@ -46,6 +46,8 @@ def _refuse_other_ints(rows: Array, name: str) -> None:
 def as_int32(given: Any, name: str) -> Array:
     """Integers of 32 bits, also of numbers of another type with such values; nothing wraps."""
     rows = numbers(given, name)
+    if rows.dtype == np.int32:
+        return rows
     if rows.size and not (rows.max() <= np.iinfo(np.int32).max and rows.min() >= np.iinfo(np.int32).min):
         raise InputError("%s: beyond the range of 32 bits" % name)
     return rows.astype(np.int32, copy=False)
@@ -63,8 +65,6 @@ def numbers(given: Any, name: str) -> Array:
 def from_numpy(kind: Union[Type[Reals], Type[Ints]], given: Any, name: str,
                width: Optional[int] = None) -> Tuple[Union[Reals, Ints], Optional[Array]]:
     """(array of the library, numpy array that must live as long). Rows of equal steps are passed without a copy."""
-    if given is None:
-        return kind(), None
     rows = numbers(given, name)
     if rows.size == 0:
         return kind(), None

@@ -6,6 +6,7 @@ the caller's, or in a handler of a signal (KeyboardInterrupt!), is kept, ends th
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from ctypes import byref
 from typing import Any, Callable, Dict, Optional, TypeVar
@@ -77,12 +78,12 @@ class Calls:
         try:
             self._running = True
             for number, handler in handlers.items():
-                signal.signal(number, self._instead(handler))
+                _signal.signal(number, self._instead(handler))
             returned = function(*arguments)
         finally:
             self._running = False  # a handler of ours that a signal leaves in place does what the one before it does
             for number, handler in handlers.items():
-                signal.signal(number, handler)
+                _signal.signal(number, handler)
         if self.fault is not None:
             raise self.fault
         return returned
@@ -102,9 +103,14 @@ class Calls:
         return "%s: %s" % (self.who, text[len("settings: "):] if text.startswith("settings: ") else text)
 
 
+# The functions of `signal` make an enum of each number and of each handler: a quarter of a millisecond for all signals.
+_signal: Any = sys.modules.get("_signal", signal)
+_SIGNALS = tuple(int(number) for number in signal.valid_signals())
+
+
 def _handlers() -> Dict[int, Callable[[int, Any], Any]]:
     """Handlers that are written in Python; none outside of the main thread, which alone runs them."""
     if threading.current_thread() is not threading.main_thread():
         return {}
-    found = {number: signal.getsignal(number) for number in signal.valid_signals()}
-    return {number: handler for number, handler in found.items() if callable(handler)}
+    getsignal = _signal.getsignal
+    return {number: getsignal(number) for number in _SIGNALS if callable(getsignal(number))}

@@ -16,6 +16,8 @@ def figure_of(arrays: Mapping[str, Any], who: str) -> Tuple[Figure, List[Any]]:
     """The figure, and what must live as long."""
     figure, kept = Figure(), []
     for name, given in arrays.items():
+        if given is None:
+            continue
         kind, width = SHAPES[name]
         array, owner = from_numpy(kind, given, "%s: %s" % (who, name), width)
         setattr(figure, name, array)

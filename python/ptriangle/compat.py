@@ -48,6 +48,7 @@ _VORONOI: _Fields = {
     "directions": (np.float64, "normlist", "numberofedges", 2),
     "vertices": _FIELDS["vertices"],
 }
+_LISTS = [name for name, kind, *_ in TriangulateIO._fields_ if kind is c_void_p]
 
 
 def _fill(io: TriangulateIO, key: str, given: Any) -> Any:
@@ -75,9 +76,11 @@ def _taken(io: TriangulateIO, fields: _Fields) -> Arrays:
     """The arrays of a struct, copied; the ones that are empty are left out."""
     taken = {}
     for key, (dtype, list_name, count_name, width) in fields.items():
-        columns = width if isinstance(width, int) else getattr(io, width)
-        rows, address = getattr(io, count_name), getattr(io, list_name)
-        if address and rows > 0 and columns > 0:
+        address = getattr(io, list_name)
+        if not address:
+            continue
+        columns, rows = width if isinstance(width, int) else getattr(io, width), getattr(io, count_name)
+        if rows > 0 and columns > 0:
             text = string_at(address, rows * columns * np.dtype(dtype).itemsize)
             taken[key] = np.frombuffer(bytearray(text), dtype).reshape(rows, columns)
     return taken
@@ -85,9 +88,9 @@ def _taken(io: TriangulateIO, fields: _Fields) -> Arrays:
 
 def _release(io: TriangulateIO, borrowed: Set[Any]) -> None:
     """Frees what the library has allocated."""
-    for name, kind, *_ in io._fields_:
+    for name in _LISTS:
         address = getattr(io, name)
-        if kind is c_void_p and address and address not in borrowed:
+        if address and address not in borrowed:
             library.trifree(address)
 
 
@@ -115,8 +118,8 @@ def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: L
 def _warn_of_no_effect(tri: Mapping[str, Any], switches: bytes, who: str) -> None:
     """A forgotten p is the commonest mistake. Without it the library does not look at these arrays."""
     names = ["segments"] if b"r" in switches else ["segments", "holes", "regions"]
-    given = [name for name in names if np.size(tri.get(name, ())) > 0]
-    if given and b"p" not in switches:
+    given = [name for name in names if b"p" not in switches and np.size(tri.get(name, ())) > 0]
+    if given:
         warn("%s: ignored without the switch p" % ", ".join(given), who, IgnoredWarning)
 
 

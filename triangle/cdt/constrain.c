@@ -321,7 +321,8 @@ static enum tri_status add_crossing(struct layer *l, struct tri_point p, const s
     mesh->on[v] = TRI_VERTEX_INPUT;
     mesh->vertex_markers[v] = marker_of(l, along->course);
     if (mesh->n_attributes > 0)
-        tri_interpolate_edge(mesh, along->from, along->to, p, mesh->attributes + (size_t)v * (size_t)mesh->n_attributes);
+        tri_interpolate_edge(mesh, along->from, along->to, p,
+                             mesh->attributes + (size_t)v * (size_t)mesh->n_attributes);
     tri_cavity_fill(&l->cavity, mesh, v);
     l->report->crossings++;
     return keep_corners(l, v) ? TRI_OK : no_memory(l);

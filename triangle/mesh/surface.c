@@ -45,14 +45,31 @@ void tri_interpolate_edge(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
     }
 }
 
-/* On the plane through the corners of a triangle. Weights are areas, each right to the last places however small it is;
- * on an edge the triangles on both sides do the same. */
+/* Twice the area of the triangle that p makes with each edge. Rounding changes it by at most 2^-50 of *all, the sum of
+ * the sizes of the products. */
+static void areas_by_products(const struct tri_mesh *mesh, const tri_vertex_id v[3], struct tri_point p, double area[3],
+                              double *all)
+{
+    *all = 0;
+    for (int e = 0; e < 3; e++) {
+        const struct tri_point a = mesh->xy[v[tri_next[e]]], b = mesh->xy[v[tri_prev[e]]];
+        const double left = (a.x - p.x) * (b.y - p.y), right = (a.y - p.y) * (b.x - p.x);
+        area[e] = left - right;
+        *all += fabs(left) + fabs(right);
+    }
+}
+
+/* On the plane through the corners of a triangle. Weights are areas. In thin triangles and next to edges each is right
+ * to its last places, however small it is. On an edge the triangles on both sides do the same. */
 static void interpolate(const struct tri_mesh *mesh, const tri_vertex_id corners[3], struct tri_point p, double *to)
 {
     const int first = corners[1] < corners[0] && corners[1] < corners[2] ? 1 : corners[2] < corners[0] ? 2 : 0;
     const tri_vertex_id v[3] = {corners[first], corners[tri_next[first]], corners[tri_prev[first]]};
-    double area[3];
-    for (int e = 0; e < 3; e++) {
+    double area[3], all;
+    areas_by_products(mesh, v, p, area, &all);
+    const double least = tri_lesser(area[0], tri_lesser(area[1], area[2]));
+    bool thin = !(least > 0x1p-50 * all) || all > 3 * (area[0] + area[1] + area[2]);
+    for (int e = 0; thin && e < 3; e++) {
         const tri_vertex_id a = v[tri_next[e]], b = v[tri_prev[e]];
         area[e] = tri_orient2d_pair(mesh->xy[a], mesh->xy[b], p).head;
         if (!(area[e] > 0)) {

@@ -18,7 +18,7 @@ enum tri_status tri_surface_keep(struct tri_mesh *mesh, const struct tri_executo
 void tri_surface_free(struct tri_surface *surface);
 
 /* Sets the attributes of n new vertices. The list should follow a curve through the plane: that is fastest. A value
- * lies within the range of its triangle's corners. It errs by at most 2^-49 of the largest difference between them, and
+ * lies within the range of its triangle's corners. It errs by at most 2^-48 of the largest difference between them, and
  * 2^-53 of itself, also in thin triangles. Calls for different vertices may run at the same time. */
 void tri_surface_set(const struct tri_mesh *mesh, const tri_vertex_id *vertices, int32_t n);
 
