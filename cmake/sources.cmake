@@ -12,18 +12,12 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/geometry/hilbert.c
     triangle/cdt/spatial.c
     triangle/cdt/insertion.c
-    triangle/cdt/curve_sort.c
     triangle/cdt/delaunay.c
     triangle/cdt/crossing.c
     triangle/cdt/recover.c
-    triangle/cdt/flip_history.c
     triangle/cdt/flip.c
-    triangle/cdt/overlap.c
     triangle/cdt/bundle.c
-    triangle/cdt/rotation.c
-    triangle/cdt/laying_order.c
     triangle/cdt/constrain.c
-    triangle/geometry/sweep_line.c
     triangle/mesh/locate.c
     triangle/mesh/parents.c
     triangle/cdt/carve.c
@@ -32,16 +26,13 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/cdt/reconstruct.c
     triangle/mesh/cavity.c
     triangle/mesh/surface.c
-    triangle/geometry/degrees.c
     triangle/refine/place.c
     triangle/refine/petal.c
     triangle/base/size_text.c
     triangle/size/feature_size.c
     triangle/refine/split.c
-    triangle/refine/disk.c
     triangle/refine/bad_queue.c
     triangle/refine/criterion.c
-    triangle/refine/inside.c
     triangle/refine/feed.c
     triangle/refine/treat.c
     triangle/refine/refine.c
@@ -49,21 +40,17 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/asked.c
     triangle/size/crowd.c
     triangle/size/gap.c
-    triangle/size/groundwork.c
     triangle/size/hopeless.c
-    triangle/size/integral.c
     triangle/size/quality.c
     triangle/size/estimate.c
-    triangle/refine/stats.c
-    triangle/refine/generate.c
+    triangle/api/generate.c
     triangle/api/figure.c
     triangle/api/figure_mesh.c
     triangle/api/arrays.c
     triangle/dropin/switches.c
     triangle/mesh/topology.c
     triangle/mesh/grid.c
-    triangle/dropin/from_io.c
-    triangle/dropin/to_io.c
+    triangle/dropin/io.c
     triangle/dropin/call.c
     triangle/dropin/aloud.c
     triangle/dropin/triangulate.c)
@@ -73,23 +60,18 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/survey.c
     triangle/check/shares.c
-    triangle/check/triangles.c
     triangle/check/edges.c
     triangle/check/pairs.c
     triangle/check/store.c
-    triangle/check/match.c
     triangle/check/subsegments.c
     triangle/check/order.c
     triangle/check/missing.c
     triangle/check/winding.c
-    triangle/check/hull.c
     triangle/check/segment_chains.c
     triangle/check/border.c
-    triangle/check/vertex_markers.c
+    triangle/check/vertices.c
     triangle/check/kept_input.c
     triangle/check/nodes.c
-    triangle/check/attributes.c
-    triangle/check/apex.c
     triangle/check/bounds.c
     triangle/api/judge.c)
 

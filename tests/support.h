@@ -20,7 +20,7 @@
 #include "triangle/refine/census.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 /* A generator of random numbers (splitmix64). Start it with any seed. */
 struct support_random {

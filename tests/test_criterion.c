@@ -1,6 +1,6 @@
 /* Which triangles are bad and which subsegments encroached, on triangles whose answer is known. */
 #include "triangle/refine/criterion.h"
-#include "triangle/refine/disk.h"
+#include "triangle/refine/split.h"
 
 #include "tests/support.h"
 

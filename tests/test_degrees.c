@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/geometry/degrees.h"
+#include "triangle/geometry/shape.h"
 
 static void test_accuracy(void **state)
 {

@@ -1,7 +1,7 @@
 /* Diametral circles: conforming meshes of segments side by side, and where their circles are not empty. */
 #include "support.h"
 
-#include "triangle/refine/disk.h"
+#include "triangle/refine/split.h"
 
 static struct tri_mesh conforming(const struct tri_pslg *pslg, double angle, struct tri_report *report)
 {

@@ -2,7 +2,7 @@
 #include "support.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
-#include "triangle/size/integral.h"
+#include "triangle/size/crowd.h"
 
 /* A square of side 1 with some points in it, not refined yet. */
 static struct tri_mesh coarse_square(int32_t n)

@@ -1,6 +1,6 @@
 /* Regions across flips: they stay on their ground, and their history stays short. */
 #include "support.h"
-#include "triangle/cdt/flip_history.h"
+#include "triangle/cdt/flip.h"
 #include "triangle/cdt/reconstruct.h"
 
 /* A sliver over a triangle, with regions 1 and 2; edge 2 of triangle 0 is the one between them. */

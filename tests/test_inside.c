@@ -1,7 +1,7 @@
 /* Sizes where the usual point cannot be had: beside slivers, protected segments, at small angles. */
 #include "support.h"
 
-#include "triangle/refine/inside.h"
+#include "triangle/refine/place.h"
 
 static struct tri_pslg load(const char *name)
 {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "support.h"
-#include "triangle/cdt/overlap.h"
+#include "triangle/cdt/bundle.h"
 
 enum { N_POINTS = 24, MOST = 60 };
 

@@ -1,5 +1,5 @@
 /* Counts and shapes: known meshes, Euler's formula, and the judge's own measurements. */
-#include "triangle/refine/stats.h"
+#include "triangle/mesh/topology.h"
 
 #include "tests/support.h"
 

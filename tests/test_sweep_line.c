@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/geometry/sweep_line.h"
+#include "triangle/mesh/locate.h"
 
 static int depth(const struct tri_sweep_line *order, int32_t s)
 {

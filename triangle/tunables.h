@@ -65,7 +65,7 @@
 #define TRI_GAP_ALLOWANCE 20000.0
 #define TRI_GAP_PER_VERTEX 4.0
 /* -D: a vertex is level with a place if it lies nearer than the subsegment's length over this, which is also the most
- * parts into which a subsegment is cut because of rounding (disk.h). Measured: without the rule an overlaid map has 18
+ * parts into which a subsegment is cut because of rounding (split.c). Measured: without the rule an overlaid map has 18
  * times the triangles. */
 #define TRI_NARROW 8
 

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "triangle/check/check.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 static enum tri_status read_mesh(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                  struct tri_error *error)

@@ -12,8 +12,8 @@
 #include "drivers/mesh/mesh_files.h"
 #include "drivers/mesh/orphans.h"
 #include "triangle/base/executor.h"
-#include "triangle/refine/generate.h"
-#include "triangle/refine/stats.h"
+#include "triangle/api/generate.h"
+#include "triangle/mesh/topology.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
 

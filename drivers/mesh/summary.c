@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "triangle/refine/census.h"
-#include "triangle/refine/disk.h"
+#include "triangle/refine/split.h"
 
 /* --- what went otherwise */
 

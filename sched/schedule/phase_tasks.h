@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 
 #include "sched/schedule/phase.h"
-#include "triangle/mesh/owners.h"
+#include "triangle/mesh/fence.h"
 #include "triangle/refine/refine.h"
 
 enum par_progress {
@@ -56,7 +56,7 @@ struct par_phase_run {
     int64_t expected;   /* triangles of all tasks, to the order */
     _Atomic(int64_t) done; /* of these, in tasks that have ended */
     const void *caller; /* address of the own one's `here` */
-    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/owners.h */
+    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/mesh/fence.h */
     size_t n_marks;
 };
 

@@ -11,7 +11,7 @@
 #include "ptriangle/tiles.h"
 #include "sched/schedule/partition.h"
 #include "triangle/base/executor.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 #include "triangle/refine/refine.h"
 
 struct par_carrier;

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "triangle/geometry/degrees.h"
+#include "triangle/geometry/shape.h"
 
 static double sine(double degrees)
 {

@@ -3,7 +3,7 @@
 
 #include "tests/torture/judge.h"
 #include "triangle/refine/census.h"
-#include "triangle/refine/disk.h"
+#include "triangle/refine/split.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/place.h"
 

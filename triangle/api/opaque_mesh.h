@@ -3,7 +3,7 @@
 #define TRIANGLE_API_OPAQUE_MESH_H
 
 #include "ptriangle/tri.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 struct tri_api_mesh {
     struct tri_mesh mesh; /* first: what callers point to. No free numbers, points in the order of the caller */

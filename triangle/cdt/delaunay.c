@@ -17,7 +17,6 @@
 #include <stdlib.h>
 
 #include "triangle/base/scatter.h"
-#include "triangle/cdt/curve_sort.h"
 #include "triangle/cdt/insertion.h"
 #include "triangle/geometry/predicates.h"
 

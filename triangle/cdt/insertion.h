@@ -15,6 +15,7 @@
 #ifndef TRIANGLE_CDT_INSERTION_H
 #define TRIANGLE_CDT_INSERTION_H
 
+#include "triangle/base/executor.h"
 #include "triangle/mesh/mesh.h"
 
 enum { TRI_GHOST = -2 };
@@ -58,5 +59,16 @@ enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_INSERTION_NO_MEMORY };
 /* Inserts vertex v, of the stretch and at a place where no vertex is; takes this triangle and the next. TRI_NOT_OWNED:
  * the stretch does not own the cavity, or did not find it; nothing has changed. */
 enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id triangle);
+
+/* The triangles of a point set in an order of their own. */
+
+/* The mesh, which has neither triangles nor subsegments, receives those of tri[n_triangles]: a triangulation of its
+ * vertices, n_live triangles with ghosts (triangle/cdt/insertion.h) and free triangles. Ghosts become subsegments,
+ * counter-clockwise around the hull from its lowest vertex. A triangle begins at the lower end of its shortest edge,
+ * and triangles are sorted by that vertex, then by the next: there is the work of refinement, however far the rest of a
+ * triangle reaches, and every later stage runs faster where neighbours are near in memory. tri[] is in ruins
+ * afterwards. O(n). */
+enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, int32_t n_triangles,
+                               int32_t n_live, const struct tri_executor *executor, struct tri_error *error);
 
 #endif

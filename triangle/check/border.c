@@ -10,12 +10,18 @@
 
 enum { NEIGHBORS = 2 };
 
-struct border {
-    struct checker *c;
-    struct check_hull hull;
+/* Of points: the lower and the upper chain, in order of x, then y. */
+struct hull {
+    struct tri_point *chain[2];
+    int32_t n[2];
 };
 
-int tri_check_compare_points(const void *left, const void *right)
+struct border {
+    struct checker *c;
+    struct hull hull;
+};
+
+static int compare_points(const void *left, const void *right)
 {
     const struct tri_point *p = left, *q = right;
     return tri_compare_places(*p, *q);
@@ -34,25 +40,27 @@ static int32_t scan(struct tri_point *out, const struct tri_point *sorted, int32
     return k;
 }
 
-enum tri_status tri_check_hull_of(struct tri_point *points, int64_t n, struct check_hull *hull)
+/* Sorts the points, and frees them. */
+static enum tri_status make_hull(struct tri_point *points, int64_t n, struct hull *hull)
 {
     for (int i = 0; i < 2; i++)
         hull->chain[i] = tri_check_array(n, sizeof *points);
-    if (hull->chain[0] == NULL || hull->chain[1] == NULL)
-        return TRI_NO_MEMORY;
-    qsort(points, (size_t)n, sizeof *points, tri_check_compare_points);
-    for (int i = 0; i < 2; i++)
+    const bool room = points != NULL && hull->chain[0] != NULL && hull->chain[1] != NULL;
+    if (room)
+        qsort(points, (size_t)n, sizeof *points, compare_points);
+    for (int i = 0; room && i < 2; i++)
         hull->n[i] = scan(hull->chain[i], points, (int32_t)n, i == 0 ? 1 : -1);
-    return TRI_OK;
+    free(points);
+    return room ? TRI_OK : TRI_NO_MEMORY;
 }
 
-void tri_check_hull_free(struct check_hull *hull)
+static void free_hull(struct hull *hull)
 {
     free(hull->chain[0]);
     free(hull->chain[1]);
 }
 
-static enum tri_status find_hull(struct border *b)
+static enum tri_status find_input_hull(struct border *b)
 {
     const struct tri_pslg *input = b->c->input;
     struct tri_point *points = tri_check_array(input->n_points, sizeof *points);
@@ -62,9 +70,7 @@ static enum tri_status find_hull(struct border *b)
         if (tri_is_exact_point(p))
             points[n++] = p;
     }
-    enum tri_status status = points != NULL ? tri_check_hull_of(points, n, &b->hull) : TRI_NO_MEMORY;
-    free(points);
-    return status;
+    return make_hull(points, n, &b->hull);
 }
 
 static bool is_near(struct tri_point a, struct tri_point b, struct tri_point p, double tolerance)
@@ -100,7 +106,7 @@ static bool is_along_hull(const struct border *b, int32_t s)
 /* Did whoever asks forget to say that the mesh may end there? */
 static bool may_be_meant(struct border *b, int32_t s)
 {
-    return (b->hull.chain[0] || find_hull(b) == TRI_OK) && is_along_hull(b, s);
+    return (b->hull.chain[0] || find_input_hull(b) == TRI_OK) && is_along_hull(b, s);
 }
 
 static void check_border(struct border *b, bool hull)
@@ -129,11 +135,130 @@ enum tri_status tri_check_border(struct checker *c)
     if (o->border == TRI_CHECK_BORDER_ANY || (segments && !listed)) /* which segments there are is not known */
         return TRI_OK;
     bool hull = !segments || o->convex || o->border == TRI_CHECK_BORDER_HULL;
-    enum tri_status status = hull ? find_hull(&b) : TRI_OK;
+    enum tri_status status = hull ? find_input_hull(&b) : TRI_OK;
     if (status == TRI_OK) {
         tri_check_begin(c, TRI_CHECK_BORDER);
         check_border(&b, hull);
     }
-    tri_check_hull_free(&b.hull);
+    free_hull(&b.hull);
+    return status;
+}
+
+/* --- convexity
+ *
+ * A simple closed boundary visits the corners of its hull in their order; between two of them it must
+ * lie along the edge of the hull that joins them. Vertices on hull edges are rounded, to either side: hence the
+ * tolerance, which is twice that of segments. */
+
+enum { SEVERAL = -2 };
+
+/* The boundary as a loop of vertices. */
+struct loop {
+    struct checker *c;
+    int32_t n;
+    int32_t *from;         /* [n_frame] the boundary edge that leaves the vertex, -1: none, SEVERAL */
+    int32_t *vertex;       /* [n] counter-clockwise */
+    struct hull hull; /* of these */
+};
+
+static void list_boundary(struct loop *l)
+{
+    const struct checker *c = l->c;
+    for (int32_t v = 0; v < c->n_frame; v++)
+        l->from[v] = -1;
+    for (int32_t e = 0; e < c->boundary.n; e++) {
+        int32_t v = c->border[e][0];
+        l->from[v] = l->from[v] == -1 ? e : SEVERAL;
+    }
+}
+
+static void fault_at(struct loop *l, int32_t v)
+{
+    tri_check_fault(l->c, TRI_CHECK_HULL, "the boundary is not convex at vertex %ld", check_frame_vertex(l->c, v));
+}
+
+/* True: the boundary is one loop. */
+static bool walk(struct loop *l)
+{
+    const struct checker *c = l->c;
+    int32_t e = 0;
+    do {
+        l->vertex[l->n++] = c->border[e][0];
+        int32_t next = l->from[c->border[e][1]];
+        if (next < 0) {
+            fault_at(l, c->border[e][1]);
+            return false;
+        }
+        e = next;
+    } while (e != 0 && l->n < c->boundary.n);
+    if (e == 0 && l->n == c->boundary.n)
+        return true;
+    tri_check_fault(l->c, TRI_CHECK_HULL, "the boundary has %lld edges, but its loop through vertex %ld only %ld",
+                    (long long)c->boundary.n, check_frame_vertex(c, c->border[0][0]), (long)l->n);
+    return false;
+}
+
+static enum tri_status find_loop_hull(struct loop *l)
+{
+    struct tri_point *points = tri_check_array(l->n, sizeof *points);
+    for (int32_t i = 0; points != NULL && i < l->n; i++)
+        points[i] = check_point(l->c, l->vertex[i]);
+    return make_hull(points, l->n, &l->hull);
+}
+
+static bool is_corner(const struct loop *l, int32_t place)
+{
+    const struct tri_point p = check_point(l->c, l->vertex[place]);
+    const struct hull *h = &l->hull;
+    return bsearch(&p, h->chain[0], (size_t)h->n[0], sizeof p, compare_points) != NULL ||
+           bsearch(&p, h->chain[1], (size_t)h->n[1], sizeof p, compare_points) != NULL;
+}
+
+static int32_t next_corner(const struct loop *l, int32_t place)
+{
+    do
+        place = (place + 1) % l->n;
+    while (!is_corner(l, place));
+    return place;
+}
+
+/* Are the vertices behind `place` up to the next corner of the hull near the edge to it? Returns that corner's place;
+ * -1: no. */
+static int32_t follow_edge(struct loop *l, int32_t place)
+{
+    int32_t next = next_corner(l, place);
+    struct tri_point a = check_point(l->c, l->vertex[place]), b = check_point(l->c, l->vertex[next]);
+    double x = b.x - a.x, y = b.y - a.y, most = 2 * l->c->tolerance * sqrt(x * x + y * y);
+    for (int32_t i = (place + 1) % l->n; i != next; i = (i + 1) % l->n) {
+        struct tri_point p = check_point(l->c, l->vertex[i]);
+        if (fabs(x * (p.y - a.y) - y * (p.x - a.x)) > most) {
+            fault_at(l, l->vertex[i]);
+            return -1;
+        }
+    }
+    return next;
+}
+
+static enum tri_status judge(struct loop *l)
+{
+    tri_check_begin(l->c, TRI_CHECK_HULL);
+    list_boundary(l);
+    if (l->c->boundary.n == 0 || !walk(l))
+        return TRI_OK;
+    enum tri_status status = find_loop_hull(l);
+    int32_t first = status == TRI_OK ? next_corner(l, 0) : -1, place = first;
+    while (place >= 0 && (place = follow_edge(l, place)) != first) {
+    }
+    return status;
+}
+
+enum tri_status tri_check_hull(struct checker *c)
+{
+    struct loop l = {.c = c, .from = tri_check_array(c->n_frame, sizeof *l.from),
+                     .vertex = tri_check_array(c->boundary.n, sizeof *l.vertex)};
+    enum tri_status status = l.from != NULL && l.vertex != NULL ? judge(&l) : TRI_NO_MEMORY;
+    free_hull(&l.hull);
+    free(l.from);
+    free(l.vertex);
     return status;
 }

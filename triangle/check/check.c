@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/check/store.h"
+#include "triangle/check/internal.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",
@@ -309,7 +309,7 @@ static double bytes_of_triangle(const struct tri_check_source *source, double ve
            (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
-/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of overlap.c
+/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of winding.c
  * has in hand, when there is no part any more, and each point and segment of the input. */
 static const double SUBSEGMENT_BYTES = 126, BOUNDARY_BYTES = 48, SWEEP_BYTES = 196, INPUT_BYTES = 40;
 

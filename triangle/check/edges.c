@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check/store.h"
+#include "triangle/check/internal.h"
 
 enum { SMALL_GROUP = 24, MOST_RANGES = 4 };
 

@@ -2,7 +2,7 @@
  *
  * THE WAY. The mesh is looked at part by part: as many triangles at a time, in their order, as the memory holds (all of
  * them, where no bound is set). Vertices have numbers of their own in a part. What triangles of one part say by
- * themselves or as neighbours is judged there. Half-edges whose other side is not in the part are kept (store.h),
+ * themselves or as neighbours is judged there. Half-edges whose other side is not in the part are kept (store.c),
  * matched when all parts have been seen, and judged then. The boundary edges are left. These, the subsegments and the
  * input's points are the frame, in memory as a whole, on which all other checks work. Of vertices a byte is kept.
  *
@@ -99,7 +99,7 @@ struct check_part {
 enum { /* of each vertex of the mesh */
     CHECK_USED = 1,     /* it is a corner */
     CHECK_BOUNDARY = 2, /* of a boundary edge, an end */
-    CHECK_APEX = 4,     /* see apex.c */
+    CHECK_APEX = 4,     /* see bounds.c */
     CHECK_NEAR = 8      /* in a triangle with an apex */
 };
 
@@ -205,17 +205,6 @@ enum tri_status tri_check_vertex_markers(struct checker *c); /* needs subsegment
 enum tri_status tri_check_overlap(struct checker *c);     /* needs EDGES, ORIENTATION; answers the queries */
 void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
 enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
-
-/* The convex hull of points: the lower and the upper chain, in order of x, then y. To be freed. */
-struct check_hull {
-    struct tri_point *chain[2];
-    int32_t n[2];
-};
-
-/* Sorts the points. */
-enum tri_status tri_check_hull_of(struct tri_point *points, int64_t n, struct check_hull *hull);
-void tri_check_hull_free(struct check_hull *hull);
-int tri_check_compare_points(const void *left, const void *right); /* struct tri_point */
 
 enum tri_status tri_check_begin_quality(struct checker *c);
 void tri_check_shapes(struct checker *c); /* of the part */
@@ -405,5 +394,35 @@ static inline long check_frame_vertex(const struct checker *c, int32_t v)
 {
     return check_number(c, check_vertex(c, v));
 }
+
+/* Pieces of input segments that the mesh has no edges for. Private to the judge. */
+
+struct check_pieces {
+    int32_t n;
+    struct check_piece *at; /* [n] to be freed */
+};
+
+/* Brings c->missing into order, from left to right, and drops pieces that are there already. */
+void tri_check_sort_missing(struct checker *c);
+
+/* c->missing, in order, cut wherever pieces meet: they share nothing then but end points, up to rounding. None where
+ * that would take too long, or too much memory. About n sqrt(n) steps where they are short and apart. */
+enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces);
+
+/* Half-edges that wait for their other side. Private to the judge. */
+
+/* As many as the bound allows are in memory, the rest in nameless files, by a hash of their edge. */
+enum tri_status tri_check_store_new(struct checker *c);
+void tri_check_store_free(struct check_store *store);
+
+/* TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
+enum tri_status tri_check_store_add(struct checker *c, struct check_open e);
+
+/* Calls take for all of each file, or all there are; what it is given it may sort. The store is empty then. */
+enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)(struct checker *c,
+                                                                                 struct check_open *at, int64_t n));
+
+/* At the end of the array. */
+enum tri_status tri_check_append(struct check_opens *opens, const struct check_open *e);
 
 #endif

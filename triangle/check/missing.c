@@ -5,7 +5,7 @@
  *      rounded crossing.
  *   2. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept: so pieces
  *      that run along each other are one. */
-#include "triangle/check/missing.h"
+#include "triangle/check/internal.h"
 
 #include <stdlib.h>
 

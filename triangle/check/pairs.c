@@ -1,11 +1,11 @@
 /* What is to be said of an edge and the triangles beside it: the neighbours given, the empty circle (exact; by
  * Delaunay's lemma, constrained form: Lee & Lin 1986, edges suffice), and attributes, which are the same on both sides
  * of every edge that is no subsegment. So all triangles of a face have one attribute, and what it should be is asked of
- * the sweep (overlap.c).
+ * the sweep (winding.c).
  *
  * Each rule is asked of a half-edge a and the one on the other side, b, which is NULL at the boundary: where both are
  * in a part, or when they have been matched. */
-#include "triangle/check/store.h"
+#include "triangle/check/internal.h"
 
 struct check_rule {
     enum tri_check_kind kind;
@@ -159,4 +159,30 @@ void tri_check_matched(struct checker *c, const struct check_open *a, const stru
     judge_side(c, a, b);
     if (b != NULL)
         judge_side(c, b, a);
+}
+
+/* Every triangle is strictly counter-clockwise. */
+
+static double twice_area(const struct checker *c, int64_t t)
+{
+    const int32_t *v = c->part.triangles + 3 * t;
+    return tri_orient2d(check_place(c, v[0]), check_place(c, v[1]), check_place(c, v[2]));
+}
+
+static bool is_turned(const struct checker *c, int64_t t)
+{
+    return !(twice_area(c, t) > 0);
+}
+
+static void tell_turned(struct checker *c, int64_t t)
+{
+    const int32_t *v = c->part.triangles + 3 * t;
+    tri_check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_part_triangle(c, (int32_t)t),
+                    check_part_vertex(c, v[0]), check_part_vertex(c, v[1]), check_part_vertex(c, v[2]),
+                    twice_area(c, t) < 0 ? "clockwise" : "flat");
+}
+
+void tri_check_orientation(struct checker *c)
+{
+    tri_check_each(c, TRI_CHECK_ORIENTATION, c->part.first, c->part.n_triangles, is_turned, tell_turned);
 }

@@ -254,7 +254,7 @@ static enum tri_status note_missing(struct checker *c, struct tri_point from, st
 }
 
 /* Step 3. Pieces as short as the tolerance are beneath notice; pieces whose ends are not surely on the segment close no
- * face (overlap.c). */
+ * face (winding.c). */
 static enum tri_status ask_about(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
 {
     double from = along(l, begin), to = along(l, end);

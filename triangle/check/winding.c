@@ -15,7 +15,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/check/missing.h"
+#include "triangle/check/internal.h"
 #include "triangle/check/order.h"
 
 struct sweep_edge {

@@ -4,7 +4,7 @@
 #define TRIANGLE_DROPIN_CALL_H
 
 #include "triangle/dropin/triangle.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 /* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
  * executor (or NULL) runs what comes in pieces. aloud: for triangulate(). Errors, why the mesh is empty, and that

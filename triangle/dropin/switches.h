@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #include "triangle/mesh/grid.h"
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 enum { TRI_SWITCH_NOTES = 4, TRI_SWITCH_NOTE_CHARS = 32 };
 

@@ -4,6 +4,7 @@
 #ifndef TRIANGLE_GEOMETRY_SHAPE_H
 #define TRIANGLE_GEOMETRY_SHAPE_H
 
+#include <assert.h>
 #include <math.h>
 
 #include "triangle/base/ids.h"
@@ -21,6 +22,20 @@ static inline double tri_rough_log2(double x)
     int exponent;
     double mantissa = frexp(x, &exponent);
     return exponent + 2 * mantissa - 2;
+}
+
+/* Cosine of an angle in degrees, 0 .. 180, by its power series: within 1e-15 of the true value everywhere. */
+static inline double tri_cos_degrees(double degrees)
+{
+    static const double radians = 0.017453292519943295769;
+    assert(degrees >= 0 && degrees <= 180);
+    const double acute = degrees > 90 ? 180 - degrees : degrees;
+    double x = acute * radians, x2 = x * x, term = 1, sum = 1;
+    for (int k = 1; k <= 15; k++) {
+        term = -term * x2 / ((2 * k - 1) * (2 * k));
+        sum += term;
+    }
+    return degrees > 90 ? -sum : sum;
 }
 
 /* A triangle's shape: squared lengths opposite the corners, twice its area. */

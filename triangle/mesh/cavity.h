@@ -18,7 +18,6 @@
 
 #include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
-#include "triangle/mesh/owners.h"
 
 struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */

@@ -74,7 +74,7 @@ struct tri_incidence {
     int32_t n_vertices;    /* 0: not listed yet */
 };
 
-/* Where refinement leaves a bad triangle as it is (triangle/size/groundwork.h). */
+/* Where refinement leaves a bad triangle as it is (triangle/size/feature_size.h). */
 struct tri_limits {
     double finest2;     /* square of the shortest edge that coordinates of this size can carry */
     double shortest2;   /* the same where rounding reaches further: what is nearer than its root is no feature */
@@ -141,7 +141,7 @@ struct tri_mesh {
     int32_t n_subs, sub_capacity;
     struct tri_parent *parents; /* [n_parents] */
     int32_t n_parents, parent_capacity;
-    /* What refinement has to know of the input (triangle/size/groundwork.h): found once, asked by every call on this
+    /* What refinement has to know of the input (triangle/size/feature_size.h): found once, asked by every call on this
      * mesh, and true as long as its parents are. */
     struct tri_incidence incidence; /* parents at each vertex of the input */
     struct tri_limits limits;

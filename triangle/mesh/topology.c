@@ -3,9 +3,13 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "triangle/geometry/predicates.h"
+#include "triangle/geometry/shape.h"
 
 /* Edges of a triangle in the order of the list, by their opposite corners. */
 static const int edge_order[3] = {2, 0, 1};
@@ -175,4 +179,187 @@ void tri_used_free(struct tri_used *used)
         tri_mesh_extra_free(used->mesh, used->number);
     }
     *used = (struct tri_used){0};
+}
+
+/* One pass over the triangles for each question.
+ *
+ * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as
+ * the angle grows, so the smallest angle has the largest cosine. */
+
+const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
+                                                   15,     25,  50, 100, 300, 1000, 10000, 100000};
+
+static const double DEGREES = 57.295779513082320877;
+
+struct usage {
+    const struct tri_mesh *mesh;
+    _Atomic(bool) *used; /* [n_vertices] */
+};
+
+/* Threads that meet at a vertex say the same. */
+static void note_corners(void *context, size_t share)
+{
+    const struct usage *u = context;
+    struct tri_range range = tri_share(share, u->mesh->n_triangles);
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        for (int k = 0; k < 3; k++)
+            atomic_store_explicit(&u->used[u->mesh->tri[t].v[k]], true, memory_order_relaxed);
+}
+
+static int64_t count_used(const struct usage *u, const struct tri_executor *executor)
+{
+    int64_t n = 0;
+    tri_execute(executor, tri_shares(u->mesh->n_triangles), note_corners, (void *)u);
+    for (tri_vertex_id v = 0; v < u->mesh->n_vertices; v++)
+        n += atomic_load_explicit(&u->used[v], memory_order_relaxed);
+    return n;
+}
+
+enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
+    struct usage u = {mesh, calloc((size_t)mesh->n_vertices + 1, sizeof *u.used)};
+    *counts = (struct tri_counts){0};
+    if (!u.used)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)mesh->n_vertices);
+    tri_count_refined(counts, mesh, mesh->n_vertices - count_used(&u, executor));
+    free((void *)u.used);
+    return TRI_OK;
+}
+
+void tri_count_refined(struct tri_counts *counts, const struct tri_mesh *mesh, int64_t unused)
+{
+    assert(unused >= 0 && unused <= mesh->n_vertices);
+    *counts = (struct tri_counts){
+        .vertices = mesh->n_vertices - unused, .triangles = mesh->n_triangles, .subsegments = mesh->n_subs};
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        bool boundary = tri_is_boundary(&mesh->sub[s]);
+        *(boundary ? &counts->exterior : &counts->interior) += 1;
+    }
+    counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
+}
+
+/* Extremes in the mesh's units: least, greatest. */
+struct extremes {
+    double area2[2], length2[2];
+    double total_area2; /* sums of shares, added in their order: the same for any number of threads */
+    double least_altitude2, greatest_aspect;
+    double least_sine2;  /* squared sine of the smallest angle, at most 60 degrees, so that the sine tells all */
+    double least_cosine; /* of the largest angle, at least 60 degrees */
+};
+
+static void widen(double range[2], double value)
+{
+    range[0] = value < range[0] ? value : range[0];
+    range[1] = value > range[1] ? value : range[1];
+}
+
+/* Limits rise, or fall; so a bin is the number of limits passed, counted without a branch. */
+static int aspect_bin(double aspect)
+{
+    int bin = 0;
+    for (int k = 1; k < TRI_ASPECT_BINS; k++)
+        bin += aspect > tri_aspect_limits[k];
+    return bin;
+}
+
+static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
+{
+    int bin = 0;
+    for (int k = 1; k < TRI_ANGLE_BINS; k++)
+        bin += cosine < limits[k];
+    return bin;
+}
+
+static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s,
+                    const double limits[TRI_ANGLE_BINS])
+{
+    const double root[3] = {sqrt(s->l[0]), sqrt(s->l[1]), sqrt(s->l[2])};
+    double longest2 = tri_longest2(s), aspect = longest2 / s->area2;
+    widen(x->area2, s->area2);
+    x->total_area2 += s->area2;
+    x->least_altitude2 = tri_lesser(x->least_altitude2, s->area2 / longest2 * s->area2);
+    x->greatest_aspect = tri_larger(x->greatest_aspect, aspect);
+    x->least_sine2 = tri_lesser(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
+    shapes->aspects[aspect_bin(aspect)]++;
+    for (int k = 0; k < 3; k++) {
+        double a = s->l[tri_next[k]], b = s->l[tri_prev[k]];
+        double cosine = (a + b - s->l[k]) / (2 * root[tri_next[k]] * root[tri_prev[k]]);
+        widen(x->length2, s->l[k]);
+        x->least_cosine = tri_lesser(x->least_cosine, cosine);
+        shapes->angles[angle_bin(cosine, limits)]++;
+    }
+}
+
+static void convert(struct tri_shapes *shapes, const struct extremes *x, double unit)
+{
+    shapes->smallest_area = 0.5 * x->area2[0] * unit * unit;
+    shapes->total_area = 0.5 * x->total_area2 * unit * unit;
+    shapes->largest_area = 0.5 * x->area2[1] * unit * unit;
+    shapes->shortest_edge = sqrt(x->length2[0]) * unit;
+    shapes->longest_edge = sqrt(x->length2[1]) * unit;
+    shapes->shortest_altitude = sqrt(x->least_altitude2) * unit;
+    shapes->largest_aspect = x->greatest_aspect;
+    shapes->smallest_angle = DEGREES * asin(sqrt(fmin(x->least_sine2, 1)));
+    shapes->largest_angle = DEGREES * acos(fmax(x->least_cosine, -1));
+}
+
+/* A piece of the mesh and what was found in it. */
+struct tally {
+    struct tri_shapes shapes;
+    struct extremes extremes;
+};
+
+struct survey {
+    const struct tri_mesh *mesh;
+    double limits[TRI_ANGLE_BINS];
+    struct tally tally[TRI_MOST_SHARES];
+};
+
+static void measure_share(void *context, size_t share)
+{
+    struct survey *s = context;
+    struct tally *tally = &s->tally[share];
+    struct tri_range range = tri_share(share, s->mesh->n_triangles);
+    *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, 0, HUGE_VAL, 0, 1, 1}};
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        assert(tri_is_live(&s->mesh->tri[t]));
+        struct tri_shape shape = tri_shape_of(s->mesh->xy, s->mesh->tri[t].v);
+        measure(&tally->shapes, &tally->extremes, &shape, s->limits);
+    }
+}
+
+static void add_tally(struct tally *sum, const struct tally *add)
+{
+    for (int k = 0; k < TRI_ASPECT_BINS; k++)
+        sum->shapes.aspects[k] += add->shapes.aspects[k];
+    for (int k = 0; k < TRI_ANGLE_BINS; k++)
+        sum->shapes.angles[k] += add->shapes.angles[k];
+    struct extremes *x = &sum->extremes;
+    const struct extremes *y = &add->extremes;
+    for (int k = 0; k < 2; k++) {
+        widen(x->area2, y->area2[k]);
+        widen(x->length2, y->length2[k]);
+    }
+    x->total_area2 += y->total_area2;
+    x->least_altitude2 = tri_lesser(x->least_altitude2, y->least_altitude2);
+    x->greatest_aspect = tri_larger(x->greatest_aspect, y->greatest_aspect);
+    x->least_sine2 = tri_lesser(x->least_sine2, y->least_sine2);
+    x->least_cosine = tri_lesser(x->least_cosine, y->least_cosine);
+}
+
+void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct survey s = {.mesh = mesh};
+    *shapes = (struct tri_shapes){0};
+    if (mesh->n_triangles == 0)
+        return;
+    for (int k = 0; k < TRI_ANGLE_BINS; k++)
+        s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
+    size_t shares = tri_shares(mesh->n_triangles);
+    tri_execute(executor, shares, measure_share, &s);
+    for (size_t i = 1; i < shares; i++)
+        add_tally(&s.tally[0], &s.tally[i]);
+    *shapes = s.tally[0].shapes;
+    convert(shapes, &s.tally[0].extremes, mesh->unit);
 }

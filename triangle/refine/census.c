@@ -6,7 +6,7 @@
 
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/criterion.h"
-#include "triangle/refine/disk.h"
+#include "triangle/refine/split.h"
 #include "triangle/mesh/parents.h"
 #include "triangle/size/gap.h"
 #include "triangle/size/hopeless.h"

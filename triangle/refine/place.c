@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "triangle/geometry/predicates.h"
+
 struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
                            double reach)
 {
@@ -21,4 +23,69 @@ struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3],
         y = my + height * bx;
     }
     return (struct tri_point){tri_round_coordinate(a.x + x), tri_round_coordinate(a.y + y)};
+}
+
+/* Points for triangles that are too large, whatever stands in the way.
+ *
+ * The usual point of such a triangle may be out of reach: beyond a wall that cannot be split, farther away than
+ * coordinates go, on a vertex. Then the triangle's own longest subsegment is split, if it is among the longer edges. If
+ * it cannot be split, the centroid is inserted. Nothing can refuse the centroid: it lies in its triangle, hence in the
+ * circumdisk, and sees its whole cavity (cavity.h).
+ *
+ * THEOREM (docs/theory.md, areas). Both are done finitely many times, whatever the rest of refinement does. So the
+ * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps.
+ *
+ * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
+ * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that edge. */
+
+tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                         tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    assert(tri_is_live(&mesh->tri[triangle]));
+    tri_sub_id found = TRI_NONE;
+    double length2 = 0.25 * tri_longest2(shape);
+    for (int e = 0; e < 3; e++) {
+        tri_link link = mesh->tri[triangle].n[e];
+        if (link < 0 && shape->l[e] >= length2 && !tri_is_protected(quality, &mesh->sub[~link])) {
+            found = ~link;
+            length2 = shape->l[e];
+        }
+    }
+    return found;
+}
+
+/* The apex of a triangle on the same edge ab that is as low as one with a centroid may be. */
+static struct tri_point lowest_apex(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b,
+                                    struct tri_point apex, double height)
+{
+    const double share = fmin(3 * sqrt(mesh->limits.finest2) / height, 1);
+    const struct tri_point m = tri_point_between(a, b, 0.5);
+    return (struct tri_point){m.x + share * (apex.x - m.x), m.y + share * (apex.y - m.y)};
+}
+
+bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    const struct tri_mesh *mesh = asked->mesh;
+    const struct tri_triangle *t = &mesh->tri[triangle];
+    const double longest2 = tri_longest2(shape), LOW = 4096;
+    const int e = shape->l[0] == longest2 ? 0 : shape->l[1] == longest2 ? 1 : 2;
+    if (!tri_asks_caller(asked->quality) || asked->quality->protect == 0 || LOW * shape->area2 > longest2 ||
+        shape->area2 > tri_area2_bound(asked, t->region))
+        return false;
+    const struct tri_point a = mesh->xy[t->v[tri_next[e]]], b = mesh->xy[t->v[tri_prev[e]]];
+    const struct tri_point low = lowest_apex(mesh, a, b, mesh->xy[t->v[e]], shape->area2 / sqrt(longest2));
+    return tri_is_refused(asked, a, b, low);
+}
+
+bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,
+                  struct tri_point *p)
+{
+    assert(tri_is_live(&mesh->tri[triangle]));
+    const tri_vertex_id *v = mesh->tri[triangle].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);
+    p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
+    if (shape->area2 * shape->area2 < 9 * mesh->limits.finest2 * tri_longest2(shape))
+        return false;
+    return tri_is_inside(a, b, c, *p);
 }

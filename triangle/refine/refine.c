@@ -1,6 +1,6 @@
 /* The refinement loop: takes the worst bad triangle, treats it (treat.c), queues the new bad triangles (feed.c).
  *
- * ORDER. Under -D, subsegments whose diametral circle is not empty are split before anything else (disk.c). Then come
+ * ORDER. Under -D, subsegments whose diametral circle is not empty are split before anything else (split.c). Then come
  * triangles with a corner that encroaches the opposite subsegment: while it is encroached, the corner may hide it from
  * the cavity of another point (cavity.h), which would come to lie anywhere near it. Then come the triangles with the
  * shortest edges (bad_queue.h), and at last those that are only too large.
@@ -9,7 +9,7 @@
  * split (-Y).
  *
  * THEOREM (end). Points for angles are finitely many by hopeless.c and feature_size.c; those for sizes and circles,
- * whatever the others do, by inside.c and disk.c. */
+ * whatever the others do, by place.c and split.c. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>

@@ -13,8 +13,7 @@
 #include "triangle/base/executor.h"
 #include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
-#include "triangle/mesh/owners.h"
-#include "triangle/size/groundwork.h"
+#include "triangle/size/feature_size.h"
 #include "triangle/size/quality.h"
 
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */

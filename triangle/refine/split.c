@@ -13,9 +13,12 @@
 #include "triangle/refine/split.h"
 
 #include <assert.h>
+#include <float.h>
 
 #include "triangle/cdt/chain.h"
 #include "triangle/geometry/predicates.h"
+#include "triangle/mesh/parents.h"
+#include "triangle/size/gap.h"
 #include "triangle/tunables.h"
 
 static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
@@ -120,4 +123,210 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     double astray = most * fmax(tri_resolution(a), tri_resolution(b));
     *p = tri_place_beside(rounded, step(mesh, s, rounded, choice), choice % TRI_PLACES);
     return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
+}
+
+/* Diametral circles: where a subsegment with a vertex in its circle is split.
+ *
+ * RULE. The point of a subsegment e level with a vertex v is that at the distance of v from o, where e and v lie on two
+ * parents with the common end o; else the foot of the perpendicular from v. Let e have length l, v distance h from it,
+ * and the level point distance d from the nearer end a. Then e is split
+ *   - level with v, if 0.9 h <= d and h < l / TRI_NARROW;
+ *   - d + h^2 / d from a, if 0.9 h > d and that is less than
+ *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
+ * It is not split if rounding would undo that. Let g be the rounding error of a place along e. Then e stays if no place
+ * is level and g * l > TRI_NARROW * h^2. It also stays if v lies across a space that is not filled (gap.h), and if that
+ * space is longer than (TRI_NARROW * h)^2 / g.
+ *
+ * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
+ * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
+ * shortest edge. */
+
+bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
+{
+    assert(code >= 0 && tri_edge(code) < 3);
+    struct tri_point apex = mesh->xy[tri_apex(mesh, code)];
+    return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
+}
+
+/* A unit in the last place of the largest coordinate, in shortest edges. */
+static const double ULP = 0x1p-5;
+
+static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
+
+/* The fraction of the subsegment at which the point level with v lies. */
+static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    tri_vertex_id end = tri_common_end(mesh, s->parent, v);
+    if (end != TRI_NONE) {
+        struct tri_point o = mesh->xy[end];
+        double at_a = distance(o, a), at_b = distance(o, b);
+        return (distance(o, at) - at_a) / (at_b - at_a);
+    }
+    double x = b.x - a.x, y = b.y - a.y;
+    return ((at.x - a.x) * x + (at.y - a.y) * y) / (x * x + y * y);
+}
+
+/* The l, h and d of the rule, for one vertex and one subsegment. */
+struct sight {
+    double l, h, d;
+    bool from_end; /* d is measured from the subsegment's second end */
+    bool far;      /* d reaches 0.9 h. With h as the bound, rounding made two parents split each other for ever */
+};
+
+static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y, l = sqrt(x * x + y * y), level = level_with(mesh, s, v);
+    double d = (level < 0.5 ? level : 1 - level) * l, h = fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l;
+    return (struct sight){l, h, d, level >= 0.5, d >= 0.9 * h};
+}
+
+/* The fraction at which to split, by the rule. A d below the shortest edge is rounding. */
+static double fraction_for(const struct sight *v, double usual, double shortest)
+{
+    double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
+    if (TRI_NARROW * v->h >= v->l || v->d < shortest || (!v->far && far >= from_nearer))
+        return usual;
+    double fraction = v->far ? v->d / v->l : far;
+    return v->from_end ? 1 - fraction : fraction;
+}
+
+/* A unit in the last place. */
+static double unit_of(double x)
+{
+    int exponent;
+    frexp(x, &exponent);
+    return x == 0 ? 0 : ldexp(1, exponent - DBL_MANT_DIG);
+}
+
+/* How far from its level rounding leaves a place: along the line, that coordinate counts whose unit moves it less. */
+static double grain_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    double x = fabs(b.x - a.x), y = fabs(b.y - a.y);
+    return fmin(x * unit_of(at.x), y * unit_of(at.y)) / sqrt(x * x + y * y);
+}
+
+/* Has the subsegment a place that is level with v in spite of rounding? */
+static bool has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
+                      const struct sight *sight)
+{
+    double fraction = sight->d / sight->l;
+    const struct tri_disk_split level = {sight->from_end ? 1 - fraction : fraction, v};
+    const struct tri_split_base base = tri_disk_base(mesh, s, &level);
+    struct tri_point p;
+    for (int choice = 0; choice < TRI_DISK_PLACES; choice++)
+        if (tri_place_disk_split(mesh, s, &level, &base, choice, &p) &&
+            tri_leaves_disks_empty(mesh, s, p, mesh->xy[v]))
+            return true;
+    return false;
+}
+
+/* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
+static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
+                         struct tri_disk_split *split)
+{
+    const struct sight sight = sight_of(mesh, s, v);
+    const double shortest = sqrt(mesh->limits.shortest2), h2 = sight.h * sight.h;
+    if (!tri_is_resolved_from(mesh, s, v))
+        return false;
+    split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
+    split->level = TRI_NARROW * sight.h < sight.l && sight.d >= shortest && sight.far ? v : TRI_NONE;
+    if (sight.d < shortest)
+        return TRI_NARROW * sight.h >= sight.l || fmax(sight.d, ULP * shortest) * sight.l <= TRI_NARROW * h2;
+    const double grain = grain_at(mesh, s, mesh->xy[v]);
+    const double gap = tri_gap_across(mesh, s->parent, s->v[sight.from_end], v);
+    return grain * gap <= TRI_NARROW * TRI_NARROW * sight.h &&
+           (grain * sight.l <= TRI_NARROW * h2 || has_level(mesh, s, v, &sight));
+}
+
+bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    return tri_can_split(mesh, a, b) && tri_line_distance(a, b, mesh->xy[v]) >= sqrt(mesh->limits.shortest2);
+}
+
+bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
+                            struct tri_disk_split *split)
+{
+    bool is = tri_is_in_diametral_disk(mesh, s, code) && is_split_for(mesh, s, tri_apex(mesh, code), split);
+    assert(!is || (split->fraction > 0 && split->fraction < 1));
+    return is;
+}
+
+/* A place at the fraction, which is level with a vertex. If it lies within an ulp or two of the foot of the
+ * perpendicular (ulps of the end from which the fraction was worked out), the foot is taken: it is level as well, and
+ * has been rounded once. */
+struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                    const struct tri_disk_split *split)
+{
+    if (split->level == TRI_NONE)
+        return tri_split_base(mesh, s, split->fraction);
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[split->level];
+    struct tri_point between = tri_point_between(a, b, split->fraction);
+    double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * fmax(tri_resolution(a), tri_resolution(b));
+    double off = (x * (at.x - between.x) + y * (at.y - between.y));
+    return off * off <= near * near * l2 ? tri_split_base_level(mesh, s, at)
+                                         : tri_split_base(mesh, s, split->fraction);
+}
+
+/* Of the two coordinates that lie next to a + d, the nearest, or the one on its other side. */
+static double coordinate_beside(double a, double d, bool other)
+{
+    double x = a + d;
+    return tri_round_coordinate(other ? nextafter(x, x - a > d ? -HUGE_VAL : HUGE_VAL) : x);
+}
+
+/* In each column of coordinates one place is nearest to the line on which all is level with `at` (docs/theory.md). q:
+ * the rounded place; end: the common end of the parents, or TRI_NONE. Is it level, and may it be there? */
+static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point q,
+                            struct tri_point at, tri_vertex_id end, int i, struct tri_point *p)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    double x = b.x - a.x, y = b.y - a.y, dx = unit_of(q.x), dy = unit_of(q.y);
+    int column = i / 2 % 2 ? (i / 2 + 1) / 2 : -(i / 2 / 2);
+    bool other = i % 2;
+    if (end != TRI_NONE) {
+        struct tri_point o = mesh->xy[end];
+        x = (q.x - o.x) + (at.x - o.x);
+        y = (q.y - o.y) + (at.y - o.y);
+    }
+    if (x == 0 || (y != 0 && fabs(y) * dy < fabs(x) * dx)) {
+        q.x = tri_round_coordinate(q.x + column * dx);
+        q.y = coordinate_beside(at.y, -(q.x - at.x) * (x / y), other);
+    } else {
+        q.y = tri_round_coordinate(q.y + column * dy);
+        q.x = coordinate_beside(at.x, -(q.y - at.y) * (y / x), other);
+    }
+    *p = q;
+    return tri_leaves_disks_empty(mesh, s, q, at) && tri_may_split_at(mesh, s, q);
+}
+
+bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                          const struct tri_disk_split *split, const struct tri_split_base *base, int choice,
+                          struct tri_point *p)
+{
+    if (choice < TRI_SPLIT_PLACES)
+        return tri_place_split(mesh, s, base, choice, p);
+    if (split->level == TRI_NONE)
+        return false;
+    tri_vertex_id end = tri_common_end(mesh, s->parent, split->level);
+    tri_place_split(mesh, s, base, 0, p);
+    return place_in_column(mesh, s, *p, mesh->xy[split->level], end, choice - TRI_SPLIT_PLACES, p);
+}
+
+bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                            struct tri_point at)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    return tri_dot(a, p, at) >= 0 && tri_dot(p, b, at) >= 0;
+}
+
+bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_disk_split *split)
+{
+    for (int side = 0; side < 2; side++)
+        if (s->side[side] != TRI_NONE && tri_is_encroached_from(mesh, s, s->side[side], split))
+            return true;
+    return false;
 }

@@ -7,7 +7,7 @@
  *
  * INVARIANT. A triangle is refined for its angle unless its shortest edge is shorter than s(v) / 6 (feature_size.c),
  * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can
- * afford (hopeless.c). Sizes are never given up: see inside.c.
+ * afford (hopeless.c). Sizes are never given up: see place.c.
  *
  * A subsegment that must not be split (-Y) tolerates points in its lens that are TRI_CLEARANCE times the shortest edge
  * away: docs/theory.md, protected walls. */
@@ -16,8 +16,6 @@
 #include <assert.h>
 
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/disk.h"
-#include "triangle/refine/inside.h"
 #include "triangle/refine/petal.h"
 #include "triangle/refine/place.h"
 #include "triangle/refine/split.h"
@@ -339,7 +337,7 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
     return outcome == DONE ? AGAIN : outcome;
 }
 
-/* For sizes, where the usual point is refused: see inside.c. */
+/* For sizes, where the usual point is refused: see place.c. */
 static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     tri_sub_id s = tri_long_wall(r->mesh, r->quality, triangle, shape);

@@ -10,7 +10,6 @@
 #include "triangle/base/status.h"
 #include "triangle/size/asked.h"
 #include "triangle/size/crowd.h"
-#include "triangle/size/integral.h"
 #include "triangle/tunables.h"
 
 enum { DEEPEST_CUT = 12 };

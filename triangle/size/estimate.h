@@ -10,7 +10,7 @@
 /* Estimates the number of triangles that refinement will end with: those that sizes ask for, by integrals of 1 / h^2
  * where sizes are the caller's functions, and those that angles ask for beside them (crowd.h). It may be more than any
  * mesh can hold. *sure: the certain part: the triangles that there are, and those that sizes ask for where they are not
- * met yet. The mesh has been made ready for refinement (groundwork.h).
+ * met yet. The mesh has been made ready for refinement (feature_size.h).
  * O(triangles); the caller's functions are asked at some 8,000 places, never at more than 2^20 beside four for each
  * triangle. Once a stop is asked for (mesh->stop), they are not asked any more, and count for nothing. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,

@@ -3,6 +3,7 @@
 #define TRIANGLE_SIZE_FEATURE_SIZE_H
 
 #include "triangle/mesh/cavity.h"
+#include "triangle/mesh/mesh.h"
 
 /* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
 void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor);
@@ -18,5 +19,14 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
 /* Is the edge between vertices a and b, of squared length l2, too short for what is around it, regardless of
  * angles? */
 bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2);
+
+/* What refinement has to know of the input before it inserts its first point: found once, by tri_refine_prepare, and
+ * kept with the mesh. */
+
+/* Makes the mesh ready for refinement: keeps the surface of the attributes, lists the parents at each vertex, estimates
+ * feature sizes, sets the limits, and marks the input vertices at which two subsegments meet at less than 60 degrees
+ * inside the mesh (TRI_VERTEX_ACUTE). Call it after carving, before the first point; a mesh that is ready stays as it
+ * is. O(triangles). */
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 #endif

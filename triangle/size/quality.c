@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "triangle/geometry/degrees.h"
+#include "triangle/geometry/shape.h"
 #include "triangle/tunables.h"
 
 struct tri_quality tri_quality_defaults(void) { return (struct tri_quality){.max_steiner = -1}; }

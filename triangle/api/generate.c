@@ -1,5 +1,5 @@
 /* The stages in their order. */
-#include "triangle/refine/generate.h"
+#include "triangle/api/generate.h"
 
 #include <assert.h>
 #include <stdlib.h>

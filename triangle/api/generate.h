@@ -7,8 +7,8 @@
  * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of
  * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates, size functions and size tests get
  * the caller's coordinates. */
-#ifndef TRIANGLE_REFINE_GENERATE_H
-#define TRIANGLE_REFINE_GENERATE_H
+#ifndef TRIANGLE_API_GENERATE_H
+#define TRIANGLE_API_GENERATE_H
 
 #include "triangle/base/status.h"
 #include "triangle/cdt/carve.h"
