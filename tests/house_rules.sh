@@ -84,7 +84,8 @@ tested_by() {
     sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;
-    sched/schedule/prerefine.c | sched/schedule/report.c | sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
+    sched/schedule/prerefine.c) echo theory ;;
+    sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;
     esac

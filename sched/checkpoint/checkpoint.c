@@ -24,7 +24,7 @@
 #define O_DIRECT 0 /* the system has no such thing */
 #endif
 
-static const uint64_t MANIFEST = UINT64_C(0x356863697274706b); /* a version, too */
+static const uint64_t MANIFEST = UINT64_C(0x366863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";

@@ -9,9 +9,9 @@ enum tri_status par_borrow_from(struct par_ranks *r, struct par_talk *talk, cons
                                 struct tri_error *error)
 {
     struct par_message message;
-    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, told, error);
+    enum tri_status status = par_message_read(&message, talk, r->run->mesh, r->n_common, told, error);
     status = status ? status : par_paste(r, talk, &message, true, error);
-    if (!status && !par_merge_entries(r->state, &message, talk))
+    if (!status && !par_merge_entries(r->run, &message, talk))
         status = par_ranks_no_memory(error);
     par_message_free(&message);
     return status;
@@ -29,8 +29,8 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
 enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, struct tri_error *error)
 {
     for (int32_t i = 0; i < vertices->n; i++) {
-        assert(vertices->item[i] >= 0 && vertices->item[i] < r->state->mesh->n_vertices);
-        int h = par_owner_at(&r->territory, r->state->mesh->xy[vertices->item[i]]);
+        assert(vertices->item[i] >= 0 && vertices->item[i] < r->run->mesh->n_vertices);
+        int h = par_owner_at(&r->territory, r->run->mesh->xy[vertices->item[i]]);
         int32_t number = h == r->territory.rank ? 0 : par_map_get(&r->borrowed[h].vertex_at, vertices->item[i]);
         if (number == TRI_NONE)
             return tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
@@ -58,7 +58,7 @@ static void list_set(struct par_ids *list, const struct par_triangle_set *set, i
 static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const struct par_triangle_set *changed,
                       struct par_message *message)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     bool memory = true;
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
         if (par_is_in(changed, talk->triangle.item[i])) {
@@ -76,7 +76,7 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
 /* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
 static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     int n = 0, guess = owner[0];
     assert(tri_is_live(&mesh->tri[t]));
     for (int k = 0; k < 3; k++) {
@@ -96,7 +96,7 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 /* Triangles lie in the order of the list, their corners do not: these are fetched ahead. */
 static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     bool memory = true;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
@@ -117,7 +117,7 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
     if (!p || place < 0)
         return false;
     int32_t block = place / p->n_rows / 2 * p->n_rows + place % p->n_rows;
-    return par_key_of(p, r->state->round, r->shift.phase, block) == (key & ~(uint64_t)UINT32_MAX) &&
+    return par_key_of(p, r->run->place.round, r->shift.phase, block) == (key & ~(uint64_t)UINT32_MAX) &&
            r->shift.is_border[block];
 }
 
@@ -136,15 +136,15 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
  * subsegment of which one corner lies outside its box: that one's owner may know nothing of the block. */
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
-    struct par_run *state = r->state;
+    struct par_run *run = r->run;
     bool memory = true;
     int32_t kept = 0;
     int owner[3] = {0};
-    for (int32_t i = 0; i < state->worklist.n; i++) {
-        tri_triangle_id t = state->worklist.item[i];
-        const uint64_t key = state->key.item[i];
+    for (int32_t i = 0; i < run->worklist.n; i++) {
+        tri_triangle_id t = run->worklist.item[i];
+        const uint64_t key = run->key.item[i];
         if (par_own_corners(r, t) > 0)
-            par_keep_entry(state, i, &kept);
+            par_keep_entry(run, i, &kept);
         if (!is_of_border(r, key))
             continue;
         int n = owners_of(r, t, owner);
@@ -155,7 +155,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
                 memory = memory && par_message_add_entry(&message[owner[k]], key, number);
         }
     }
-    state->worklist.n = state->key.n = kept;
+    run->worklist.n = run->key.n = kept;
     return memory;
 }
 
@@ -182,7 +182,7 @@ static void mark(uint64_t *word, tri_vertex_id v, bool on)
 /* The vertices of what goes go with it, unless a straddler has them. */
 static bool remove_vertices(struct par_ranks *r, uint64_t *word)
 {
-    struct tri_mesh *mesh = r->state->mesh;
+    struct tri_mesh *mesh = r->run->mesh;
     bool memory = true;
     for (int32_t i = 0; i < r->straddlers.n; i++)
         for (int k = 0; k < 3; k++)
@@ -192,40 +192,40 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
             if (word[w] >> bit & 1) {
                 assert(64 * w + bit >= r->n_common); /* these all ranks keep */
                 mesh->on[64 * w + bit] = TRI_VERTEX_NONE;
-                memory = par_release(r->state, PAR_VERTICES, 64 * w + bit);
+                memory = par_release(r->run, PAR_VERTICES, 64 * w + bit);
             }
     return memory;
 }
 
-static bool leave_sub(struct par_run *state, tri_sub_id s, tri_halfedge code)
+static bool leave_sub(struct par_run *run, tri_sub_id s, tri_halfedge code)
 {
-    struct tri_subsegment *sub = &state->mesh->sub[s];
+    struct tri_subsegment *sub = &run->mesh->sub[s];
     for (int side = 0; side < 2; side++)
         if (sub->side[side] == code)
             sub->side[side] = TRI_BEYOND;
-    return !par_is_lone(sub) || par_remove_sub(state, s);
+    return !par_is_lone(sub) || par_remove_sub(run, s);
 }
 
 /* Its neighbours are cut off afterwards, all at once. */
 static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
-    struct tri_triangle *triangle = &r->state->mesh->tri[t];
+    struct tri_triangle *triangle = &r->run->mesh->tri[t];
     bool memory = true;
     assert(tri_is_live(triangle) && par_own_corners(r, t) == 0);
     for (int k = 0; memory && k < 3; k++) {
         if (triangle->v[k] >= r->n_common)
             mark(word, triangle->v[k], true);
         if (triangle->n[k] < 0 && triangle->n[k] != TRI_BEYOND)
-            memory = leave_sub(r->state, ~triangle->n[k], tri_code(t, k));
+            memory = leave_sub(r->run, ~triangle->n[k], tri_code(t, k));
     }
     triangle->v[0] = TRI_NONE;
-    return memory && par_release(r->state, PAR_TRIANGLES, t);
+    return memory && par_release(r->run, PAR_TRIANGLES, t);
 }
 
 /* A triangle that stays beside one that has gone shares an edge without an own end with it: it is a straddler. */
 static void cut_off(struct par_ranks *r)
 {
-    struct tri_mesh *mesh = r->state->mesh;
+    struct tri_mesh *mesh = r->run->mesh;
     for (int32_t i = 0; i < r->straddlers.n; i++) {
         tri_link *link = mesh->tri[r->straddlers.item[i]].n;
         assert(tri_is_live(&mesh->tri[r->straddlers.item[i]]));
@@ -250,7 +250,7 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++) {
         tri_triangle_id t = triangles->item[i];
-        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && par_own_corners(r, t) == 0)
+        if (t != TRI_NONE && tri_is_live(&r->run->mesh->tri[t]) && par_own_corners(r, t) == 0)
             memory = drop_triangle(r, t, word);
     }
     return memory;
@@ -258,7 +258,7 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
 
 static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
-    uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
+    uint64_t *word = calloc((size_t)r->run->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
     par_forget_straddlers(r, set);
     for (int32_t i = 0; memory && i < changed->n; i++)
@@ -275,9 +275,9 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
 enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
     struct par_triangle_set set;
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles);
+    bool memory = par_triangle_set_of(&set, changed, r->run->mesh->n_triangles);
     if (memory)
-        list_set(changed, &set, r->state->mesh->n_triangles);
+        list_set(changed, &set, r->run->mesh->n_triangles);
     memory = memory && give_all(r, changed, &set) && drop_all(r, changed, &set);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
@@ -285,17 +285,17 @@ enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, stru
 
 static void keep_own_entries(struct par_ranks *r)
 {
-    struct par_run *state = r->state;
+    struct par_run *run = r->run;
     int32_t kept = 0;
-    for (int32_t i = 0; i < state->worklist.n; i++)
-        if (par_own_corners(r, state->worklist.item[i]) > 0)
-            par_keep_entry(state, i, &kept);
-    state->worklist.n = state->key.n = kept;
+    for (int32_t i = 0; i < run->worklist.n; i++)
+        if (par_own_corners(r, run->worklist.item[i]) > 0)
+            par_keep_entry(run, i, &kept);
+    run->worklist.n = run->key.n = kept;
 }
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     assert(r->straddlers.n == 0);
     uint64_t *word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;

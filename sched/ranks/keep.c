@@ -38,18 +38,18 @@ static enum tri_status carry(struct par_state_file *file, void *user, struct tri
 /* --- going on */
 
 /* The mesh is empty but for the vertices that all ranks have: what follows tells of all others. */
-static void forget_all(struct par_run *state, int32_t n_common)
+static void forget_all(struct par_run *run, int32_t n_common)
 {
-    state->mesh->n_vertices = n_common;
-    state->mesh->n_triangles = state->mesh->n_subs = 0;
-    state->worklist.n = state->key.n = 0;
-    par_room_free(&state->spare);
+    run->mesh->n_vertices = n_common;
+    run->mesh->n_triangles = run->mesh->n_subs = 0;
+    run->worklist.n = run->key.n = 0;
+    par_room_free(&run->spare);
 }
 
 static bool find_straddlers(struct par_ranks *r)
 {
     bool memory = true;
-    for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; memory && t < r->run->mesh->n_triangles; t++)
         memory = par_own_corners(r, t) == 3 || par_ids_add(&r->straddlers, t);
     return memory;
 }
@@ -58,7 +58,7 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    forget_all(r->state, r->n_common);
+    forget_all(r->run, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
     for (int p = 0; !status && p < m->n_ranks; p++) {
@@ -72,12 +72,12 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
 /* Rank 0 counts what has been done for all. */
 static void go_on_from(struct par_ranks *r, const struct kept *c)
 {
-    r->state->next = (enum par_next)c->next;
-    r->state->round = c->round;
-    r->state->phase = c->phase;
-    r->state->step = c->step;
-    r->state->report->rounds += (int)c->rounds;
-    r->state->report->left_over += c->left_over;
+    r->run->place.next = (enum par_next)c->next;
+    r->run->place.round = c->round;
+    r->run->place.phase = c->phase;
+    r->run->place.step = c->step;
+    r->run->report->rounds += (int)c->rounds;
+    r->run->report->left_over += c->left_over;
     if (r->carrier->rank == 0)
         par_add_done(r, c->done);
 }
@@ -88,7 +88,7 @@ static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m
     enum tri_status status = kept ? TRI_OK : par_ranks_no_memory(error);
     if (!status && r->carrier->rank == 0) {
         kept->n_ranks = m->n_ranks;
-        status = par_checkpoint_read(r->state->options->checkpoint, carry, kept, error);
+        status = par_checkpoint_read(r->run->asked.options->checkpoint, carry, kept, error);
     }
     status = par_spread(r->carrier, PAR_MOVE_INPUT, kept, size_of(m->n_ranks), status, error);
     status = status ? status : read_pieces(r, m, kept->writer, error);
@@ -101,30 +101,30 @@ static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m
 /* Rank 0 has read it. */
 static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct tri_error *error)
 {
-    struct par_checkpoint *c = r->state->options->checkpoint;
+    struct par_checkpoint *c = r->run->asked.options->checkpoint;
     enum tri_status status = TRI_OK;
     if (par_checkpoint_has_state(c) && !par_checkpoint_has_ranks(c))
         status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of one task");
     else if (r->carrier->rank == 0)
-        status = par_checkpoint_take(c, r->run, error);
+        status = par_checkpoint_take(c, r->of_run, error);
     *m = c->manifest;
     return par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
 }
 
 enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *error)
 {
-    struct par_checkpoint *c = r->state->options->checkpoint;
+    struct par_checkpoint *c = r->run->asked.options->checkpoint;
     struct par_manifest m;
     *again = false;
     if (!c)
         return TRI_OK;
-    c->stop = r->state->mesh->stop;
+    c->stop = r->run->mesh->stop;
     c->last = c->looked = tri_seconds();
     enum tri_status status = check_manifest(r, &m, error);
     if (status || m.state_bytes == 0)
         return status;
     *again = true;
-    r->state->mesh->stop = NULL; /* there is something to lose */
+    r->run->mesh->stop = NULL; /* there is something to lose */
     return take_up(r, &m, error);
 }
 
@@ -133,7 +133,7 @@ enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *
 /* Those whose first corner is an own one: of all ranks together each once. */
 static int64_t count_triangles(const struct par_ranks *r)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     int64_t n = 0;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         n += tri_is_live(&mesh->tri[t]) && par_is_own(&r->territory, mesh->xy[mesh->tri[t].v[0]]);
@@ -145,20 +145,21 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
                            struct tri_error *error)
 {
     const int n_ranks = r->carrier->n_ranks;
+    const struct par_position *place = &r->run->place;
     struct kept *kept = calloc(1, size_of(n_ranks));
     int64_t triangles = 0;
     if (!kept)
         return par_ranks_no_memory(error);
-    *kept = (struct kept){r->state->next, r->state->round, r->state->phase, r->state->step,
-                          .left_over = r->state->report->left_over - r->left_before,
-                          .rounds = r->state->report->rounds - r->rounds_before - 1, .n_ranks = n_ranks};
+    *kept = (struct kept){place->next, place->round, place->phase, place->step,
+                          .left_over = r->run->report->left_over - r->left_before,
+                          .rounds = r->run->report->rounds - r->rounds_before, .n_ranks = n_ranks};
     memcpy(kept->done, done, sizeof kept->done);
     for (int p = 0; p < n_ranks; p++) {
         kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
         triangles += told[2 * p + 1];
     }
-    enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, n_ranks, triangles,
-                                                  carry, kept, error);
+    struct par_checkpoint *c = r->run->asked.options->checkpoint;
+    enum tri_status status = par_checkpoint_write(c, PAR_RANKS_STATE, n_ranks, triangles, carry, kept, error);
     free(kept);
     return status;
 }
@@ -167,7 +168,7 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
 static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct tri_error *error)
 {
     uint64_t hash = 0;
-    int64_t which = par_checkpoint_next(r->state->options->checkpoint);
+    int64_t which = par_checkpoint_next(r->run->asked.options->checkpoint);
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
     status = status ? status : par_pieces_write(r, which, &hash, error);
     told[0] = (int64_t)hash;
@@ -192,12 +193,12 @@ static enum tri_status keep(struct par_ranks *r, struct tri_error *error)
 
 enum tri_status par_keep(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
-    struct par_checkpoint *c = r->state->options->checkpoint;
+    struct par_checkpoint *c = r->run->asked.options->checkpoint;
     int64_t asked[2], sum[2];
     if (!c)
         return status;
-    r->state->mesh->stop = NULL; /* there is something to lose */
-    const double began = tri_seconds(), step = began - c->looked, triangles = (double)par_triangles(r->state);
+    r->run->mesh->stop = NULL; /* there is something to lose */
+    const double began = tri_seconds(), step = began - c->looked, triangles = (double)par_triangles(r->run);
     const bool is_last = r->carrier->rank == 0 && par_state_is_last(c, began + step, triangles);
     c->looked = began;
     asked[0] = is_last || tri_stop_is_asked(c->stop);

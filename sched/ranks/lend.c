@@ -35,8 +35,8 @@ static bool join(const struct telling *telling, struct par_ids *layer, tri_halfe
 {
     const struct par_ranks *r = telling->ranks;
     struct par_map *surrounded = &r->lent[telling->w].surrounded;
-    tri_vertex_id v = vertex_at(r->state->mesh, corner);
-    struct tri_point q = r->state->mesh->xy[v];
+    tri_vertex_id v = vertex_at(r->run->mesh, corner);
+    struct tri_point q = r->run->mesh->xy[v];
     if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != telling->w)
         return true;
     return par_map_put(surrounded, v, telling->layers) && par_ids_add(layer, corner);
@@ -44,7 +44,7 @@ static bool join(const struct telling *telling, struct par_ids *layer, tri_halfe
 
 static bool join_corners(const struct telling *telling, struct par_ids *layer, tri_triangle_id t)
 {
-    assert(tri_is_live(&telling->ranks->state->mesh->tri[t]));
+    assert(tri_is_live(&telling->ranks->run->mesh->tri[t]));
     return join(telling, layer, tri_code(t, 0)) && join(telling, layer, tri_code(t, 1)) &&
            join(telling, layer, tri_code(t, 2));
 }
@@ -63,7 +63,7 @@ static tri_halfedge turn(const struct tri_mesh *mesh, tri_halfedge corner, bool 
 static bool tell_around(const struct telling *telling, tri_halfedge corner, struct par_ids *next)
 {
     const struct par_ranks *r = telling->ranks;
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     struct par_talk *talk = &r->lent[telling->w];
     tri_halfedge at = corner;
     bool memory = true;
@@ -92,7 +92,7 @@ static bool tell_layers(const struct telling *telling, struct par_ids *layer)
         *layer = next;
     }
     for (int32_t i = 0; memory && i < layer->n; i++) /* around these not all has been told */
-        memory = par_map_put(&r->lent[telling->w].surrounded, vertex_at(r->state->mesh, layer->item[i]), TRI_NONE);
+        memory = par_map_put(&r->lent[telling->w].surrounded, vertex_at(r->run->mesh, layer->item[i]), TRI_NONE);
     free(layer->item);
     return memory;
 }
@@ -100,7 +100,7 @@ static bool tell_layers(const struct telling *telling, struct par_ids *layer)
 /* Whom a straddler concerns: everybody who works in a box that has a corner of it. */
 static bool tell_straddlers(const struct par_ranks *r)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     bool memory = true;
     for (int32_t i = 0; memory && i < r->straddlers.n; i++)
         for (int k = 0; memory && k < 3; k++) {
@@ -121,9 +121,9 @@ static bool tell_surroundings(const struct par_ranks *r)
 {
     struct par_ids *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
     bool memory = layer;
-    for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
+    for (int32_t i = 0; memory && i < r->run->worklist.n; i++) {
         const struct telling telling = {r, taker_of(r, i), PAR_GHOST_LAYERS};
-        memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->state->worklist.item[i]);
+        memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->run->worklist.item[i]);
     }
     for (int w = 0; layer && w < r->carrier->n_ranks; w++) {
         const struct telling telling = {r, w, memory ? PAR_GHOST_LAYERS : 0};
@@ -136,20 +136,20 @@ static bool tell_surroundings(const struct par_ranks *r)
 /* Whether the taker has an entry already is not known here: it finds the same key. */
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
-    struct par_run *state = r->state;
+    struct par_run *run = r->run;
     bool memory = true;
     int32_t kept = 0;
-    for (int32_t i = 0; i < state->worklist.n; i++) {
+    for (int32_t i = 0; i < run->worklist.n; i++) {
         int w = taker_of(r, i);
         if (w < 0) {
-            par_keep_entry(state, i, &kept);
+            par_keep_entry(run, i, &kept);
             continue;
         }
-        int32_t number = par_talk_number(&r->lent[w], state->worklist.item[i]);
+        int32_t number = par_talk_number(&r->lent[w], run->worklist.item[i]);
         assert(number != TRI_NONE);
-        memory = memory && par_message_add_entry(&message[w], state->key.item[i], number);
+        memory = memory && par_message_add_entry(&message[w], run->key.item[i], number);
     }
-    state->worklist.n = state->key.n = kept;
+    run->worklist.n = run->key.n = kept;
     return memory;
 }
 
@@ -207,9 +207,9 @@ static int32_t read_wishes(const struct par_ranks *r, int w, struct wish *wish)
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
         for (int k = 0; k < 3; k++) {
             tri_halfedge corner = tri_code(talk->triangle.item[i], k);
-            int32_t which = par_map_get(&at, vertex_at(r->state->mesh, corner));
+            int32_t which = par_map_get(&at, vertex_at(r->run->mesh, corner));
             if (which != TRI_NONE)
-                look_at(&wish[which], talk, r->state->mesh, corner);
+                look_at(&wish[which], talk, r->run->mesh, corner);
         }
     par_map_free(&at);
     return memory ? n : TRI_NONE;
@@ -255,12 +255,12 @@ static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct
     bool memory = true;
     for (int32_t i = 0; memory && i < message->gone.n; i++) {
         tri_triangle_id *t = &talk->triangle.item[message->gone.item[i]];
-        memory = par_remove_triangle(r->state, *t);
+        memory = par_remove_triangle(r->run, *t);
         *t = TRI_NONE;
     }
     for (int32_t i = 0; memory && i < message->gone_subs.n; i++) {
         tri_sub_id *s = &talk->sub.item[message->gone_subs.item[i]];
-        memory = par_remove_sub(r->state, *s);
+        memory = par_remove_sub(r->run, *s);
         *s = TRI_NONE;
     }
     return memory;
@@ -273,8 +273,8 @@ static bool remove_lone_subs(struct par_ranks *r, const struct par_talk *talk)
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < talk->sub.n; i++)
-        if (talk->sub.item[i] != TRI_NONE && is_left_alone(&r->state->mesh->sub[talk->sub.item[i]]))
-            memory = par_remove_sub(r->state, talk->sub.item[i]);
+        if (talk->sub.item[i] != TRI_NONE && is_left_alone(&r->run->mesh->sub[talk->sub.item[i]]))
+            memory = par_remove_sub(r->run, talk->sub.item[i]);
     return memory;
 }
 
@@ -283,7 +283,7 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
     struct par_talk *talk = &r->lent[w];
     struct par_message message;
     int32_t first = talk->triangle.n;
-    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[w], error);
+    enum tri_status status = par_message_read(&message, talk, r->run->mesh, r->n_common, &r->in[w], error);
     bool memory = status || remove_gone(r, talk, &message);
     par_forget_straddlers(r, NULL);
     if (!status && memory)
@@ -291,7 +291,7 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
     for (int32_t i = first; !status && memory && i < talk->triangle.n; i++)
         memory = par_own_corners(r, talk->triangle.item[i]) == 3 ||
                  par_ids_add(&r->straddlers, talk->triangle.item[i]);
-    memory = memory && (status || (remove_lone_subs(r, talk) && par_merge_entries(r->state, &message, talk)));
+    memory = memory && (status || (remove_lone_subs(r, talk) && par_merge_entries(r->run, &message, talk)));
     par_message_free(&message);
     return status || memory ? status : par_ranks_no_memory(error);
 }

@@ -27,7 +27,7 @@ struct sorting {
 static void find_tiles(struct sorting *s)
 {
     const struct par_territory *territory = &s->ranks->territory;
-    const struct tri_mesh *mesh = s->ranks->state->mesh;
+    const struct tri_mesh *mesh = s->ranks->run->mesh;
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         s->tile_of[v] = mesh->on[v] != TRI_VERTEX_NONE && par_is_own(territory, mesh->xy[v])
                             ? par_tile_at(territory, mesh->xy[v]) - territory->start[territory->rank] : TRI_NONE;
@@ -36,7 +36,7 @@ static void find_tiles(struct sorting *s)
 /* The own tiles that have a corner of a triangle, each once; returns how many. */
 static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
 {
-    const struct tri_triangle *triangle = &s->ranks->state->mesh->tri[t];
+    const struct tri_triangle *triangle = &s->ranks->run->mesh->tri[t];
     int n = 0;
     for (int k = 0; tri_is_live(triangle) && k < 3; k++) {
         int32_t at = s->tile_of[triangle->v[k]];
@@ -69,18 +69,18 @@ static void free_sorting(struct sorting *s)
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
 {
     const struct par_territory *territory = &r->territory;
-    const struct par_run *state = r->state;
+    const struct par_run *run = r->run;
     const int32_t n = territory->start[territory->rank + 1] - territory->start[territory->rank];
     *s = (struct sorting){.ranks = r, .n_tiles = n};
-    s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
+    s->tile_of = malloc(((size_t)run->mesh->n_vertices + 1) * sizeof *s->tile_of);
     s->lists = calloc((size_t)n + 1, sizeof *s->lists);
     bool memory = s->tile_of && s->lists;
     if (memory)
         find_tiles(s);
-    for (tri_triangle_id t = 0; memory && t < state->mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; memory && t < run->mesh->n_triangles; t++)
         memory = add(s, 0, t, t);
-    for (int32_t i = 0; memory && i < state->worklist.n; i++)
-        memory = add(s, 1, i, state->worklist.item[i]);
+    for (int32_t i = 0; memory && i < run->worklist.n; i++)
+        memory = add(s, 1, i, run->worklist.item[i]);
     return memory;
 }
 
@@ -91,7 +91,7 @@ static bool sort_all(struct sorting *s, const struct par_ranks *r)
 static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_message *m, struct par_talk *talk,
                             int32_t *fresh)
 {
-    const struct tri_mesh *mesh = s->ranks->state->mesh;
+    const struct tri_mesh *mesh = s->ranks->run->mesh;
     int32_t kept = 0, n_subs = 0;
     for (int32_t i = 0; i < m->n_new_subs; i++)
         fresh[i] = TRI_NONE;
@@ -110,16 +110,16 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
-    const struct par_run *state = s->ranks->state;
+    const struct par_run *run = s->ranks->run;
     const struct par_ids *triangles = &s->lists[tile][0], *entries = &s->lists[tile][1];
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
-    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common);
+    memory = memory && par_message_tell(message, talk, run->mesh, s->ranks->n_common);
     for (int32_t i = 0; memory && i < entries->n; i++) {
         int32_t entry = entries->item[i];
-        memory = par_message_add_entry(message, state->key.item[entry],
-                                       par_talk_number(talk, state->worklist.item[entry]));
+        memory = par_message_add_entry(message, run->key.item[entry],
+                                       par_talk_number(talk, run->worklist.item[entry]));
     }
     int32_t *fresh = memory ? malloc(((size_t)message->n_new_subs + 1) * sizeof *fresh) : NULL;
     if (fresh)
@@ -134,7 +134,7 @@ static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *
     struct par_message message = {0};
     bytes->n = 0;
     bool memory = tell_piece(s, tile, &talk, &message) &&
-                  par_message_write(&message, &talk, s->ranks->state->mesh, s->ranks->n_common, bytes);
+                  par_message_write(&message, &talk, s->ranks->run->mesh, s->ranks->n_common, bytes);
     par_message_free(&message);
     par_talk_free(&talk);
     return memory;
@@ -170,7 +170,7 @@ static enum tri_status write_file(const struct sorting *s, int file, const char 
                                   struct tri_error *error)
 {
     const struct par_territory *territory = &s->ranks->territory;
-    const struct head head = {PIECES, s->ranks->run, territory->start[territory->rank], s->n_tiles};
+    const struct head head = {PIECES, s->ranks->of_run, territory->start[territory->rank], s->n_tiles};
     size_t n = (size_t)s->n_tiles + 1;
     int64_t *offset = calloc(n, sizeof *offset);
     if (!offset)
@@ -183,13 +183,13 @@ static enum tri_status write_file(const struct sorting *s, int file, const char 
 
 enum tri_status par_pieces_write(const struct par_ranks *r, int64_t which, uint64_t *hash, struct tri_error *error)
 {
-    const char *directory = r->state->options->checkpoint->directory;
+    const char *directory = r->run->asked.options->checkpoint->directory;
     char path[PAR_CHECKPOINT_PATH];
     struct sorting s;
     const int file = par_checkpoint_piece(path, directory, which, r->carrier->rank, true);
     if (file < 0)
         return cannot_write(path, error);
-    par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
+    par_room_mark(&r->run->spare, r->run->mesh, &r->run->asked.executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : write_file(&s, file, path, hash, error);
     if (!status && !par_checkpoint_end_piece(directory, path, file))
@@ -245,10 +245,11 @@ enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file
     char path[PAR_CHECKPOINT_PATH];
     if (first >= end)
         return TRI_OK;
-    const int file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
+    const char *directory = r->run->asked.options->checkpoint->directory;
+    const int file = par_checkpoint_piece(path, directory, of->which, of->writer, false);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
-    int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->run, of->hash);
+    int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->of_run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
     for (int32_t tile = first; !status && tile < end; tile++)
         status = read_piece(r, file, path, &offset[tile - of->first], error);
