@@ -161,7 +161,6 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/tiles/numbering.c
     sched/tiles/park.c
     sched/checkpoint/spool.c
-    sched/checkpoint/folder.c
     sched/checkpoint/checkpoint.c
     sched/checkpoint/state.c
     sched/tiles/ahead.c
@@ -171,15 +170,12 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/phase.c
     sched/schedule/collect.c
     sched/ranks/carrier.c
-    sched/ranks/borrow.c
-    sched/ranks/hand_out.c
+    sched/ranks/borders.c
     sched/ranks/keep.c
-    sched/ranks/lend.c
+    sched/ranks/hand_out.c
     sched/ranks/paste.c
-    sched/ranks/pieces.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
-    sched/ranks/rank_stream.c
     sched/ranks/talk.c
     sched/ranks/wire.c
     sched/ranks/territory.c

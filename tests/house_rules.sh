@@ -79,8 +79,7 @@ tested_by() {
     triangle/refine/place.c) echo quality ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
-    sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
-    sched/checkpoint/state.c | sched/checkpoint/folder.c) echo checkpoint ;;
+    sched/checkpoint/*) echo checkpoint ;;
     sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;

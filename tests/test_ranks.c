@@ -9,7 +9,6 @@
 
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
-#include "sched/ranks/rank_stream.h"
 #include "sched/schedule/schedule.h"
 #include "sched/checkpoint/checkpoint.h"
 

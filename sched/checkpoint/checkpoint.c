@@ -1,6 +1,6 @@
 /* Files are those of the machine that wrote them: arrays as they lie in memory. A state goes to the disk past the
  * system's cache, where it can: two to five times as fast (measured), while somebody waits for the end of the run. */
-#define _GNU_SOURCE /* O_DIRECT */
+#define _GNU_SOURCE /* O_DIRECT, O_TMPFILE */
 
 #include "sched/checkpoint/checkpoint.h"
 
@@ -14,17 +14,91 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "sched/checkpoint/folder.h"
 #include "sched/checkpoint/spool.h"
 #include "sched/tunables.h"
 #include "triangle/base/at_place.h"
 #include "triangle/base/clock.h"
+#include "triangle/base/hash.h"
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* the system has no such thing */
 #endif
 
 static const uint64_t MANIFEST = UINT64_C(0x366863697274706b); /* a version, too */
+
+/* Files in a folder of one's own, by a descriptor of it: what others do with its name meanwhile, or put into it, leads
+ * nowhere else. No link is followed, nothing but a file of the folder's owner is read or added to, and what is written
+ * anew is a new file. Names hold no slash. The first functions return -1 or false where errno says why. */
+
+/* Closes a file that is not to be used. */
+static int refuse_file(int file, int why)
+{
+    close(file);
+    errno = why;
+    return -1;
+}
+
+/* A descriptor of the folder at this path, which may be a link to it. EPERM: it is another user's. */
+static int open_own_folder(const char *path)
+{
+    struct stat folder;
+    const int file = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0)
+        return -1;
+    if (fstat(file, &folder) != 0)
+        return refuse_file(file, errno);
+    return folder.st_uid == geteuid() ? file : refuse_file(file, EPERM);
+}
+
+/* A file with a second name is refused where it would be added to: that may be another's, which somebody has linked.
+ * most_names: of the file, in whatever folders. Nobody waits for the other end of a pipe. */
+static int open_own(int folder, const char *name, int flags, nlink_t most_names)
+{
+    struct stat at_folder, at_file;
+    const int file = openat(folder, name, flags | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (file < 0)
+        return -1;
+    if (fstat(folder, &at_folder) != 0 || fstat(file, &at_file) != 0)
+        return refuse_file(file, errno);
+    const bool is_own = S_ISREG(at_file.st_mode) && at_file.st_uid == at_folder.st_uid;
+    return is_own && at_file.st_nlink <= most_names ? file : refuse_file(file, EPERM);
+}
+
+/* A file that is there, to read. */
+static int open_to_read(int folder, const char *name) { return open_own(folder, name, O_RDONLY, (nlink_t)-1); }
+
+/* A file to read and to add to, made unless it is there. */
+static int open_to_extend(int folder, const char *name) { return open_own(folder, name, O_RDWR | O_CREAT, 1); }
+
+/* A new and empty file, to write; a file of that name is removed from the folder. end_file gives the new one the
+ * name once it is complete and on the disk: if the process dies before, nothing is left. Systems without files that
+ * have no name (NFS) give it the name at once. */
+static int create_file(int folder, const char *name)
+{
+    if (unlinkat(folder, name, 0) != 0 && errno != ENOENT)
+        return -1;
+#ifdef O_TMPFILE
+    const int unnamed = access("/proc/self/fd", X_OK) == 0 ? openat(folder, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666)
+                                                           : -1;
+    if (unnamed >= 0)
+        return unnamed;
+#endif
+    return openat(folder, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+static bool end_file(int folder, const char *name, int file)
+{
+    char path[64];
+    struct stat at;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+    return fsync(file) == 0 && fstat(file, &at) == 0 &&
+           (at.st_nlink > 0 || linkat(AT_FDCWD, path, folder, name, AT_SYMLINK_FOLLOW) == 0);
+}
+
+/* What has got names in the folder, or lost them, is so after the machine has died, too. */
+static bool sync_folder(int folder) { return fsync(folder) == 0 || errno == EINVAL; }
+
+/* --- the manifest */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
@@ -45,8 +119,8 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
 
 bool par_checkpoint_end_piece(const char *directory, const char *path, int file)
 {
-    const int folder = par_folder_open(directory);
-    const bool done = folder >= 0 && par_folder_end(AT_FDCWD, path, file) && par_folder_sync(folder);
+    const int folder = open_own_folder(directory);
+    const bool done = folder >= 0 && end_file(AT_FDCWD, path, file) && sync_folder(folder);
     if (folder >= 0)
         close(folder);
     return done;
@@ -56,7 +130,7 @@ bool par_checkpoint_end_piece(const char *directory, const char *path, int file)
 
 static uint64_t hash_of(const struct par_manifest *m)
 {
-    return par_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
+    return tri_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
 }
 
 static bool is_manifest(const struct par_manifest *m)
@@ -68,7 +142,7 @@ static bool is_manifest(const struct par_manifest *m)
 static enum tri_status read_manifest(struct par_manifest *m, const struct par_checkpoint *c, struct tri_error *error)
 {
     const char *directory = c->directory;
-    int file = par_folder_read(c->folder, manifest_name);
+    int file = open_to_read(c->folder, manifest_name);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, directory, 0, "holds no checkpoint: %s", strerror(errno));
     bool whole = tri_read_again(file, m, sizeof *m, 0) && is_manifest(m);
@@ -80,13 +154,13 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
 
 static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manifest m, struct tri_error *error)
 {
-    int file = par_folder_create(c->folder, fresh_name);
+    int file = create_file(c->folder, fresh_name);
     m.word = MANIFEST;
     m.hash = hash_of(&m);
-    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && par_folder_end(c->folder, fresh_name, file);
+    bool done = file >= 0 && tri_write_at(file, &m, sizeof m, 0) && end_file(c->folder, fresh_name, file);
     if (file >= 0)
         done = close(file) == 0 && done;
-    if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !par_folder_sync(c->folder))
+    if (!done || renameat(c->folder, fresh_name, c->folder, manifest_name) != 0 || !sync_folder(c->folder))
         return cannot_write(c->directory, manifest_name, error);
     c->manifest = m;
     if (c->told)
@@ -114,7 +188,7 @@ static bool is_piece(const char *name)
 static bool is_fresh_manifest(int folder)
 {
     struct par_manifest m;
-    int file = par_folder_read(folder, fresh_name);
+    int file = open_to_read(folder, fresh_name);
     off_t length = file >= 0 ? lseek(file, 0, SEEK_END) : -1;
     bool is = length == 0 || (length == sizeof m && tri_read_again(file, &m, sizeof m, 0) && is_manifest(&m));
     if (file >= 0)
@@ -166,10 +240,10 @@ bool par_checkpoint_is_there(const char *directory)
 }
 
 /* One process at a time; where there are no locks, nobody is kept out. */
-static bool take_directory(struct par_checkpoint *c)
+static bool lock_folder(struct par_checkpoint *c)
 {
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    c->lock = par_folder_extend(c->folder, tiles_name);
+    c->lock = open_to_extend(c->folder, tiles_name);
     return c->lock >= 0 && (fcntl(c->lock, F_SETLK, &whole) == 0 || (errno != EACCES && errno != EAGAIN));
 }
 
@@ -187,7 +261,7 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
 /* `resume`: it is to be read before it is written. */
 static enum tri_status open_folder(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
-    c->folder = par_folder_open(c->directory);
+    c->folder = open_own_folder(c->directory);
     if (c->folder >= 0)
         return TRI_OK;
     if (errno == EPERM)
@@ -207,9 +281,9 @@ enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct t
 }
 
 /* The lock, and then, of a run that goes on, what no other process changes any more. */
-static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_error *error)
+static enum tri_status lock_and_read(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
-    if (take_directory(c))
+    if (lock_folder(c))
         return resume ? read_manifest(&c->manifest, c, error) : TRI_OK;
     if (c->lock >= 0)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
@@ -229,7 +303,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     status = status ? status : check_run(c, resume, of, error);
     if (!status && !resume)
         status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
-    status = status ? status : take(c, resume, error);
+    status = status ? status : lock_and_read(c, resume, error);
     path_of(c->tiles_path, directory, tiles_name);
     c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
     if (status)
@@ -247,10 +321,10 @@ int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, 
     char name[64];
     snprintf(name, sizeof name, "piece-%d-%d", (int)which, rank);
     path_of(path, directory, name);
-    const int folder = par_folder_open(directory);
+    const int folder = open_own_folder(directory);
     if (folder < 0)
         return -1;
-    const int file = fresh ? par_folder_create(folder, name) : par_folder_read(folder, name), fault = errno;
+    const int file = fresh ? create_file(folder, name) : open_to_read(folder, name), fault = errno;
     close(folder);
     errno = fault;
     return file;
@@ -328,7 +402,7 @@ static bool write_waiting(struct par_state_file *f, size_t n)
 {
     const int64_t place = f->place - (int64_t)n;
     const int flags = fcntl(f->file, F_GETFL);
-    f->hash = par_hash(f->hash, f->waiting, n);
+    f->hash = tri_hash(f->hash, f->waiting, n);
     if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
     const double began = tri_seconds();
@@ -368,7 +442,7 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
 static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
                                    par_state_walk *walk, void *user, struct tri_error *error)
 {
-    *to = (struct par_state_file){.file = par_folder_create(c->folder, name)};
+    *to = (struct par_state_file){.file = create_file(c->folder, name)};
     to->failed = to->file < 0;
     if (posix_memalign((void **)&to->waiting, 1 << 12, PAR_STATE_WRITE) != 0) {
         close(to->file);
@@ -380,7 +454,7 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
                 ftruncate(to->file, (off_t)to->place) == 0;
     const double began = tri_seconds();
-    done = done && par_folder_end(c->folder, name, to->file);
+    done = done && end_file(c->folder, name, to->file);
     const int fault = errno;
     to->writing += tri_seconds() - began;
     if (to->file >= 0)
@@ -430,7 +504,7 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
     for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
         sound = tri_read_again(file, bytes, n, place);
-        hash = sound ? par_hash(hash, bytes, n) : hash;
+        hash = sound ? tri_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }
     const bool memory = bytes;
@@ -445,7 +519,7 @@ static enum tri_status check(const struct par_checkpoint *c, int file, struct tr
 enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_walk *walk, void *user,
                                     struct tri_error *error)
 {
-    struct par_state_file from = {.file = par_folder_read(c->folder, state_name[c->manifest.which]), .reads = true};
+    struct par_state_file from = {.file = open_to_read(c->folder, state_name[c->manifest.which]), .reads = true};
     if (from.file < 0)
         return damaged(c, error);
     enum tri_status status = check(c, from.file, error);

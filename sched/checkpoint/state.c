@@ -10,6 +10,7 @@
 #include "sched/tunables.h"
 #include "triangle/base/clock.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/hash.h"
 
 /* --- of which run */
 
@@ -17,29 +18,29 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
     const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q)};
-    return par_hash(par_hash(hash, reals, sizeof reals), others, sizeof others);
+    return tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
 }
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
     const int64_t others[] = {o->by_block, o->size_test_in_parallel};
-    return par_hash(par_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
+    return tri_hash(tri_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
 static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m, int32_t n_kept)
 {
     const int64_t counts[] = {m->n_vertices, m->n_triangles, m->n_subs, m->n_regions, m->n_columns, m->n_attributes};
     size_t v = (size_t)m->n_vertices;
-    hash = par_hash(hash, counts, sizeof counts);
-    hash = par_hash(hash, &m->unit, sizeof m->unit);
-    hash = par_hash(hash, m->xy, v * sizeof *m->xy);
-    hash = par_hash(hash, m->on, v * sizeof *m->on);
-    hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
-    hash = par_hash(hash, m->attributes, (size_t)n_kept * (size_t)m->n_attributes * sizeof *m->attributes);
-    hash = par_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
-    hash = par_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
-    hash = par_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
-    return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
+    hash = tri_hash(hash, counts, sizeof counts);
+    hash = tri_hash(hash, &m->unit, sizeof m->unit);
+    hash = tri_hash(hash, m->xy, v * sizeof *m->xy);
+    hash = tri_hash(hash, m->on, v * sizeof *m->on);
+    hash = tri_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
+    hash = tri_hash(hash, m->attributes, (size_t)n_kept * (size_t)m->n_attributes * sizeof *m->attributes);
+    hash = tri_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
+    hash = tri_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
+    hash = tri_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
+    return tri_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
 }
 
 uint64_t par_state_run(const struct par_run *run)

@@ -6,8 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "sched/ranks/mpi_carrier.h"
-#include "sched/ranks/rank_stream.h"
+#include "sched/ranks/carrier.h"
 #include "sched/tunables.h"
 
 /* Counts of MPI are ints. */

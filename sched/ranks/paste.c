@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/spool.h"
 #include "sched/ranks/ranks.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/hash.h"
 
 int par_own_corners(const struct par_ranks *r, tri_triangle_id t)
 {
@@ -137,7 +137,7 @@ static const void *key_of(const struct par_index *index, const struct tri_mesh *
 static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
 {
     const size_t width = index->is_of_places ? sizeof(struct tri_point) : 3 * sizeof(tri_vertex_id);
-    uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)par_hash(0, key, width) & mask;
+    uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)tri_hash(0, key, width) & mask;
     while (index->id[at] != TRI_NONE && memcmp(key_of(index, mesh, index->id[at]), key, width) != 0)
         at = (at + 1) & mask;
     return &index->id[at];

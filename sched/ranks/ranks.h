@@ -95,7 +95,7 @@ enum tri_status par_take_up(struct par_ranks *ranks, bool *again, struct tri_err
  * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status par_keep(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
 
-/* --- lend.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
+/* --- borders.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
 
 /* out[w]: what rank w has to know for its blocks. Their entries leave the worklist. */
 enum tri_status par_lend(struct par_ranks *ranks, struct tri_error *error);
@@ -106,7 +106,7 @@ enum tri_status par_lend_more(struct par_ranks *ranks, struct tri_error *error);
 /* in[w]: what has become of it. */
 enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 
-/* --- borrow.c: what this rank works on */
+/* --- borders.c: what this rank works on */
 
 /* What somebody has told of to lend it: from then on it is here. */
 enum tri_status par_borrow_from(struct par_ranks *ranks, struct par_talk *talk, const struct par_bytes *told,

@@ -3,7 +3,7 @@
  * The mesh that comes out depends on the mesh and the bounds that go in, never on the number of threads, the machine or
  * the order in which blocks happen to be done.
  *
- * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/schedule/theory.h); segments, grading and
+ * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/schedule/prerefine.h); segments, grading and
  * ownership: see triangle/refine/refine.h and sched/schedule/partition.h. */
 #ifndef SCHED_SCHEDULE_SCHEDULE_H
 #define SCHED_SCHEDULE_SCHEDULE_H
