@@ -332,7 +332,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, s
 enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                       struct tri_error *error)
 {
-    const bool again = par_checkpoint_has_state(c);
+    const bool again = par_checkpoint_has_sweep(c); /* there may be a state of the step before */
     c->spool.to = tiles->sink;
     c->spool.again = again;
     c->sink = par_spool_sink(&c->spool);

@@ -406,7 +406,7 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
         return status;
     report->total = r->before;
     par_add_done(r, sum);
-    report->deferred += sum[3];
+    report->deferred += sum[2];
     par_forget_deferred(report);
     return TRI_OK;
 }

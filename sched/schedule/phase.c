@@ -204,12 +204,12 @@ static int32_t more_for(const struct par_task *task, const struct tri_quality *q
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
-static enum tri_status reserve_room(struct par_phase_run *p, struct tri_error *error)
+static void reserve_room(struct par_phase_run *p)
 {
     p->expected = 0;
     for (int32_t i = 0; i < p->n_tasks; i++)
         p->expected += p->tasks[i].expected;
-    return par_room_reserve(&p->run->spare, p->run->mesh, p->expected, error);
+    par_room_reserve(&p->run->spare, p->run->mesh, p->expected);
 }
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
@@ -443,10 +443,11 @@ static enum tri_status give_room(struct par_phase_run *p, struct tri_error *erro
 static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *error)
 {
     double reserving = tri_seconds();
-    enum tri_status status = reserve_room(p, error);
+    enum tri_status status;
+    reserve_room(p);
     p->run->report->seconds_room += tri_seconds() - reserving;
     do {
-        status = status ? status : give_room(p, error);
+        status = give_room(p, error);
         if (status)
             break;
         run_tasks(p);

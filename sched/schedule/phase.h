@@ -71,7 +71,7 @@ struct par_run {
     struct par_ids worklist;    /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;        /* [worklist.n] ascending; n == 0: no block has had any */
     struct par_room spare;      /* unused ranges of the mesh's arrays */
-    struct par_partition cells; /* of the last schedule of the whole mesh, by whose tiles it is numbered; x NULL: none */
+    struct par_partition cells; /* of the last schedule of the whole mesh, whose tiles number it; x NULL: none yet */
     struct par_remain remain;
     int64_t gone;               /* triangles that have been handed out, and are no more */
     int32_t n_schedules;        /* begun so far; the last is the one that works */

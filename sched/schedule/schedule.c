@@ -618,16 +618,20 @@ static bool is_bounded(const struct par_options *options)
 
 static void clean_up(struct par_run *run)
 {
+    const struct par_options *options = run->asked.options;
     struct par_report *report = run->report;
+    const bool is_spread = par_ranks_end(run);
     report->parked = run->park ? par_park_bytes(run->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
     let_stop(run);
-    if (run->asked.options->park)
-        *run->asked.options->park = run->park;
+    if (options->checkpoint)
+        options->checkpoint->stop = NULL; /* it may be the park's */
+    if (options->park)
+        *options->park = run->park;
     else
         par_park_close(run->park, run->mesh);
-    if (par_ranks_end(run) || (report->way != PAR_IN_MEMORY && !run->asked.options->park))
+    if (is_spread || (report->way != PAR_IN_MEMORY && !options->park))
         tri_mesh_drop(run->mesh);
     free(run->worklist.item);
     free(run->key.item);
