@@ -123,9 +123,7 @@ set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/system_posix.c tr
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
 # hand out threads (sched/schedule/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
-    sched/schedule/theory.c
     sched/schedule/threads.c
-    sched/schedule/by_tile.c
     sched/schedule/partition.c
     sched/schedule/room.c
     sched/tiles/tile_arrays.c
@@ -150,17 +148,13 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/worklist.c
     sched/schedule/phase.c
     sched/schedule/collect.c
-    sched/schedule/report.c
     sched/ranks/carrier.c
-    sched/ranks/borrow.c
-    sched/ranks/hand_out.c
+    sched/ranks/borders.c
     sched/ranks/keep.c
-    sched/ranks/lend.c
+    sched/ranks/hand_out.c
     sched/ranks/paste.c
-    sched/ranks/pieces.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
-    sched/ranks/rank_stream.c
     sched/ranks/talk.c
     sched/ranks/wire.c
     sched/ranks/territory.c

@@ -20,8 +20,6 @@
 /* Coarse triangles that a cell has after pre-refinement. Measured: enough for seams to be narrow, few enough for
  * pre-refinement to take a few thousandths of the time. */
 #define PAR_COARSE_PER_CELL 64.0
-/* Rounds of a schedule, each on blocks four times as large, before what is left is done by one call. Guess. */
-#define PAR_MOST_ROUNDS 24
 
 /* Samples of the work for each cell. Guess. */
 #define PAR_SAMPLES_PER_CELL 32

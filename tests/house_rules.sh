@@ -78,12 +78,12 @@ tested_by() {
     triangle/refine/place.c) echo inside ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
-    sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
-    sched/checkpoint/state.c) echo checkpoint ;;
+    sched/checkpoint/*) echo checkpoint ;;
     sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;
-    sched/schedule/prerefine.c | sched/schedule/report.c | sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
+    sched/schedule/prerefine.c) echo theory ;;
+    sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;
     esac

@@ -16,6 +16,7 @@
 #include "sched/schedule/schedule.h"
 #include "sched/checkpoint/state.h"
 #include "sched/tunables.h"
+#include "triangle/base/hash.h"
 #include "triangle/base/system.h"
 #include "trials.h"
 
@@ -34,7 +35,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     (void)error;
     t->n = 0;
     t->n_attributes = stream->n_attributes;
-    t->hash = par_hash(0, stream->regions, (size_t)(stream->n_regions * stream->n_columns) * sizeof *stream->regions);
+    t->hash = tri_hash(0, stream->regions, (size_t)(stream->n_regions * stream->n_columns) * sizeof *stream->regions);
     return TRI_OK;
 }
 
@@ -44,14 +45,14 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     size_t v = (size_t)tile->n_vertices, k = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
     if (t->n++ == t->fail_at)
         return tri_fail(error, TRI_CANNOT_WRITE, "out", 0, "no more");
-    t->hash = par_hash(t->hash, &tile->first_vertex, sizeof tile->first_vertex);
-    t->hash = par_hash(t->hash, tile->points, v * sizeof *tile->points);
-    t->hash = par_hash(t->hash, tile->point_markers, v * sizeof *tile->point_markers);
-    t->hash = par_hash(t->hash, tile->attributes, (size_t)t->n_attributes * v * sizeof *tile->attributes);
-    t->hash = par_hash(t->hash, tile->corners, k * sizeof *tile->corners);
-    t->hash = par_hash(t->hash, tile->regions, k * sizeof *tile->regions);
-    t->hash = par_hash(t->hash, tile->ends, s * sizeof *tile->ends);
-    t->hash = par_hash(t->hash, tile->segment_markers, s * sizeof *tile->segment_markers);
+    t->hash = tri_hash(t->hash, &tile->first_vertex, sizeof tile->first_vertex);
+    t->hash = tri_hash(t->hash, tile->points, v * sizeof *tile->points);
+    t->hash = tri_hash(t->hash, tile->point_markers, v * sizeof *tile->point_markers);
+    t->hash = tri_hash(t->hash, tile->attributes, (size_t)t->n_attributes * v * sizeof *tile->attributes);
+    t->hash = tri_hash(t->hash, tile->corners, k * sizeof *tile->corners);
+    t->hash = tri_hash(t->hash, tile->regions, k * sizeof *tile->regions);
+    t->hash = tri_hash(t->hash, tile->ends, s * sizeof *tile->ends);
+    t->hash = tri_hash(t->hash, tile->segment_markers, s * sizeof *tile->segment_markers);
     return TRI_OK;
 }
 
@@ -487,13 +488,13 @@ static bool is_told_enough(void *user)
 static uint64_t hash_of_mesh(const struct tri_mesh *m)
 {
     const size_t v = (size_t)m->n_vertices;
-    uint64_t hash = par_hash(0, m->xy, v * sizeof *m->xy);
-    hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
-    hash = par_hash(hash, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
+    uint64_t hash = tri_hash(0, m->xy, v * sizeof *m->xy);
+    hash = tri_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
+    hash = tri_hash(hash, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
     for (int32_t t = 0; t < m->n_triangles; t++)
-        hash = par_hash(hash, m->tri[t].v, sizeof m->tri[t].v);
+        hash = tri_hash(hash, m->tri[t].v, sizeof m->tri[t].v);
     for (int32_t s = 0; s < m->n_subs; s++)
-        hash = par_hash(hash, m->sub[s].v, sizeof m->sub[s].v);
+        hash = tri_hash(hash, m->sub[s].v, sizeof m->sub[s].v);
     return hash;
 }
 

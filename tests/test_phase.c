@@ -4,7 +4,7 @@
 #include "support.h"
 
 #include "sched/schedule/phase.h"
-#include "sched/schedule/theory.h"
+#include "sched/schedule/prerefine.h"
 #include "sched/schedule/threads.h"
 #include "triangle/size/estimate.h"
 #include "triangle/refine/place.h"
@@ -159,27 +159,28 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *qualit
     struct tri_error error = {0};
     struct par_report report = {0};
     int threads = options->threads;
-    struct par_run state = {.mesh = mesh, .quality = quality, .options = options,
-                              .executor = par_executor(&threads), .report = &report};
+    struct par_run run = {.asked = {quality, options, par_executor(&threads), 0}, .place = {.phase = phase},
+                          .mesh = mesh, .report = &report, .bounds = *quality};
+    const struct par_turn turn = {.partition = p, .only = TRI_NONE};
     int32_t n_old = mesh->n_triangles;
     struct tri_triangle *old = malloc((size_t)n_old * sizeof *old);
     assert_non_null(old);
     memcpy(old, mesh->tri, (size_t)n_old * sizeof *old);
-    state.worklist = bad_triangles(mesh, quality);
-    if (par_phase(&state, p, phase, TRI_NONE, &error) != TRI_OK)
+    run.worklist = bad_triangles(mesh, quality);
+    if (par_phase(&run, &turn, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    par_room_mark(&state.spare, mesh, NULL); /* triangles that nobody has used yet hold anything */
+    par_room_mark(&run.spare, mesh, NULL); /* triangles that nobody has used yet hold anything */
     assert_changes_are_owned(mesh, old, n_old, p, phase);
-    assert_worklist_holds_all_that_is_bad(mesh, quality, &state.worklist, &report.total);
+    assert_worklist_holds_all_that_is_bad(mesh, quality, &run.worklist, &report.total);
     *pauses += report.pauses;
-    par_room_close(&state.spare, mesh, &state.executor);
+    par_room_close(&run.spare, mesh, &run.asked.executor);
     assert_int_equal(tri_mesh_validate(mesh, &error), TRI_OK);
     int64_t inserted = report.total.inserted_free + report.total.inserted_on_segments;
     for (int32_t i = 0; i < report.n_blocks; i++)
         assert_true(report.blocks[i].block >= 0 && report.blocks[i].block < par_blocks(p));
     par_report_free(&report);
-    free(state.worklist.item);
-    free(state.key.item);
+    free(run.worklist.item);
+    free(run.key.item);
     free(old);
     return inserted;
 }
@@ -231,19 +232,19 @@ static void test_four_phases_in_turn(void **state)
         struct par_report report = {0};
         struct tri_mesh mesh = start_of(&trials[i], &quality);
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
-        struct par_run phases = {
-            .mesh = &mesh, .quality = &quality, .options = &options, .executor = par_executor(&options.threads),
-            .report = &report};
+        struct par_run phases = {.asked = {&quality, &options, par_executor(&options.threads), 0}, .mesh = &mesh,
+                                 .report = &report, .bounds = quality};
+        const struct par_turn turn = {.partition = &partition, .only = TRI_NONE};
         phases.worklist = bad_triangles(&mesh, &quality);
-        for (int phase = 0; phase < PAR_PHASES; phase++) {
-            assert_int_equal(par_phase(&phases, &partition, phase, TRI_NONE, NULL), TRI_OK);
+        for (; phases.place.phase < PAR_PHASES; phases.place.phase++) {
+            assert_int_equal(par_phase(&phases, &turn, NULL), TRI_OK);
             par_room_mark(&phases.spare, &mesh, NULL);
             assert_worklist_holds_all_that_is_bad(&mesh, &quality, &phases.worklist, &report.total);
         }
         print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",
                       (int)phases.worklist.n, (long long)report.total.inserted_free);
         assert_true(phases.worklist.n < report.total.inserted_free / 4);
-        par_room_close(&phases.spare, &mesh, &phases.executor);
+        par_room_close(&phases.spare, &mesh, &phases.asked.executor);
         assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
         support_assert_cdt(&mesh, false);
         par_report_free(&report);

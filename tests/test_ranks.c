@@ -9,7 +9,6 @@
 
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
-#include "sched/ranks/rank_stream.h"
 #include "sched/schedule/schedule.h"
 #include "sched/checkpoint/checkpoint.h"
 
@@ -251,6 +250,7 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
             draw_shares(share, n_ranks, &random);
             run_ranks(member, &start, &options, n_ranks, round == 1 ? share : NULL, -1, (i + round) % 3 == 0);
             compare(&alone, member, n_ranks);
+            assert_int_equal(member[0].report.deferred, alone.report.deferred);
             print_message("  %-28s %7lld triangles, %d columns, rounds %d, left over %lld, %d ranks: bytes a triangle"
                           " %.2f strips, %.2f back, %.2f left over, %.2f numbers\n",
                           trials[i].file, (long long)alone.stream.end[1], (int)alone.report.columns,

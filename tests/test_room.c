@@ -320,10 +320,25 @@ static void test_room_beside_a_coast(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* What blocks are expected to need is a guess: if it cannot be had, they still get what they ask for. */
+static void test_too_much_is_expected(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = {0};
+    struct par_room spare = {0}, room = {0};
+    par_room_reserve(&spare, &mesh, INT64_MAX / 4);
+    assert_int_equal(mesh.n_triangles, 0);
+    assert_int_equal(par_room_extend(&room, &spare, &mesh, 100, NULL), TRI_OK);
+    assert_true(par_room_left(&room, PAR_TRIANGLES) >= 100);
+    par_room_return(&room, &spare);
+    par_room_free(&spare);
+    tri_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_room_beside_a_coast),
+        cmocka_unit_test(test_room_beside_a_coast), cmocka_unit_test(test_too_much_is_expected),
         cmocka_unit_test(test_random_dealings),
         cmocka_unit_test(test_closing_keeps_the_mesh),
         cmocka_unit_test(test_closing_extremes),

@@ -1,7 +1,7 @@
 /* The lemmas of the paper, as formulas and on random meshes. */
 #include "support.h"
 
-#include "sched/schedule/theory.h"
+#include "sched/schedule/prerefine.h"
 #include "triangle/mesh/cavity.h"
 #include "triangle/refine/place.h"
 

@@ -1,7 +1,7 @@
 /* The worklist of bad triangles, against looking at every triangle. */
 #include "sched/schedule/worklist.h"
 
-#include "sched/schedule/theory.h"
+#include "sched/schedule/prerefine.h"
 #include "tests/support.h"
 
 static void test_slots_grow(void **state)

@@ -4,7 +4,7 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/mesh/launch.h"
-#include "sched/ranks/mpi_carrier.h"
+#include "sched/ranks/carrier.h"
 
 enum tri_status launch_ranks(struct launch *launch, int tasks, struct tri_error *error)
 {

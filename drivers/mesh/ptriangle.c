@@ -21,7 +21,7 @@
 #include "drivers/mesh/streams.h"
 #include "drivers/start.h"
 #include "sched/ranks/relay.h"
-#include "sched/schedule/cells.h"
+#include "sched/schedule/partition.h"
 #include "sched/schedule/schedule.h"
 #include "sched/schedule/threads.h"
 #include "sched/tiles/park.h"

@@ -6,6 +6,7 @@
 #include "drivers/interrupt.h"
 #include "triangle/base/grow.h"
 #include "triangle/base/system.h"
+#include "triangle/base/hash.h"
 
 static const char version[] = PTRIANGLE_VERSION;
 
@@ -101,7 +102,7 @@ static enum tri_status open_directory(struct restart *restart, const struct long
 {
     bool resume = o->resume && (!o->checkpoint || par_checkpoint_is_there(directory));
     if (!restart->follows)
-        return par_checkpoint_open(&restart->checkpoint, directory, resume, par_hash(0, version, sizeof version),
+        return par_checkpoint_open(&restart->checkpoint, directory, resume, tri_hash(0, version, sizeof version),
                                    error);
     restart->checkpoint = par_checkpoint_closed(directory);
     return TRI_OK;
@@ -115,7 +116,7 @@ enum tri_status restart_open(struct restart *restart, const struct long_options 
     *restart = (struct restart){.follows = carrier && carrier->rank > 0};
     enum tri_status status = check_options(o, error);
     if (!status && o->dry_run && o->resume && !o->checkpoint)
-        status = par_checkpoint_look(directory, par_hash(0, version, sizeof version), error);
+        status = par_checkpoint_look(directory, tri_hash(0, version, sizeof version), error);
     bool wanted = !status && directory && !o->dry_run;
     status = wanted ? open_directory(restart, o, directory, error) : status;
     if (wanted && !status && !restart->follows)

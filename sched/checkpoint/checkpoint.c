@@ -10,9 +10,10 @@
 
 #include "sched/checkpoint/spool.h"
 #include "sched/tunables.h"
+#include "triangle/base/hash.h"
 #include "triangle/base/system.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x356863697274706b); /* a version, too */
+static const uint64_t MANIFEST = UINT64_C(0x366863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
@@ -44,7 +45,7 @@ bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file 
 
 static uint64_t hash_of(const struct par_manifest *m)
 {
-    return par_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
+    return tri_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
 }
 
 static bool is_manifest(const struct par_manifest *m)
@@ -156,7 +157,7 @@ bool par_checkpoint_is_there(const char *directory)
 }
 
 /* One process at a time; where there are no locks, nobody is kept out. */
-static bool take_directory(struct par_checkpoint *c)
+static bool lock_folder(struct par_checkpoint *c)
 {
     c->lock = tri_folder_file(c->folder, tiles_name, TRI_FOLDER_EXTEND);
     return c->lock != TRI_NO_FILE && tri_file_lock(c->lock) != TRI_LOCKED_BY_ANOTHER;
@@ -196,9 +197,9 @@ enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct t
 }
 
 /* The lock, and then, of a run that goes on, what no other process changes any more. */
-static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_error *error)
+static enum tri_status lock_and_read(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
-    if (take_directory(c))
+    if (lock_folder(c))
         return resume ? read_manifest(&c->manifest, c, error) : TRI_OK;
     if (c->lock != TRI_NO_FILE)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
@@ -218,7 +219,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     status = status ? status : check_run(c, resume, of, error);
     if (!status && !resume)
         status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
-    status = status ? status : take(c, resume, error);
+    status = status ? status : lock_and_read(c, resume, error);
     path_of(c->tiles_path, directory, tiles_name);
     c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
     if (status)
@@ -313,7 +314,7 @@ static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcm
 static bool write_waiting(struct par_state_file *f, size_t n)
 {
     const uint64_t place = (uint64_t)f->place - n;
-    f->hash = par_hash(f->hash, f->waiting, n);
+    f->hash = tri_hash(f->hash, f->waiting, n);
     if (n == PAR_STATE_WRITE && is_zero(f->waiting, n))
         return true;
     const double began = tri_seconds();
@@ -416,7 +417,7 @@ static enum tri_status check(const struct par_checkpoint *c, tri_file file, stru
     for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
         sound = tri_read_again(file, bytes, n, (uint64_t)place);
-        hash = sound ? par_hash(hash, bytes, n) : hash;
+        hash = sound ? tri_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }
     const bool memory = bytes;

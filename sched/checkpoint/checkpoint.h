@@ -2,7 +2,7 @@
  *
  *     tiles        all tiles that a sweep has handed out (spool.h); only appended to
  *     state-0, state-1   what is in memory between two steps (state.h); the newer one counts
- *     piece-0-P, piece-1-P   of a state of ranks what rank P has (sched/ranks/pieces.h)
+ *     piece-0-P, piece-1-P   of a state of ranks what rank P has (sched/ranks/keep.c)
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles

@@ -2,6 +2,7 @@
 #include "sched/checkpoint/spool.h"
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
+#include "triangle/base/hash.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -16,34 +17,6 @@ struct head {
     struct tri_tile tile; /* its pointers NULL */
     int32_t n_attributes, none;
 };
-
-static inline uint64_t mixed(uint64_t hash, uint64_t word)
-{
-    hash = (hash ^ word) * UINT64_C(0x9E3779B97F4A7C15);
-    return hash ^ hash >> 29;
-}
-
-/* Four words at a time, each with a hash of its own: none waits for another's product. */
-uint64_t par_hash(uint64_t hash, const void *bytes, size_t n)
-{
-    enum { LANES = 4 };
-    const char *at = bytes;
-    uint64_t lane[LANES] = {hash, 1, 2, 3}, word[LANES];
-    if (n >= sizeof word) {
-        for (; n >= sizeof word; n -= sizeof word, at += sizeof word) {
-            memcpy(word, at, sizeof word);
-            for (int k = 0; k < LANES; k++)
-                lane[k] = mixed(lane[k], word[k]);
-        }
-        hash = mixed(mixed(mixed(lane[0], lane[1]), lane[2]), lane[3]);
-    }
-    for (; n > 0; n -= n < 8 ? n : 8, at += 8) {
-        word[0] = n < 8 ? n : 0;
-        memcpy(word, at, n < 8 ? n : 8);
-        hash = mixed(hash, word[0]);
-    }
-    return hash;
-}
 
 /* --- arrays of a tile, packed */
 
@@ -69,8 +42,8 @@ static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
 
 static uint64_t hash_of(const struct head *h, const char *arrays)
 {
-    uint64_t hash = par_hash(0, &h->bytes, sizeof *h - offsetof(struct head, bytes));
-    return par_hash(hash, arrays, (size_t)h->bytes);
+    uint64_t hash = tri_hash(0, &h->bytes, sizeof *h - offsetof(struct head, bytes));
+    return tri_hash(hash, arrays, (size_t)h->bytes);
 }
 
 /* Vertices below `end`, counted back from there. False: one is too far. */

@@ -29,8 +29,4 @@ struct par_spool {
  * the file does not hold whole tiles, and what `to` says. */
 struct tri_sink par_spool_sink(struct par_spool *spool);
 
-/* A hash over bytes that goes on from another one: 0 to begin with. It depends on how they are dealt to calls. For
- * finding damage, not for enemies. */
-uint64_t par_hash(uint64_t hash, const void *bytes, size_t n);
-
 #endif

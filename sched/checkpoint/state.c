@@ -10,6 +10,7 @@
 #include "sched/tunables.h"
 #include "triangle/base/system.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/hash.h"
 
 /* --- of which run */
 
@@ -17,56 +18,54 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
     const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q)};
-    return par_hash(par_hash(hash, reals, sizeof reals), others, sizeof others);
+    return tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
 }
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
     const int64_t others[] = {o->by_block, o->size_test_in_parallel};
-    return par_hash(par_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
+    return tri_hash(tri_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
 static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m, int32_t n_kept)
 {
     const int64_t counts[] = {m->n_vertices, m->n_triangles, m->n_subs, m->n_regions, m->n_columns, m->n_attributes};
     size_t v = (size_t)m->n_vertices;
-    hash = par_hash(hash, counts, sizeof counts);
-    hash = par_hash(hash, &m->unit, sizeof m->unit);
-    hash = par_hash(hash, m->xy, v * sizeof *m->xy);
-    hash = par_hash(hash, m->on, v * sizeof *m->on);
-    hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
-    hash = par_hash(hash, m->attributes, (size_t)n_kept * (size_t)m->n_attributes * sizeof *m->attributes);
-    hash = par_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
-    hash = par_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
-    hash = par_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
-    return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
+    hash = tri_hash(hash, counts, sizeof counts);
+    hash = tri_hash(hash, &m->unit, sizeof m->unit);
+    hash = tri_hash(hash, m->xy, v * sizeof *m->xy);
+    hash = tri_hash(hash, m->on, v * sizeof *m->on);
+    hash = tri_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
+    hash = tri_hash(hash, m->attributes, (size_t)n_kept * (size_t)m->n_attributes * sizeof *m->attributes);
+    hash = tri_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
+    hash = tri_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
+    hash = tri_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
+    return tri_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
 }
 
-uint64_t par_state_run(const struct par_run *state)
+uint64_t par_state_run(const struct par_run *run)
 {
-    uint64_t hash = hash_bounds(0, state->quality);
-    hash = state->then ? hash_bounds(hash, state->then) : hash;
-    return hash_mesh(hash_options(hash, state->options), state->mesh, state->n_kept);
+    const uint64_t hash = hash_options(hash_bounds(0, run->asked.quality), run->asked.options);
+    return hash_mesh(hash, run->mesh, run->asked.n_kept);
 }
 
 /* --- what is carried, to a file and from there */
 
 struct cargo {
-    struct par_run *state;
+    struct par_run *run;
     struct par_tiles *tiles; /* NULL: a mesh as a whole */
     bool memory;             /* there has been enough */
 };
 
 #define CARRY(file, field) par_carry(file, &(field), sizeof(field))
 
-static void carry_place(struct par_state_file *f, struct par_run *state)
+static void carry_place(struct par_state_file *f, struct par_run *run)
 {
-    CARRY(f, state->next);
-    CARRY(f, state->round);
-    CARRY(f, state->phase);
-    CARRY(f, state->end);
-    CARRY(f, state->n_schedules);
-    CARRY(f, state->radius);
+    CARRY(f, run->place.next);
+    CARRY(f, run->place.round);
+    CARRY(f, run->place.phase);
+    CARRY(f, run->n_schedules);
+    CARRY(f, run->radius);
 }
 
 static void carry_report(struct par_state_file *f, struct par_report *r)
@@ -157,43 +156,43 @@ static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
 /* What a sweep has beside that. */
 static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 {
-    struct par_run *state = cargo->state;
+    struct par_run *run = cargo->run;
     struct par_tiles *tiles = cargo->tiles;
-    CARRY(f, state->column);
-    CARRY(f, state->counts_remaining);
-    CARRY(f, state->remained);
+    CARRY(f, run->place.column);
+    CARRY(f, run->remain.is_on);
+    CARRY(f, run->remain.counted);
     CARRY(f, tiles->n_vertices);
     CARRY(f, tiles->n_triangles);
     CARRY(f, tiles->n_segments);
-    state->gone = tiles->n_triangles;
+    run->gone = tiles->n_triangles;
     cargo->memory = cargo->memory && par_tiles_reserve(tiles);
     if (cargo->memory)
-        par_carry(f, tiles->number, (size_t)state->mesh->n_vertices * sizeof *tiles->number);
+        par_carry(f, tiles->number, (size_t)run->mesh->n_vertices * sizeof *tiles->number);
     CARRY_LIST(cargo, f, tiles->held);
-    CARRY_LIST(cargo, f, state->remaining);
+    CARRY_LIST(cargo, f, run->remain.listed);
 }
 
 static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
 {
     struct cargo *cargo = user;
-    struct par_run *state = cargo->state;
-    carry_place(f, state);
-    carry_report(f, state->report);
-    CARRY_LIST(cargo, f, state->worklist);
-    CARRY_LIST(cargo, f, state->key);
-    CARRY_LIST(cargo, f, state->done);
+    struct par_run *run = cargo->run;
+    carry_place(f, run);
+    carry_report(f, run->report);
+    CARRY_LIST(cargo, f, run->worklist);
+    CARRY_LIST(cargo, f, run->key);
+    CARRY_LIST(cargo, f, run->place.done);
     for (int k = 0; k < PAR_KINDS; k++) {
-        assert(state->spare.ranges[k].dealt == 0); /* no block is at work */
-        CARRY_LIST(cargo, f, state->spare.ranges[k]);
+        assert(run->spare.ranges[k].dealt == 0); /* no block is at work */
+        CARRY_LIST(cargo, f, run->spare.ranges[k]);
     }
-    carry_counts(cargo, f, state->mesh);
+    carry_counts(cargo, f, run->mesh);
     if (cargo->memory)
-        carry_mesh(f, state->mesh);
+        carry_mesh(f, run->mesh);
     if (cargo->tiles) { /* whose cells have been made anew */
         carry_sweep(cargo, f);
     } else {
-        carry_partition(cargo, f, &state->cells);
-        carry_partition(cargo, f, &state->report->partition);
+        carry_partition(cargo, f, &run->cells);
+        carry_partition(cargo, f, &run->report->partition);
     }
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
@@ -217,18 +216,18 @@ bool par_state_is_due(const struct par_checkpoint *c, double now, double triangl
     return now - c->last >= wait || par_state_is_last(c, now, triangles);
 }
 
-static double live_triangles(const struct par_run *state) { return (double)(par_triangles(state) - state->gone); }
+static double live_triangles(const struct par_run *run) { return (double)(par_triangles(run) - run->gone); }
 
-static enum tri_status save(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
+static enum tri_status save(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                             struct tri_error *error)
 {
-    struct cargo cargo = {state, tiles, true};
+    struct cargo cargo = {run, tiles, true};
     const double began = tri_seconds();
     enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, 0,
-                                                  par_triangles(state), carry, &cargo, error);
+                                                  par_triangles(run), carry, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
-    c->size = live_triangles(state);
+    c->size = live_triangles(run);
     if (!status && c->time_up && par_state_is_last(c, c->last, c->size))
         c->time_up();
     return status;
@@ -237,61 +236,62 @@ static enum tri_status save(struct par_checkpoint *c, struct par_run *state, str
 #ifndef NDEBUG
 /* Do the lists of what has been read name triangles that are there, by keys that ascend? Links are not looked at: free
  * triangles are not marked yet. */
-static bool is_state_sound(const struct par_run *state)
+static bool is_state_sound(const struct par_run *run)
 {
-    const struct par_ids *list = &state->worklist;
-    bool sound = state->mesh->n_vertices >= state->n_kept && (state->key.n == 0 || state->key.n == list->n);
+    const struct par_ids *list = &run->worklist;
+    bool sound = run->mesh->n_vertices >= run->asked.n_kept && (run->key.n == 0 || run->key.n == list->n);
     for (int32_t i = 0; sound && i < list->n; i++)
-        sound = list->item[i] >= 0 && list->item[i] < state->mesh->n_triangles;
-    for (int32_t i = 1; sound && i < state->key.n; i++)
-        sound = state->key.item[i - 1] < state->key.item[i];
+        sound = list->item[i] >= 0 && list->item[i] < run->mesh->n_triangles;
+    for (int32_t i = 1; sound && i < run->key.n; i++)
+        sound = run->key.item[i - 1] < run->key.item[i];
     return sound;
 }
 #endif
 
-static enum tri_status load(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
+static enum tri_status load(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                             struct tri_error *error)
 {
-    struct cargo cargo = {state, tiles, true};
+    struct cargo cargo = {run, tiles, true};
     enum tri_status status = par_checkpoint_read(c, carry, &cargo, error);
-    assert(status || is_state_sound(state));
+    assert(status || is_state_sound(run));
     return status;
 }
 
 /* --- beginning and end of a run */
 
-enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *state, struct tri_error *error)
+enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, struct tri_error *error)
 {
-    c->stop = state->mesh->stop;
+    c->stop = run->mesh->stop;
     c->last = tri_seconds();
     if (par_checkpoint_has_ranks(c)) /* whose hash of the same run is another one */
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of several tasks, and this mesh is to be made as a whole");
-    enum tri_status status = par_checkpoint_take(c, par_state_run(state), error);
-    state->stays = c->manifest.kind == PAR_WHOLE_STATE;
-    if (status || !par_checkpoint_has_state(c))
-        return status;
-    if (!state->stays && !state->options->sink)
+    enum tri_status status = par_checkpoint_take(c, par_state_run(run), error);
+    const bool is_whole = c->manifest.kind == PAR_WHOLE_STATE;
+    if (!status && par_checkpoint_has_state(c) && !is_whole && !run->asked.options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of a sweep, and this mesh is to be made as a whole");
-    if (!state->stays)
-        return TRI_OK;
-    state->mesh->stop = NULL;
-    return load(c, state, NULL, error);
+    if (!status && par_checkpoint_has_state(c) && is_whole) {
+        run->mesh->stop = NULL;
+        status = load(c, run, NULL, error);
+    }
+    if (is_whole && run->place.next == PAR_BOUNDS)
+        run->place.next = PAR_BOUNDS_WHOLE;
+    return status;
 }
 
-void par_state_let_stop(struct par_checkpoint *c, struct par_run *state) { state->mesh->stop = c->stop; }
+void par_state_let_stop(struct par_checkpoint *c, struct par_run *run) { run->mesh->stop = c->stop; }
 
 /* --- borders and phases */
 
-enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
+enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error)
 {
-    const bool failed = tiles && c->spool.failed, due = par_state_is_due(c, tri_seconds(), live_triangles(state));
-    state->mesh->stop = NULL;
+    const bool failed = tiles && c->spool.failed, due = par_state_is_due(c, tri_seconds(), live_triangles(run));
+    run->mesh->stop = NULL;
     if (!tri_stop_is_asked(c->stop) && !surely && !failed && !due)
         return TRI_OK;
-    enum tri_status status = save(c, state, tiles, error);
+    enum tri_status status = save(c, run, tiles, error);
     if (failed && error) /* whether the state could be saved or not */
         *error = c->spool.failure;
     if (failed)
@@ -302,27 +302,25 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *state
 /* Asked by blocks before they begin. It does not stay true: a halt ends. */
 static bool is_halt_due(void *user)
 {
-    const struct par_run *state = user;
-    const struct par_checkpoint *c = state->options->checkpoint;
+    const struct par_run *run = user;
+    const struct par_checkpoint *c = run->asked.options->checkpoint;
     const double now = tri_seconds();
-    const double triangles = (double)(atomic_load_explicit(&state->reached, memory_order_relaxed) - state->gone);
+    const double triangles = (double)(atomic_load_explicit(&run->reached, memory_order_relaxed) - run->gone);
     return tri_stop_is_asked(c->stop) || par_state_is_last(c, now, triangles) ||
            (par_state_is_due(c, now, triangles) && now - c->last >= PAR_STATE_REST * c->cost);
 }
 
-enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *state,
-                                const struct par_partition *partition, struct par_tiles *tiles, int32_t only,
-                                struct tri_error *error)
+enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, struct par_turn turn,
+                                struct par_tiles *tiles, struct tri_error *error)
 {
-    const struct tri_stop halt = {is_halt_due, state};
+    const struct tri_stop halt = {is_halt_due, run};
     enum tri_status status;
+    turn.halt = run->asked.options->by_block ? NULL : &halt;
     do {
-        state->halt = state->options->by_block ? NULL : &halt;
-        status = par_phase(state, partition, state->phase, only, error);
-        state->halt = NULL;
+        status = par_phase(run, &turn, error);
         if (status != TRI_STOPPED)
             break;
-        status = save(c, state, tiles, error);
+        status = save(c, run, tiles, error);
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
     } while (!status);
@@ -331,21 +329,21 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *state,
 
 /* --- a sweep */
 
-enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_run *state, struct par_tiles *tiles,
+enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                       struct tri_error *error)
 {
-    const bool again = par_checkpoint_has_state(c);
+    const bool again = par_checkpoint_has_sweep(c); /* there may be a state of the step before */
     c->spool.to = tiles->sink;
     c->spool.again = again;
     c->sink = par_spool_sink(&c->spool);
     tiles->sink = &c->sink;
-    state->mesh->stop = NULL;
+    run->mesh->stop = NULL;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    return status || !again ? status : load(c, state, tiles, error);
+    return status || !again ? status : load(c, run, tiles, error);
 }
 
-enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_run *state, struct tri_error *error)
+enum tri_status par_state_give_up_sweep(struct par_checkpoint *c, struct par_run *run, struct tri_error *error)
 {
-    state->mesh->stop = c->stop;
+    run->mesh->stop = c->stop;
     return par_checkpoint_forget(c, PAR_WHOLE_STATE, error);
 }

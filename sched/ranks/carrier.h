@@ -31,6 +31,10 @@ enum par_move {
     PAR_MOVES
 };
 
+struct tri_figure;
+struct tri_settings;
+struct tri_sink;
+
 struct par_traffic {
     int64_t bytes, messages; /* sent by this rank */
 };
@@ -99,5 +103,23 @@ enum tri_status par_expect_same(struct par_carrier *carrier, uint64_t number, co
 /* Collective: an agreement, then sum[i] becomes the sum of value[i] over all ranks. */
 enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum,
                         enum tri_status status, struct tri_error *error);
+
+/* --- mpi.c: over a communicator of MPI, for callers that know one; nothing here asks for MPI's header */
+
+/* Collective. *carrier: the ranks of a copy of the MPI_Comm at `comm`; par_mpi_carrier_free frees both. All ranks
+ * return the same status: TRI_NO_MEMORY, if one of them has none; TRI_BAD_INPUT, if they are not of one group, or their
+ * machines store numbers in different ways. */
+enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error);
+
+/* Collective, after the same exchanges on all ranks, whatever came of them. Where the network has failed nothing
+ * happens. */
+void par_mpi_carrier_free(struct par_carrier *carrier);
+
+/* --- sched/schedule/library.c */
+
+/* Collective: as par_stream_on (ptriangle/mpi.h), for ranks of any carrier. */
+enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_figure *figure,
+                                const struct tri_settings *settings, const struct tri_sink *sink,
+                                struct tri_error *error);
 
 #endif

@@ -42,7 +42,7 @@ static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 static int64_t count_triangles(const struct handing *h)
 {
     const struct par_ranks *r = h->ranks;
-    int64_t n = h->mesh->n_triangles - par_ranges_unused(&r->state->spare.ranges[PAR_TRIANGLES]);
+    int64_t n = h->mesh->n_triangles - par_ranges_unused(&r->run->spare.ranges[PAR_TRIANGLES]);
     for (int32_t i = 0; i < r->straddlers.n; i++)
         n -= !is_own(h, last_tile(h, h->mesh->tri[r->straddlers.item[i]].v, 3));
     assert(n >= 0);
@@ -184,7 +184,7 @@ static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct
     tiles->n_triangles = base[1];
     tiles->n_segments = base[2];
     for (int32_t i = h->first; !status && i < h->end; i++) {
-        status = par_tiles_hand_out(h->column[i - h->first], &h->ranks->state->spare, error);
+        status = par_tiles_hand_out(h->column[i - h->first], &h->ranks->run->spare, error);
         par_column_free(h->column[i - h->first]);
         h->column[i - h->first] = NULL;
     }
@@ -205,10 +205,10 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
     const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) +
                          PAR_SINK_BYTES; /* a sink makes its buffers when it begins, which is only now */
-    enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
+    enum tri_status status = par_park_expect(h->ranks->run->park, h->mesh, bytes, error);
     if (status)
         return status;
-    par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
+    par_room_mark(&h->ranks->run->spare, h->mesh, &h->ranks->run->asked.executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
         return par_ranks_no_memory(error);
     count[0] = count_vertices(h);
@@ -281,7 +281,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
                                       struct tri_error *error)
 {
     int rank = r->carrier->rank;
-    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh};
+    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->run->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, count, error);
     status = sum_up(r->carrier, tiles->n_kept, count, &first, status, error);

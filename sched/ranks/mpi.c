@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/ranks/mpi_carrier.h"
-#include "sched/ranks/rank_stream.h"
+#include "sched/ranks/carrier.h"
 #include "sched/tunables.h"
 #include "triangle/base/system.h"
 

@@ -3,14 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/spool.h"
 #include "sched/ranks/ranks.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/hash.h"
 
 int par_own_corners(const struct par_ranks *r, tri_triangle_id t)
 {
-    const tri_vertex_id *v = r->state->mesh->tri[t].v;
-    const struct tri_point *xy = r->state->mesh->xy;
+    const tri_vertex_id *v = r->run->mesh->tri[t].v;
+    const struct tri_point *xy = r->run->mesh->xy;
     return par_is_own(&r->territory, xy[v[0]]) + par_is_own(&r->territory, xy[v[1]]) +
            par_is_own(&r->territory, xy[v[2]]);
 }
@@ -29,7 +29,7 @@ bool par_messages_tell(const struct par_ranks *r, struct par_talk *talk, struct 
 {
     bool memory = true;
     for (int p = 0; memory && p < r->carrier->n_ranks; p++)
-        memory = par_message_tell(&message[p], &talk[p], r->state->mesh, r->n_common);
+        memory = par_message_tell(&message[p], &talk[p], r->run->mesh, r->n_common);
     return memory;
 }
 
@@ -39,7 +39,7 @@ bool par_messages_send(struct par_ranks *r, const struct par_talk *talk, struct 
     for (int p = 0; memory && p < r->carrier->n_ranks; p++) {
         struct par_message *m = &message[p];
         if (m->gone.n + m->gone_subs.n + m->n_entries + m->n_triangles > 0)
-            memory = par_message_write(m, &talk[p], r->state->mesh, r->n_common, &r->out[p]);
+            memory = par_message_write(m, &talk[p], r->run->mesh, r->n_common, &r->out[p]);
     }
     return memory;
 }
@@ -54,7 +54,7 @@ void par_messages_free(const struct par_ranks *r, struct par_message *message)
 /* --- the worklist */
 
 /* Where nothing comes the list stays where it is: the last call works from it while it fetches more of the mesh. */
-bool par_merge_entries(struct par_run *state, const struct par_message *m, const struct par_talk *talk)
+bool par_merge_entries(struct par_run *run, const struct par_message *m, const struct par_talk *talk)
 {
     if (m->n_entries == 0)
         return true;
@@ -65,7 +65,7 @@ bool par_merge_entries(struct par_run *state, const struct par_message *m, const
         item[i] = talk->triangle.item[m->entry[i].triangle];
         key[i] = m->entry[i].key;
     }
-    memory = memory && par_merge_worklist(state, item, key, m->n_entries);
+    memory = memory && par_merge_worklist(run, item, key, m->n_entries);
     free(item);
     free(key);
     return memory;
@@ -78,20 +78,20 @@ static int32_t *count_of(struct tri_mesh *mesh, enum par_kind kind)
     return kind == PAR_VERTICES ? &mesh->n_vertices : kind == PAR_TRIANGLES ? &mesh->n_triangles : &mesh->n_subs;
 }
 
-static int32_t take_id(struct par_run *state, enum par_kind kind)
+static int32_t take_id(struct par_run *run, enum par_kind kind)
 {
-    struct par_ranges *spare = &state->spare.ranges[kind];
+    struct par_ranges *spare = &run->spare.ranges[kind];
     if (spare->n > 0) {
         struct par_range *last = &spare->item[spare->n - 1];
         spare->n -= last->next + 1 == last->end;
         return last->next++;
     }
-    return (*count_of(state->mesh, kind))++;
+    return (*count_of(run->mesh, kind))++;
 }
 
-bool par_release(struct par_run *state, enum par_kind kind, int32_t id)
+bool par_release(struct par_run *run, enum par_kind kind, int32_t id)
 {
-    struct par_ranges *spare = &state->spare.ranges[kind];
+    struct par_ranges *spare = &run->spare.ranges[kind];
     if (spare->n > 0 && spare->item[spare->n - 1].end == id && spare->item[spare->n - 1].next < id) {
         spare->item[spare->n - 1].end++;
         return true;
@@ -102,9 +102,9 @@ bool par_release(struct par_run *state, enum par_kind kind, int32_t id)
     return true;
 }
 
-bool par_remove_triangle(struct par_run *state, tri_triangle_id t)
+bool par_remove_triangle(struct par_run *run, tri_triangle_id t)
 {
-    struct tri_mesh *mesh = state->mesh;
+    struct tri_mesh *mesh = run->mesh;
     struct tri_triangle *triangle = &mesh->tri[t];
     assert(tri_is_live(triangle));
     for (int e = 0; e < 3; e++) {
@@ -116,13 +116,13 @@ bool par_remove_triangle(struct par_run *state, tri_triangle_id t)
                 mesh->sub[~link].side[side] = TRI_BEYOND;
     }
     triangle->v[0] = TRI_NONE;
-    return par_release(state, PAR_TRIANGLES, t);
+    return par_release(run, PAR_TRIANGLES, t);
 }
 
-bool par_remove_sub(struct par_run *state, tri_sub_id s)
+bool par_remove_sub(struct par_run *run, tri_sub_id s)
 {
-    par_room_mark_sub(state->mesh, s);
-    return par_release(state, PAR_SUBS, s);
+    par_room_mark_sub(run->mesh, s);
+    return par_release(run, PAR_SUBS, s);
 }
 
 /* --- what is known */
@@ -137,7 +137,7 @@ static const void *key_of(const struct par_index *index, const struct tri_mesh *
 static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
 {
     const size_t width = index->is_of_places ? sizeof(struct tri_point) : 3 * sizeof(tri_vertex_id);
-    uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)par_hash(0, key, width) & mask;
+    uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)tri_hash(0, key, width) & mask;
     while (index->id[at] != TRI_NONE && memcmp(key_of(index, mesh, index->id[at]), key, width) != 0)
         at = (at + 1) & mask;
     return &index->id[at];
@@ -175,7 +175,7 @@ static void note(struct par_index *index, const struct tri_mesh *mesh, int32_t i
 
 bool par_index_straddlers(struct par_ranks *r)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_mesh *mesh = r->run->mesh;
     free(r->places.id);
     free(r->triangles.id);
     r->places = (struct par_index){.is_of_places = true};
@@ -198,7 +198,7 @@ void par_forget_straddlers(struct par_ranks *r, const struct par_triangle_set *c
     const tri_triangle_id *t = r->straddlers.item;
     int32_t kept = 0;
     for (int32_t i = 0; i < r->straddlers.n; i++)
-        if (tri_is_live(&r->state->mesh->tri[t[i]]) && !(changed && par_is_in(changed, t[i])))
+        if (tri_is_live(&r->run->mesh->tri[t[i]]) && !(changed && par_is_in(changed, t[i])))
             r->straddlers.item[kept++] = t[i];
     r->straddlers.n = kept;
 }
@@ -220,7 +220,7 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
 {
     struct tri_mesh *mesh = p->mesh;
     const struct par_told_vertex *told = &p->message->vertex[i];
-    tri_vertex_id v = take_id(p->ranks->state, PAR_VERTICES);
+    tri_vertex_id v = take_id(p->ranks->run, PAR_VERTICES);
     mesh->xy[v] = told->xy;
     mesh->feature[v] = told->feature;
     mesh->on[v] = told->on;
@@ -263,7 +263,7 @@ static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle 
     tri_triangle_id t = may_be_here(p, told) ? *find(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
     if (t != TRI_NONE)
         return t;
-    t = take_id(p->ranks->state, PAR_TRIANGLES);
+    t = take_id(p->ranks->run, PAR_TRIANGLES);
     p->mesh->tri[t] = (struct tri_triangle){{v[0], v[1], v[2]}, {TRI_BEYOND, TRI_BEYOND, TRI_BEYOND}, told->region, 0};
     if (p->is_borrowed)
         note(&p->ranks->triangles, p->mesh, t);
@@ -321,7 +321,7 @@ static tri_sub_id append_sub(struct pasting *p, const struct par_told_side *told
 {
     const tri_vertex_id *v = p->mesh->tri[p->talk->triangle.item[told->triangle]].v;
     tri_vertex_id from = v[tri_next[told->edge]], to = v[tri_prev[told->edge]];
-    tri_sub_id s = take_id(p->ranks->state, PAR_SUBS);
+    tri_sub_id s = take_id(p->ranks->run, PAR_SUBS);
     struct tri_subsegment *sub = &p->mesh->sub[s];
     *sub = (struct tri_subsegment){{told->side == 0 ? from : to, told->side == 0 ? to : from},
                                    {TRI_BEYOND, TRI_BEYOND}, told->marker, told->parent};
@@ -368,7 +368,7 @@ static bool reserve(struct pasting *p, struct tri_error *error)
 enum tri_status par_paste(struct par_ranks *r, struct par_talk *talk, const struct par_message *message,
                           bool is_borrowed, struct tri_error *error)
 {
-    struct pasting p = {r, r->state->mesh, talk, message, is_borrowed, talk->vertex.n, talk->triangle.n, talk->sub.n,
+    struct pasting p = {r, r->run->mesh, talk, message, is_borrowed, talk->vertex.n, talk->triangle.n, talk->sub.n,
                         NULL, NULL};
     struct tri_error own = {0};
     enum tri_status status = TRI_OK;

@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "sched/checkpoint/state.h"
-#include "sched/schedule/by_tile.h"
-#include "sched/tiles/park.h"
+#include "sched/tiles/sweep.h"
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
@@ -44,7 +43,7 @@ static bool init_shift(struct par_ranks *r)
     s->worker = malloc(n * sizeof *s->worker);
     s->is_mine = calloc(n, sizeof *s->is_mine);
     s->is_border = calloc(n, sizeof *s->is_border);
-    s->block_of = malloc(((size_t)r->state->worklist.n + 1) * sizeof *s->block_of);
+    s->block_of = malloc(((size_t)r->run->worklist.n + 1) * sizeof *s->block_of);
     return s->worker && s->is_mine && s->is_border && s->block_of;
 }
 
@@ -77,13 +76,13 @@ static bool find_borders(struct par_ranks *r)
 /* One bit for each block at a border that has something to do. */
 static void find_work(struct par_ranks *r, int64_t *word)
 {
-    const struct par_run *state = r->state;
+    const struct par_run *run = r->run;
     struct par_shift *s = &r->shift;
     struct par_locator locator = PAR_LOST;
-    for (int32_t i = 0; i < state->worklist.n; i++) {
-        tri_triangle_id t = state->worklist.item[i];
-        assert(tri_is_live(&state->mesh->tri[t]));
-        int32_t b = s->partition ? par_locate_owner(&locator, s->partition, s->phase, state->mesh, t) : 0;
+    for (int32_t i = 0; i < run->worklist.n; i++) {
+        tri_triangle_id t = run->worklist.item[i];
+        assert(tri_is_live(&run->mesh->tri[t]));
+        int32_t b = s->partition ? par_locate_owner(&locator, s->partition, s->phase, run->mesh, t) : 0;
         s->block_of[i] = b;
         if (b != TRI_NONE && s->worker[b] >= 0)
             word[b / 64] |= (int64_t)((uint64_t)1 << b % 64);
@@ -133,8 +132,8 @@ static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_e
 
 static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_status status, struct tri_error *error)
 {
-    return par_swap(r->carrier, r->state->round > 0 || !r->shift.partition ? PAR_MOVE_LEFT_OVER : move, r->out, r->in,
-                    status, error);
+    const bool is_left_over = r->run->place.round > 0 || !r->shift.partition;
+    return par_swap(r->carrier, is_left_over ? PAR_MOVE_LEFT_OVER : move, r->out, r->in, status, error);
 }
 
 static void free_in(struct par_ranks *r) { par_bytes_free(r->in, r->carrier->n_ranks); }
@@ -167,7 +166,7 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
 static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
 {
     const struct par_shift *s = &r->shift;
-    int32_t block = s->partition ? par_owner_of(s->partition, s->phase, r->state->mesh, t) : 0;
+    int32_t block = s->partition ? par_owner_of(s->partition, s->phase, r->run->mesh, t) : 0;
     return block != TRI_NONE && s->is_border[block];
 }
 
@@ -175,10 +174,10 @@ static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
  * not own all of its corners, and who owns the others need not know of the entry. */
 static bool find_unknown(const struct par_ranks *r, struct par_ids *asked)
 {
-    const struct par_ids *list = &r->state->worklist;
+    const struct par_ids *list = &r->run->worklist;
     bool memory = true;
     for (int32_t i = 0; i < list->n; i++) {
-        const struct tri_triangle *t = &r->state->mesh->tri[list->item[i]];
+        const struct tri_triangle *t = &r->run->mesh->tri[list->item[i]];
         for (int e = 0; memory && e < 3; e++)
             if (t->n[e] == TRI_BEYOND && is_taken(r, list->item[i]))
                 memory = par_ids_add(asked, t->v[tri_next[e]]) && par_ids_add(asked, t->v[tri_prev[e]]);
@@ -203,7 +202,7 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
 }
 
 /* What blocks at borders wait for, as struct par_share has it. */
-static enum tri_status fetch(void *user, const struct par_ids *asked, struct tri_error *error)
+static enum tri_status fetch_more(void *user, const struct par_ids *asked, struct tri_error *error)
 {
     bool any;
     return lend_more(user, asked, &any, TRI_OK, error);
@@ -257,48 +256,53 @@ static enum tri_status work(struct par_ranks *r, struct par_shift shift,
 static int32_t steps_of(const struct par_ranks *r, const struct par_partition *partition)
 {
     int32_t steps = par_blocks(partition) / PAR_PHASES / PAR_BLOCKS_A_STEP;
-    if (!r->state->options->checkpoint || steps < 1)
+    if (!r->run->asked.options->checkpoint || steps < 1)
         return 1;
     return steps < PAR_MOST_STEPS ? steps : PAR_MOST_STEPS;
 }
 
+/* The blocks of the shift, of all that have a part in this rank's tiles or in what it borrows. */
 static enum tri_status refine_step(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_run *state = r->state;
-    struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch, .user = r};
-    assert(!state->share && state->phase >= 0 && state->phase < PAR_PHASES);
-    par_tell(state, state->phase + 1);
-    state->share = &share;
-    enum tri_status status = par_phase(state, r->shift.partition, state->phase, TRI_NONE, error);
-    state->share = NULL;
+    struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch_more,
+                              .user = r};
+    const struct par_turn turn = {.partition = r->shift.partition, .only = TRI_NONE, .share = &share};
+    par_tell(r->run, r->run->place.phase + 1);
+    enum tri_status status = par_phase(r->run, &turn, error);
     r->shift.changed = share.changed;
     return status;
 }
 
-static void go_on(struct par_run *state, int32_t n_steps)
+/* All steps of a phase, from the place on. Collective. */
+static enum tri_status run_phase(void *self, struct tri_error *error)
 {
-    if (++state->step < n_steps)
-        return;
-    state->step = 0;
-    state->phase++;
+    const struct par_schedule *s = self;
+    struct par_ranks *r = s->run->ranks;
+    struct par_position *place = &s->run->place;
+    const int32_t n_steps = steps_of(r, &s->partition);
+    enum tri_status status = TRI_OK;
+    do {
+        const struct par_shift shift = {.partition = &s->partition, .phase = place->phase, .step = place->step,
+                                        .n_steps = n_steps};
+        status = work(r, shift, refine_step, error);
+        place->step = (place->step + 1) % n_steps;
+        place->phase += place->step == 0;
+        status = par_keep(r, status, error);
+    } while (!status && place->step > 0);
+    return status;
 }
 
-/* From where it stands on. How many entries all ranks have in the end: who shares one counts it, too. Collective. */
-static enum tri_status refine_round(struct par_ranks *r, const struct par_partition *partition, int64_t *left,
-                                    struct tri_error *error)
+/* How many entries all ranks have in the end: who shares one counts it, too. Collective. */
+static enum tri_status end_round(void *self, bool *again, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    r->state->report->rounds++;
-    while (!status && r->state->phase < PAR_PHASES) {
-        const struct par_shift shift = {.partition = partition, .phase = r->state->phase, .step = r->state->step,
-                                        .n_steps = steps_of(r, partition)};
-        status = work(r, shift, refine_step, error);
-        go_on(r->state, shift.n_steps);
-        status = par_keep(r, status, error);
-    }
-    int64_t mine = r->state->worklist.n;
-    return par_sum(r->carrier, &mine, 1, left, status, error);
+    struct par_schedule *s = self;
+    int64_t mine = s->run->worklist.n;
+    enum tri_status status = par_sum(s->run->asked.options->carrier, &mine, 1, &s->left, TRI_OK, error);
+    *again = !status && par_next_round(s);
+    return status;
 }
+
+const struct par_steps par_steps_on_ranks = {run_phase, end_round};
 
 /* --- the last call */
 
@@ -311,95 +315,69 @@ struct last_call {
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct last_call *call = user;
-    for (int32_t i = 0; i < n; i++)
-        call->lost = !par_ids_add(&call->ranks->shift.changed, triangle[i]) || call->lost;
+    call->lost |= !par_ids_add_all(&call->ranks->shift.changed, triangle, n);
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
     struct last_call *call = user;
-    for (int k = 0; k < 2; k++)
-        call->lost = !par_ids_add(&call->asked, edge[k]) || call->lost;
+    call->lost |= !par_ids_add_all(&call->asked, edge, 2);
 }
 
-/* Goes on whenever there is more of the mesh. */
-static enum tri_status run_last_call(struct last_call *call, struct tri_refiner *refiner, struct tri_error *error)
+static enum tri_status fetch_asked(void *user, struct tri_error *error)
 {
-    enum tri_status status = TRI_NO_ROOM;
-    while (status == TRI_NO_ROOM) {
-        call->asked.n = 0;
-        status = tri_refiner_run(refiner, error);
-        if (call->lost)
-            status = par_ranks_no_memory(error);
-        if (status == TRI_NO_ROOM) {
-            enum tri_status fetched = fetch(call->ranks, &call->asked, error);
-            status = fetched ? fetched : status;
-        }
-    }
+    struct last_call *call = user;
+    if (call->lost)
+        return par_ranks_no_memory(error);
+    enum tri_status status = fetch_more(call->ranks, &call->asked, error);
+    call->asked.n = 0;
     return status;
 }
 
 /* One call without fences, as of one process, for what the worklist holds: by the first rank that owns anything. */
-static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
+static enum tri_status refine_left(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_run *state = r->state;
+    struct par_run *run = r->run;
     struct last_call call = {.ranks = r};
     const struct tri_part part = {note_changes, ask_for, &call};
-    struct tri_refine_report report = {0};
     const struct tri_refine_hooks hooks = {
-        .worklist = state->worklist.item, .n_worklist = state->worklist.n, .part = &part};
-    struct tri_refiner *refiner = NULL;
-    if (state->worklist.n == 0)
+        .worklist = run->worklist.item, .n_worklist = run->worklist.n, .part = &part};
+    if (run->worklist.n == 0)
         return TRI_OK;
-    enum tri_status status = tri_refiner_new(&refiner, state->mesh, state->quality, &hooks, &report, error);
-    status = status ? status : run_last_call(&call, refiner, error);
-    assert(state->worklist.item == hooks.worklist); /* entries come with what is lent first, not with more of it */
-    tri_refiner_free(refiner);
+    enum tri_status status = par_refine_rest(run, &hooks, fetch_asked, &call, error);
+    assert(run->worklist.item == hooks.worklist); /* entries come with what is lent first, not with more of it */
     free(call.asked.item);
-    par_add_up(&state->report->total, &report);
-    state->worklist.n = state->key.n = 0;
-    return status;
+    run->worklist.n = run->key.n = 0;
+    return status || !call.lost ? status : par_ranks_no_memory(error);
 }
 
-/* Rounds on blocks four times as large each, until nothing is left or they cannot be larger. */
-static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct tri_error *error)
+enum tri_status par_refine_rest_on_ranks(struct par_run *run, struct tri_error *error)
 {
-    struct par_partition partition;
-    struct par_run *state = r->state;
-    enum tri_status status = par_partition_copy(&partition, r->territory.partition, error);
-    status = par_agree(r->carrier, status, error);
-    for (int32_t round = 0; !status && round < state->round; round++)
-        par_partition_coarsen(&partition);
-    status = status ? status : refine_round(r, &partition, left, error);
-    while (!status && *left > 0 && par_can_coarsen(&partition)) {
-        par_partition_coarsen(&partition);
-        state->round++;
-        state->phase = 0;
-        status = refine_round(r, &partition, left, error);
-    }
-    par_partition_free(&partition);
-    return status;
+    struct par_ranks *r = run->ranks;
+    enum tri_status status = work(r, (struct par_shift){.n_steps = 1}, refine_left, error);
+    par_go(run, par_is_of_sizes(run->place.next) ? PAR_BOUNDS_WHOLE : PAR_HAND_OUT);
+    return par_keep(r, status, error);
 }
 
-/* --- all together */
+/* --- beginning and end */
 
 /* Writes out the keys of a worklist that no block has had. False: no memory. */
-static bool tell_keys(struct par_run *state)
+static bool write_keys(struct par_run *run)
 {
-    struct par_keys *key = &state->key;
-    if (key->n == state->worklist.n)
+    struct par_keys *key = &run->key;
+    if (key->n == run->worklist.n)
         return true;
     assert(key->n == 0);
-    if (!tri_grow(&key->item, &key->capacity, state->worklist.n, sizeof *key->item))
+    if (!tri_grow(&key->item, &key->capacity, run->worklist.n, sizeof *key->item))
         return false;
-    for (; key->n < state->worklist.n; key->n++)
+    for (; key->n < run->worklist.n; key->n++)
         key->item[key->n] = (uint64_t)key->n;
     return true;
 }
 
 void par_count_done(const struct par_ranks *r, int64_t done[PAR_DONE])
 {
-    const struct tri_refine_report *total = &r->state->report->total, *before = &r->before;
+    const struct tri_refine_report *total = &r->run->report->total, *before = &r->before;
     done[0] = total->inserted_free - before->inserted_free;
     done[1] = total->inserted_on_segments - before->inserted_on_segments;
     done[2] = total->fenced - before->fenced;
@@ -409,7 +387,7 @@ void par_count_done(const struct par_ranks *r, int64_t done[PAR_DONE])
 
 void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
 {
-    struct tri_refine_report *total = &r->state->report->total;
+    struct tri_refine_report *total = &r->run->report->total;
     total->inserted_free += done[0];
     total->inserted_on_segments += done[1];
     total->fenced += done[2];
@@ -420,7 +398,7 @@ void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
 /* What all ranks have done since, everywhere. */
 static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
-    struct par_report *report = r->state->report;
+    struct par_report *report = r->run->report;
     int64_t mine[PAR_DONE], sum[PAR_DONE];
     par_count_done(r, mine);
     status = par_sum(r->carrier, mine, PAR_DONE, sum, status, error);
@@ -428,89 +406,71 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
         return status;
     report->total = r->before;
     par_add_done(r, sum);
-    report->deferred += sum[3];
+    report->deferred += sum[2];
     par_forget_deferred(report);
     return TRI_OK;
 }
 
-/* What a rank begins with: its part of the coarse mesh, or of what has been kept. */
-static enum tri_status begin(struct par_ranks *r, struct tri_error *error)
+/* What a rank begins with: its part of the coarse mesh, or of what has been kept. Collective. */
+static enum tri_status take_part(struct par_ranks *r, struct tri_error *error)
 {
     bool again;
     const char *words = "the ranks have not been given the same figure and settings";
-    enum tri_status status = par_expect_same(r->carrier, r->run, words, TRI_OK, error);
+    const bool is_of_sizes = par_is_of_sizes(r->run->place.next);
+    enum tri_status status = par_expect_same(r->carrier, r->of_run, words, TRI_OK, error);
     status = status ? status : par_take_up(r, &again, error);
     status = status || again ? status : par_keep_own(r, error);
+    r->run->n_schedules += is_of_sizes && r->run->place.next > PAR_BOUNDS_WHOLE; /* the second has begun */
     return par_agree(r->carrier, status, error);
 }
 
-/* Rounds, and what they leave over. Collective. */
-static enum tri_status run_schedule(struct par_ranks *r, struct tri_error *error)
-{
-    int64_t left = 0;
-    enum tri_status status = refine_rounds(r, &left, error);
-    r->state->report->left_over += status ? 0 : left;
-    if (status || left == 0)
-        return status;
-    return par_keep(r, work(r, (struct par_shift){.n_steps = 1}, refine_rest, error), error);
-}
-
-/* What is bad now among the triangles of the own tiles. All of these are here, as they are in the mesh of one process;
- * of the others some are. */
-static enum tri_status find_own_work(struct par_ranks *r, struct tri_error *error)
-{
-    struct par_run *state = r->state;
-    const struct par_territory *t = &r->territory;
-    par_room_mark(&state->spare, state->mesh, &state->executor);
-    enum tri_status status = par_worklist_fill(&state->worklist, state->mesh, state->quality, false, &state->executor,
-                                               &state->radius, error);
-    if (!status)
-        status = par_park_expect(state->park, state->mesh, par_order_bytes(&state->worklist), error);
-    bool memory = status || par_order_by_tile(state, t->partition, par_first_block(t, t->rank),
-                                              par_first_block(t, t->rank + 1));
-    return memory ? status : par_ranks_no_memory(error);
-}
-
-/* The schedule for what the state asks for then, from its beginning, or from where it stands on. Collective. */
-static enum tri_status run_second(struct par_ranks *r, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    r->state->quality = r->state->then;
-    r->state->n_schedules++;
-    if (r->state->next == PAR_SIZES_PHASE) {
-        r->state->next = PAR_BOUNDS_PHASE;
-        r->state->round = r->state->phase = 0;
-        status = par_agree(r->carrier, find_own_work(r, error), error);
-    }
-    return status ? status : run_schedule(r, error);
-}
-
-/* Collective, from an agreement to another. */
-static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, struct tri_error *error)
-{
-    enum tri_status status = begin(r, error);
-    const bool is_second = r->state->then && r->state->next == PAR_BOUNDS_PHASE;
-    if (!status && !is_second)
-        status = run_schedule(r, error);
-    if (!status && r->state->then)
-        status = run_second(r, error);
-    status = add_up(r, status, error);
-    return par_hand_out_on_ranks(r, tiles, status, error);
-}
-
-static bool init(struct par_ranks *r, const struct par_partition *partition)
+static bool init(struct par_ranks *r)
 {
     size_t n = (size_t)r->carrier->n_ranks;
     r->lent = calloc(n, sizeof *r->lent);
     r->borrowed = calloc(n, sizeof *r->borrowed);
     r->out = calloc(n, sizeof *r->out);
     r->in = calloc(n, sizeof *r->in);
-    return par_territory_init(&r->territory, partition, r->carrier) && r->lent && r->borrowed && r->out && r->in &&
-           tell_keys(r->state);
+    return par_territory_init(&r->territory, &r->run->cells, r->carrier) && r->lent && r->borrowed && r->out && r->in &&
+           write_keys(r->run);
 }
 
-static void clean_up(struct par_ranks *r)
+enum tri_status par_ranks_begin(struct par_run *run, struct tri_error *error)
 {
+    struct par_carrier *carrier = run->asked.options->carrier;
+    struct par_ranks *r = calloc(1, sizeof *r);
+    if (r) {
+        *r = (struct par_ranks){.run = run, .carrier = carrier, .n_common = run->mesh->n_vertices,
+                                .of_run = par_state_run(run), .before = run->report->total,
+                                .left_before = run->report->left_over, .rounds_before = run->report->rounds};
+        run->ranks = r;
+    }
+    enum tri_status status = par_agree(carrier, r && init(r) ? TRI_OK : par_ranks_no_memory(error), error);
+    return status ? status : take_part(r, error);
+}
+
+enum tri_status par_ranks_hand_out(struct par_run *run, enum tri_status status, struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(run, &run->cells);
+    status = add_up(run->ranks, status, error);
+    status = par_hand_out_on_ranks(run->ranks, &tiles, status, error);
+    par_tiles_free(&tiles);
+    return status;
+}
+
+void par_ranks_own_blocks(const struct par_ranks *r, int32_t *first, int32_t *end)
+{
+    *first = par_first_block(&r->territory, r->territory.rank);
+    *end = par_first_block(&r->territory, r->territory.rank + 1);
+}
+
+bool par_ranks_end(struct par_run *run)
+{
+    struct par_ranks *r = run->ranks;
+    if (!r)
+        return false;
+    if (run->asked.options->checkpoint)
+        run->mesh->stop = run->asked.options->checkpoint->stop;
     par_bytes_free(r->out, r->carrier->n_ranks);
     par_bytes_free(r->in, r->carrier->n_ranks);
     par_territory_free(&r->territory);
@@ -521,26 +481,7 @@ static void clean_up(struct par_ranks *r)
     free(r->borrowed);
     free(r->out);
     free(r->in);
-}
-
-enum tri_status par_refine_on_ranks(struct par_run *state, const struct par_partition *partition,
-                                    struct par_tiles *tiles, struct tri_error *error)
-{
-    struct par_carrier *carrier = state->options->carrier;
-    struct par_ranks r = {.state = state, .carrier = carrier, .n_common = state->mesh->n_vertices};
-    state->next = state->then ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE;
-    state->round = state->phase = state->step = 0;
-    state->n_schedules++;
-    bool memory = init(&r, partition);
-    r.before = state->report->total;
-    r.left_before = state->report->left_over;
-    r.rounds_before = state->report->rounds;
-    r.run = par_state_run(state);
-    enum tri_status status = par_agree(carrier, memory ? TRI_OK : par_ranks_no_memory(error), error);
-    if (!status)
-        status = refine_all(&r, tiles, error);
-    if (state->options->checkpoint)
-        state->mesh->stop = state->options->checkpoint->stop;
-    clean_up(&r);
-    return status;
+    free(r);
+    run->ranks = NULL;
+    return true;
 }

@@ -44,7 +44,7 @@ struct par_index {
 enum { PAR_DONE = 3 + TRI_EXCUSES }; /* numbers that tell what has been done */
 
 struct par_ranks {
-    struct par_run *state;
+    struct par_run *run;
     struct par_carrier *carrier;
     struct par_territory territory;
     struct par_ids straddlers;
@@ -53,18 +53,32 @@ struct par_ranks {
     struct par_talk *lent, *borrowed; /* [n_ranks] */
     struct par_index places, triangles; /* of the straddlers and of what is borrowed */
     struct par_bytes *out, *in; /* [n_ranks] */
-    uint64_t run;              /* a hash of what all ranks began with */
+    uint64_t of_run;              /* a hash of what all ranks began with */
     struct tri_refine_report before; /* the report of what came before that .. */
     int64_t left_before;       /* .. its left_over .. */
     int rounds_before;         /* .. and its rounds */
 };
 
-/* Collective. Refines what is in the state's worklist, the same on all ranks, then for what the state asks for then, on
- * the same tiles, and hands each rank its own: the sink of rank 0 gets the vertices that there were before, too. *tiles
- * is as par_tiles_begin takes it. Afterwards the state's mesh is to be freed and no more. All ranks return the same
- * status: TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED, or what a sink says. */
-enum tri_status par_refine_on_ranks(struct par_run *state, const struct par_partition *partition,
-                                    struct par_tiles *tiles, struct tri_error *error);
+/* Collective. When the schedule of the whole mesh begins: cells, worklist and place are the same on all ranks, the
+ * executor's threads need not be. Then run->ranks is there, and the mesh is this rank's part of it, or that and the
+ * place are what has been kept. TRI_NO_MEMORY, or as par_take_up. */
+enum tri_status par_ranks_begin(struct par_run *run, struct tri_error *error);
+
+/* Collective: the rounds of a struct par_schedule, and the call for what they leave, after which the place is what
+ * follows. All ranks return the same status. */
+extern const struct par_steps par_steps_on_ranks;
+enum tri_status par_refine_rest_on_ranks(struct par_run *run, struct tri_error *error);
+
+/* The blocks of the first phase whose triangles this rank lists as work: from *first to *end - 1. All of them are here,
+ * as they are in the mesh of one process; of the others some are. */
+void par_ranks_own_blocks(const struct par_ranks *ranks, int32_t *first, int32_t *end);
+
+/* Collective. Hands each rank its own tiles: the sink of rank 0 gets the vertices that there were before, too. status:
+ * how this rank has fared. All return the same: TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED, or what a sink says. */
+enum tri_status par_ranks_hand_out(struct par_run *run, enum tri_status status, struct tri_error *error);
+
+/* Frees run->ranks; was there any? Then the mesh is of no use any more. */
+bool par_ranks_end(struct par_run *run);
 
 /* What this rank has done since its ranks began; the same of others joins its report. */
 void par_count_done(const struct par_ranks *ranks, int64_t done[PAR_DONE]);
@@ -81,7 +95,7 @@ enum tri_status par_take_up(struct par_ranks *ranks, bool *again, struct tri_err
  * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status par_keep(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
 
-/* --- lend.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
+/* --- borders.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
 
 /* out[w]: what rank w has to know for its blocks. Their entries leave the worklist. */
 enum tri_status par_lend(struct par_ranks *ranks, struct tri_error *error);
@@ -92,7 +106,7 @@ enum tri_status par_lend_more(struct par_ranks *ranks, struct tri_error *error);
 /* in[w]: what has become of it. */
 enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 
-/* --- borrow.c: what this rank works on */
+/* --- borders.c: what this rank works on */
 
 /* What somebody has told of to lend it: from then on it is here. */
 enum tri_status par_borrow_from(struct par_ranks *ranks, struct par_talk *talk, const struct par_bytes *told,
@@ -132,20 +146,20 @@ void par_forget_straddlers(struct par_ranks *ranks, const struct par_triangle_se
 bool par_index_straddlers(struct par_ranks *ranks);
 
 /* A message's entries join the worklist. False: no memory. */
-bool par_merge_entries(struct par_run *state, const struct par_message *message, const struct par_talk *talk);
+bool par_merge_entries(struct par_run *run, const struct par_message *message, const struct par_talk *talk);
 
 /* A triangle goes, a subsegment that has no triangle any more, a vertex: what leads to it leads beyond. */
-bool par_remove_triangle(struct par_run *state, tri_triangle_id t);
-bool par_remove_sub(struct par_run *state, tri_sub_id s);
-bool par_release(struct par_run *state, enum par_kind kind, int32_t id);
+bool par_remove_triangle(struct par_run *run, tri_triangle_id t);
+bool par_remove_sub(struct par_run *run, tri_sub_id s);
+bool par_release(struct par_run *run, enum par_kind kind, int32_t id);
 
 static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
 
 /* Of a worklist that is gone through entry i stays: as the next one, of *kept so far. */
-static inline void par_keep_entry(struct par_run *state, int32_t i, int32_t *kept)
+static inline void par_keep_entry(struct par_run *run, int32_t i, int32_t *kept)
 {
-    state->key.item[*kept] = state->key.item[i];
-    state->worklist.item[(*kept)++] = state->worklist.item[i];
+    run->key.item[*kept] = run->key.item[i];
+    run->worklist.item[(*kept)++] = run->worklist.item[i];
 }
 
 /* How many corners of a triangle are this rank's own? */

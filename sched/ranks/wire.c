@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/spool.h"
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
+#include "triangle/base/hash.h"
 
 struct coder {
     struct par_bytes *to;              /* what is written; NULL: all is read, .. */
@@ -361,7 +361,7 @@ static void code_all(struct coder *c, struct par_message *m)
 }
 
 /* Of what stands before it at the end of a message. */
-static uint64_t hash_of(const char *bytes, size_t n) { return par_hash(n, bytes, n); }
+static uint64_t hash_of(const char *bytes, size_t n) { return tri_hash(n, bytes, n); }
 
 bool par_message_write(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
                        int32_t n_common, struct par_bytes *to)

@@ -5,12 +5,46 @@
 #include "sched/schedule/phase_tasks.h"
 #include "triangle/base/grow.h"
 
-uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
+/* --- what is counted */
+
+void par_report_free(struct par_report *report)
 {
-    int32_t column = block / partition->n_rows, row = block % partition->n_rows;
-    int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
-    return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
+    par_partition_free(&report->partition);
+    free(report->blocks);
+    report->blocks = NULL;
+    report->n_blocks = report->block_capacity = 0;
 }
+
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
+{
+    for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
+        int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
+        if (block != TRI_NONE)
+            return block;
+    }
+    *phase = -1;
+    return TRI_NONE;
+}
+
+void par_add_points(struct tri_refine_report *sum, const struct tri_refine_report *add)
+{
+    sum->inserted_free += add->inserted_free;
+    sum->inserted_on_segments += add->inserted_on_segments;
+}
+
+void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+{
+    par_add_points(sum, add);
+    sum->gated += add->gated;
+    sum->fenced += add->fenced;
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum->given_up[k] += add->given_up[k];
+    sum->hit_limit |= add->hit_limit;
+}
+
+void par_forget_deferred(struct par_report *report) { report->total.gated = report->total.fenced = 0; }
+
+/* --- worklists */
 
 /* What a phase has left. */
 struct leftovers {
@@ -46,7 +80,7 @@ static void gather_own(void *context, size_t index)
     const struct leftovers *left = context;
     const struct par_phase_run *p = left->p;
     const struct par_ids *own = &p->tasks[index].left;
-    const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
+    const uint64_t key = par_key_of(p->partition, p->run->place.round, p->phase, p->tasks[index].block);
     for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
         left->item[at] = own->item[k];
         left->key[at] = key | (uint32_t)k;
@@ -58,11 +92,11 @@ static bool gather_left(struct leftovers *left)
     const struct par_phase_run *p = left->p;
     const size_t n = (size_t)p->n_tasks;
     bool memory = true;
-    left->seen = calloc((size_t)p->state->mesh->n_triangles / 64 + 1, sizeof *left->seen);
+    left->seen = calloc((size_t)p->run->mesh->n_triangles / 64 + 1, sizeof *left->seen);
     left->before = malloc((n + 1) * sizeof *left->before);
     if (!left->seen || !left->before)
         return false;
-    tri_execute(&p->state->executor, n, drop_repeated, left);
+    tri_execute(&p->run->asked.executor, n, drop_repeated, left);
     left->before[0] = 0;
     for (size_t i = 0; i < n; i++) {
         memory = memory && !p->tasks[i].lost;
@@ -72,18 +106,18 @@ static bool gather_left(struct leftovers *left)
     left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
     memory = memory && left->item && left->key;
     if (memory)
-        tri_execute(&p->state->executor, n, gather_own, left);
+        tri_execute(&p->run->asked.executor, n, gather_own, left);
     return memory;
 }
 
-static uint64_t key_of(const struct par_run *state, int32_t i)
+static uint64_t key_of(const struct par_run *run, int32_t i)
 {
-    return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
+    return run->key.n > 0 ? run->key.item[i] : (uint64_t)i;
 }
 
-bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n)
+bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t *key, int32_t n)
 {
-    struct par_ids *list = &state->worklist;
+    struct par_ids *list = &run->worklist;
     int32_t most = list->n + n, at = 0, *items = malloc(((size_t)most + 1) * sizeof *items);
     uint64_t *keys = malloc(((size_t)most + 1) * sizeof *keys);
     if (!items || !keys) {
@@ -91,29 +125,29 @@ bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64
         free(keys);
         return false;
     }
-    assert(state->key.n == 0 || state->key.n == list->n);
+    assert(run->key.n == 0 || run->key.n == list->n);
     for (int32_t i = 0, k = 0; i < list->n || k < n; at++) {
-        bool old = k == n || (i < list->n && key_of(state, i) <= key[k]);
+        bool old = k == n || (i < list->n && key_of(run, i) <= key[k]);
         items[at] = old ? list->item[i] : item[k];
-        keys[at] = old ? key_of(state, i) : key[k];
+        keys[at] = old ? key_of(run, i) : key[k];
         assert(at == 0 || keys[at - 1] < keys[at]);
         i += old;
         k += k < n && keys[at] == key[k];
     }
-    free(state->worklist.item);
-    free(state->key.item);
-    state->worklist = (struct par_ids){items, at, most};
-    state->key = (struct par_keys){keys, at, most};
+    free(run->worklist.item);
+    free(run->key.item);
+    run->worklist = (struct par_ids){items, at, most};
+    run->key = (struct par_keys){keys, at, most};
     return true;
 }
 
 static bool gather_lists(const struct par_phase_run *p)
 {
-    struct par_run *state = p->state;
+    struct par_run *run = p->run;
     bool memory = true;
     for (const struct par_task *task = p->tasks; memory && task < p->tasks + p->n_tasks; task++)
-        memory = (!state->share || par_ids_add_all(&state->share->changed, task->changed.item, task->changed.n)) &&
-                 par_ids_add_all(&state->remaining, task->given_up.item, task->given_up.n);
+        memory = (!p->share || par_ids_add_all(&p->share->changed, task->changed.item, task->changed.n)) &&
+                 par_ids_add_all(&run->remain.listed, task->given_up.item, task->given_up.n);
     return memory;
 }
 
@@ -121,7 +155,7 @@ static bool take_back(struct par_phase_run *p)
 {
     struct leftovers left = {.p = p};
     bool memory = gather_left(&left) &&
-                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_lists(p);
+                  par_merge_worklist(p->run, left.item, left.key, left.before[p->n_tasks]) && gather_lists(p);
     free(left.seen);
     free(left.before);
     free(left.item);
@@ -136,12 +170,12 @@ bool par_has_failed(const struct par_task *task)
 
 static bool report_block(const struct par_phase_run *p, const struct par_task *task)
 {
-    struct par_report *report = p->state->report;
+    struct par_report *report = p->run->report;
     if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
         return false;
     report->blocks[report->n_blocks++] = (struct par_block_report){
-        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist, par_inserted_by(task),
-        task->report.fenced, task->seconds};
+        p->run->n_schedules - 1, p->run->place.round, p->phase, task->block, task->hooks.n_worklist,
+        par_inserted_by(task), task->report.fenced, task->seconds};
     return true;
 }
 
@@ -155,9 +189,9 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
-        par_add_up(&p->state->report->total, &task->report);
+        par_add_up(&p->run->report->total, &task->report);
         memory = memory && (task->progress == PAR_READY || report_block(p, task));
-        par_room_return(&task->view.room, &p->state->spare);
+        par_room_return(&task->view.room, &p->run->spare);
         free(task->left.item);
         free(task->given_up.item);
         free(task->changed.item);

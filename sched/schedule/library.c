@@ -1,9 +1,11 @@
-/* The functions of ptriangle/par.h. */
+/* The schedule as the library's way to refine: the functions of ptriangle/par.h, and what those of ptriangle/mpi.h have
+ * behind them. */
 #include "ptriangle/par.h"
 
-#include "sched/schedule/library.h"
+#include "sched/ranks/carrier.h"
 #include "sched/schedule/schedule.h"
 #include "sched/schedule/threads.h"
+#include "triangle/api/opaque_mesh.h"
 
 /* Passes on what the schedule tells. */
 static void follow(void *user, const struct par_place *place)
@@ -12,10 +14,11 @@ static void follow(void *user, const struct par_place *place)
     hooks->told(hooks->told_user, place->triangles);
 }
 
-enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *mesh,
-                              const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
-                              const struct tri_settings *settings, struct tri_refine_report *report,
-                              struct tri_error *error)
+/* A refine of struct tri_api_way: par_refine with the struct par_options that way->user points to, and with threads,
+ * size test, figure and column of regions as settings and way say. */
+static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              const struct tri_refine_hooks *hooks, const struct tri_settings *settings,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
     struct par_options how = *(const struct par_options *)way->user;
     struct par_report schedule;
@@ -41,7 +44,7 @@ struct call {
     struct tri_api_way way;
 };
 
-static enum tri_status begin(struct call *call, const struct tri_settings *settings, struct tri_error *error)
+static enum tri_status begin_call(struct call *call, const struct tri_settings *settings, struct tri_error *error)
 {
     enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
     if (status)
@@ -49,7 +52,7 @@ static enum tri_status begin(struct call *call, const struct tri_settings *setti
     call->threads = par_threads(call->settings.threads, false);
     call->executor = par_executor(&call->threads);
     call->how = par_defaults();
-    call->way = (struct tri_api_way){.refine = par_refine_as, .executor = &call->executor, .user = &call->how};
+    call->way = (struct tri_api_way){.refine = refine, .executor = &call->executor, .user = &call->how};
     return TRI_OK;
 }
 
@@ -57,7 +60,7 @@ enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *fi
                              const struct tri_settings *settings, struct tri_error *error)
 {
     struct call call;
-    enum tri_status status = begin(&call, settings, error);
+    enum tri_status status = begin_call(&call, settings, error);
     *mesh = NULL;
     if (status)
         return status;
@@ -68,7 +71,7 @@ enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *fi
 enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
 {
     struct call call;
-    enum tri_status status = begin(&call, settings, error);
+    enum tri_status status = begin_call(&call, settings, error);
     if (status)
         return status;
     call.how.by_block = call.settings.numbered_by_block;
@@ -81,11 +84,27 @@ enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tr
     struct call call;
     if (memory < 0 || !sink || !sink->take)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes, and a bound on memory >= 0");
-    enum tri_status status = begin(&call, settings, error);
+    enum tri_status status = begin_call(&call, settings, error);
     if (status)
         return status;
     call.how.memory = memory;
     call.how.scratch = scratch;
     call.how.sink = sink;
     return tri_api_mesh_stream(figure, &call.settings, &call.way, error);
+}
+
+enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_figure *figure,
+                                const struct tri_settings *settings, const struct tri_sink *sink,
+                                struct tri_error *error)
+{
+    struct call call;
+    enum tri_status status = begin_call(&call, settings, error);
+    if (!status && !(sink && sink->take))
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes");
+    if (!status) {
+        call.how.carrier = carrier;
+        call.how.sink = sink;
+        status = tri_api_mesh_stream(figure, &call.settings, &call.way, error);
+    }
+    return par_agree(carrier, status, error);
 }

@@ -15,6 +15,7 @@
 #ifndef SCHED_SCHEDULE_PARTITION_H
 #define SCHED_SCHEDULE_PARTITION_H
 
+#include "sched/tunables.h"
 #include "triangle/mesh/fence.h"
 #include "triangle/refine/refine.h"
 
@@ -27,6 +28,13 @@ struct par_partition {
     struct tri_point low, high; /* bounding box of the mesh */
     double estimate; /* of final triangles in all */
 };
+
+/* Final triangles of a cell, where a mesh ends with about so many. */
+static inline double par_triangles_in_cell(double triangles)
+{
+    const double share = triangles / PAR_CELLS_WANTED;
+    return share < PAR_SMALLEST_CELL ? PAR_SMALLEST_CELL : share > PAR_LARGEST_CELL ? PAR_LARGEST_CELL : share;
+}
 
 /* Cuts the plane into cells of about cell_triangles. estimate: what tri_estimate says. TRI_NO_MEMORY. O(triangles +
  * samples log samples). */

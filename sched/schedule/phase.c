@@ -41,11 +41,11 @@ static void ask_for(void *user, const tri_vertex_id edge[2])
 /* The block that has its turn now and owns triangle t. */
 static int32_t owner_now(const struct par_phase_run *p, struct par_locator *locator, tri_triangle_id t)
 {
-    int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
+    int32_t block = par_locate_owner(locator, p->partition, p->phase, p->run->mesh, t);
     if (block != TRI_NONE && p->is_done[block])
         return TRI_NONE;
-    if (p->state->share)
-        return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
+    if (p->share)
+        return block == TRI_NONE || p->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
 }
@@ -53,13 +53,13 @@ static int32_t owner_now(const struct par_phase_run *p, struct par_locator *loca
 static void assign_share(void *context, size_t share)
 {
     const struct par_phase_run *p = context;
-    const struct tri_mesh *mesh = p->state->mesh;
-    const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
+    const struct tri_mesh *mesh = p->run->mesh;
+    const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->run->worklist.n);
     struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++) {
-        tri_triangle_id t = p->state->worklist.item[i];
+        tri_triangle_id t = p->run->worklist.item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, &locator, t) : GONE;
-        p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
+        p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, &p->run->bounds, t) : 0;
     }
 }
 
@@ -102,7 +102,7 @@ static void deal_share(void *context, size_t share)
 {
     const struct dealing *d = context;
     const struct par_phase_run *p = d->p;
-    const struct par_keys *key = &p->state->key;
+    const struct par_keys *key = &p->run->key;
     int32_t *at = par_deal_at(&d->deal, share);
     const struct tri_range range = par_deal_share(&d->deal, share);
     for (int32_t i = range.first; i < range.last; i++) {
@@ -110,10 +110,10 @@ static void deal_share(void *context, size_t share)
             continue;
         int32_t to = at[p->block_of[i] + 1]++;
         if (p->block_of[i] != TRI_NONE) {
-            p->worklist[to - d->deal.start[1]] = p->state->worklist.item[i];
+            p->worklist[to - d->deal.start[1]] = p->run->worklist.item[i];
             continue;
         }
-        d->kept[to] = p->state->worklist.item[i];
+        d->kept[to] = p->run->worklist.item[i];
         if (key->n > 0)
             d->key[to] = key->item[i];
     }
@@ -133,29 +133,29 @@ static bool make_tasks(const struct dealing *d)
             work += work_at(d, share)[bin];
         if (start[bin + 1] > start[bin])
             p->tasks[p->n_tasks++] = (struct par_task){
-                .block = bin - 1, .worklist = p->worklist + start[bin] - start[1],
-                .n_worklist = start[bin + 1] - start[bin], .expected = expect(p->phase, work)};
+                .block = bin - 1, .expected = expect(p->phase, work),
+                .hooks = {.worklist = p->worklist + start[bin] - start[1], .n_worklist = start[bin + 1] - start[bin]}};
     }
     return p->tasks;
 }
 
 static bool deal_all(struct dealing *d)
 {
-    struct par_run *state = d->p->state;
-    tri_execute(&state->executor, d->deal.shares, count_share, d);
+    struct par_run *run = d->p->run;
+    tri_execute(&run->asked.executor, d->deal.shares, count_share, d);
     par_deal_add_up(&d->deal);
     const int32_t n_kept = d->deal.start[1];
     d->kept = malloc(((size_t)n_kept + 1) * sizeof *d->kept);
-    d->key = state->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
-    if (!d->kept || (state->key.n > 0 && !d->key))
+    d->key = run->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
+    if (!d->kept || (run->key.n > 0 && !d->key))
         return false;
-    tri_execute(&state->executor, d->deal.shares, deal_share, d);
+    tri_execute(&run->asked.executor, d->deal.shares, deal_share, d);
     if (!make_tasks(d))
         return false;
-    d->p->given = state->worklist;
-    d->p->given_key = state->key;
-    state->worklist = (struct par_ids){d->kept, n_kept, n_kept};
-    state->key = (struct par_keys){d->key, d->key ? n_kept : 0, d->key ? n_kept : 0};
+    d->p->given = run->worklist;
+    d->p->given_key = run->key;
+    run->worklist = (struct par_ids){d->kept, n_kept, n_kept};
+    run->key = (struct par_keys){d->key, d->key ? n_kept : 0, d->key ? n_kept : 0};
     d->kept = NULL;
     d->key = NULL;
     return true;
@@ -164,7 +164,7 @@ static bool deal_all(struct dealing *d)
 static bool deal_worklists(struct par_phase_run *p)
 {
     struct dealing d = {.p = p};
-    bool memory = par_deal_reserve(&d.deal, p->state->worklist.n, par_blocks(p->partition) + 1);
+    bool memory = par_deal_reserve(&d.deal, p->run->worklist.n, par_blocks(p->partition) + 1);
     d.work = calloc(d.deal.shares * (size_t)d.deal.n_tiles, sizeof *d.work);
     memory = memory && d.work && deal_all(&d);
     par_deal_free(&d.deal);
@@ -176,17 +176,17 @@ static bool deal_worklists(struct par_phase_run *p)
 
 static void set_up(struct par_phase_run *p, struct par_task *task)
 {
-    const struct par_run *state = p->state;
+    const struct par_run *run = p->run;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
     task->part = (struct tri_part){note_changes, ask_for, task};
     task->hooks = (struct tri_refine_hooks){
         .fence = &task->fence,
-        .part = state->share && state->share->is_border[task->block] ? &task->part : NULL,
-        .worklist = task->worklist,
-        .n_worklist = task->n_worklist,
+        .part = p->share && p->share->is_border[task->block] ? &task->part : NULL,
+        .worklist = task->hooks.worklist,
+        .n_worklist = task->hooks.n_worklist,
         .deferred = leave_triangle,
         .deferred_user = task,
-        .given_up = state->counts_remaining ? note_given_up : NULL,
+        .given_up = run->remain.is_on ? note_given_up : NULL,
         .given_up_user = task,
         .more_room = par_view_more_room,
         .more_room_user = &task->view,
@@ -204,12 +204,12 @@ static int32_t more_for(const struct par_task *task, const struct tri_quality *q
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
-static enum tri_status reserve_room(struct par_phase_run *p, struct tri_error *error)
+static void reserve_room(struct par_phase_run *p)
 {
     p->expected = 0;
     for (int32_t i = 0; i < p->n_tasks; i++)
         p->expected += p->tasks[i].expected;
-    return par_room_reserve(&p->state->spare, p->state->mesh, p->expected, error);
+    par_room_reserve(&p->run->spare, p->run->mesh, p->expected);
 }
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
@@ -227,11 +227,11 @@ static int32_t refill(struct par_task *task, const struct tri_quality *quality)
 
 static enum tri_status extend_room(struct par_phase_run *p, struct par_task *task, struct tri_error *error)
 {
-    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, p->state->quality);
-    if (p->state->options->tight_room > 0)
-        more = p->state->options->tight_room;
-    p->state->report->pauses += task->progress == PAR_FULL;
-    return par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
+    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, &p->run->bounds);
+    if (p->run->asked.options->tight_room > 0)
+        more = p->run->asked.options->tight_room;
+    p->run->report->pauses += task->progress == PAR_FULL;
+    return par_room_extend(&task->view.room, &p->run->spare, p->run->mesh, more, error);
 }
 
 /* Room for the tasks that wait for it, in canonical order. */
@@ -260,7 +260,7 @@ static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *err
     }
     enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
     if (!status && asked.n > 0)
-        status = p->state->share->more(p->state->share->user, &asked, error);
+        status = p->share->more(p->share->user, &asked, error);
     free(asked.item);
     return status;
 }
@@ -272,7 +272,7 @@ static bool watch_owners(struct par_phase_run *p)
 #ifdef NDEBUG
     (void)p;
 #else
-    size_t n = (size_t)p->state->mesh->triangle_capacity + 1;
+    size_t n = (size_t)p->run->mesh->triangle_capacity + 1;
     if (!tri_resize(&p->mark, n, sizeof *p->mark))
         return false;
     for (size_t i = p->n_marks; i < n; i++)
@@ -288,11 +288,11 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     assert(task->progress == PAR_READY);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->hooks.owners = p->mark ? &task->owners : NULL;
-    par_view_begin(&task->view, p->state->mesh);
+    par_view_begin(&task->view, p->run->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, p->state->quality, &task->hooks,
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &p->run->bounds, &task->hooks,
                                        &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
@@ -305,25 +305,27 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->seconds += tri_seconds() - began;
 }
 
-int64_t par_triangles(const struct par_run *state)
+int64_t par_triangles(const struct par_run *run)
 {
-    return state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
+    return run->gone + run->mesh->n_triangles - par_ranges_unused(&run->spare.ranges[PAR_TRIANGLES]);
 }
 
 /* Each thread has one at an address of its own. */
 static _Thread_local char here;
 
-static void tell(const struct par_run *state, int phase, double done, int64_t triangles)
+static void tell(const struct par_run *run, int phase, double done, int64_t triangles)
 {
-    const struct par_options *options = state->options;
-    const struct par_place place = {.level = state->level, .sizes = state->next < PAR_BOUNDS && state->sizes_first,
-                                    .column = state->column, .n_columns = state->n_columns, .round = state->round,
+    const struct par_options *options = run->asked.options;
+    const struct par_place place = {.level = run->place.level, .sizes = par_is_of_sizes(run->place.next),
+                                    .column = run->place.column,
+                                    .n_columns = run->place.column > 0 ? (run->cells.n_columns + 1) / 2 : 0,
+                                    .round = run->place.round,
                                     .phase = phase, .done = done, .triangles = triangles};
     if (options->progress)
         options->progress(options->progress_user, &place);
 }
 
-void par_tell(const struct par_run *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
+void par_tell(const struct par_run *run, int phase) { tell(run, phase, 0, par_triangles(run)); }
 
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
@@ -332,20 +334,20 @@ static int64_t least_made_by(const struct par_task *task) { return par_inserted_
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
-    const int64_t all = atomic_fetch_add_explicit(&p->state->reached, made, memory_order_relaxed) + made;
+    const int64_t all = atomic_fetch_add_explicit(&p->run->reached, made, memory_order_relaxed) + made;
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
-    const double before = p->state->done_share, share = (double)done / (double)p->expected;
+    const double before = p->run->share_done, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell(p->state, p->phase + 1, before + (1 - before) * share, all);
+        tell(p->run, p->phase + 1, before + (1 - before) * share, all);
 }
 
 static void run_next(void *context, size_t index)
 {
     struct par_phase_run *p = context;
     struct par_task *task = &p->tasks[p->order[index]];
-    if (task->progress != PAR_READY || tri_stop_is_asked(p->state->mesh->stop))
+    if (task->progress != PAR_READY || tri_stop_is_asked(p->run->mesh->stop))
         return;
-    if (!task->refiner && tri_stop_is_asked(p->state->halt))
+    if (!task->refiner && tri_stop_is_asked(p->halt))
         return;
     run_task(p, task);
     if (task->progress == PAR_ENDED)
@@ -357,11 +359,11 @@ static void run_next(void *context, size_t index)
 static void run_tasks(struct par_phase_run *p)
 {
     double began = tri_seconds();
-    struct par_report *report = p->state->report;
+    struct par_report *report = p->run->report;
     double shared[PAR_SHARINGS]; /* blocks are no equal shares */
     memcpy(shared, report->seconds_shared, sizeof shared);
     p->caller = &here;
-    tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
+    tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
     double seconds = tri_seconds() - began;
     report->seconds_refine += seconds;
@@ -391,13 +393,13 @@ static int by_expected(const void *left, const void *right)
 /* The largest first, so that the last to end are small; or, for tests, at random. */
 static bool order_tasks(struct par_phase_run *p)
 {
-    unsigned draw = p->state->options->shuffle;
+    unsigned draw = p->run->asked.options->shuffle;
     struct queued *queue = malloc(((size_t)p->n_tasks + 1) * sizeof *queue);
     p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
     if (queue && p->order) {
         for (int32_t i = 0; i < p->n_tasks; i++) {
             draw = draw * 1664525u + 1013904223u;
-            queue[i] = (struct queued){p->state->options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
+            queue[i] = (struct queued){p->run->asked.options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
         }
         qsort(queue, (size_t)p->n_tasks, sizeof *queue, by_expected);
         for (int32_t i = 0; i < p->n_tasks; i++)
@@ -411,9 +413,9 @@ static bool order_tasks(struct par_phase_run *p)
 /* The worklist, dealt to tasks that can begin. */
 static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *error)
 {
-    struct par_report *report = p->state->report;
+    struct par_report *report = p->run->report;
     double began = tri_seconds();
-    tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); /* many: each entry takes a while */
+    tri_execute(&p->run->asked.executor, TRI_MOST_SHARES, assign_share, p); /* many: each entry takes a while */
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
@@ -432,7 +434,7 @@ static enum tri_status give_room(struct par_phase_run *p, struct tri_error *erro
     enum tri_status status = deal_room(p, error);
     if (!status && !watch_owners(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
-    p->state->report->seconds_room += tri_seconds() - dealing;
+    p->run->report->seconds_room += tri_seconds() - dealing;
     return status;
 }
 
@@ -441,14 +443,15 @@ static enum tri_status give_room(struct par_phase_run *p, struct tri_error *erro
 static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *error)
 {
     double reserving = tri_seconds();
-    enum tri_status status = reserve_room(p, error);
-    p->state->report->seconds_room += tri_seconds() - reserving;
+    enum tri_status status;
+    reserve_room(p);
+    p->run->report->seconds_room += tri_seconds() - reserving;
     do {
-        status = status ? status : give_room(p, error);
+        status = give_room(p, error);
         if (status)
             break;
         run_tasks(p);
-        status = is_any(p, PAR_READY) && !p->state->halt ? tri_fail_stopped(error) : fetch_more(p, error);
+        status = is_any(p, PAR_READY) && !p->halt ? tri_fail_stopped(error) : fetch_more(p, error);
     } while (!status && is_any(p, PAR_FULL));
     free(p->mark);
     p->mark = NULL;
@@ -460,10 +463,10 @@ static bool note_done(struct par_phase_run *p)
     bool memory = true;
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         if (p->tasks[i].progress == PAR_ENDED) {
-            memory = par_ids_add(&p->state->done, p->tasks[i].block);
+            memory = par_ids_add(&p->run->place.done, p->tasks[i].block);
             p->is_done[p->tasks[i].block] = true;
         }
-    p->state->done_share += (1 - p->state->done_share) * (double)p->done / (double)p->expected;
+    p->run->share_done += (1 - p->run->share_done) * (double)p->done / (double)p->expected;
     return memory;
 }
 
@@ -481,10 +484,10 @@ static void put_back(struct par_phase_run *p)
         }
     list->n = n;
     key->n = key->n > 0 ? n : 0;
-    free(p->state->worklist.item);
-    free(p->state->key.item);
-    p->state->worklist = *list;
-    p->state->key = *key;
+    free(p->run->worklist.item);
+    free(p->run->key.item);
+    p->run->worklist = *list;
+    p->run->key = *key;
     *list = (struct par_ids){0};
     *key = (struct par_keys){0};
 }
@@ -498,40 +501,40 @@ static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *erro
     if (!order_tasks(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
     status = status ? status : run_to_end(p, error);
-    if (status == TRI_STOPPED && p->state->halt) {
+    if (status == TRI_STOPPED && p->halt) {
         if (!note_done(p))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks that are done");
         put_back(p);
     }
     double merging = tri_seconds();
     enum tri_status collected = par_collect(p, error);
-    p->state->report->seconds_merge += tri_seconds() - merging;
+    p->run->report->seconds_merge += tri_seconds() - merging;
     return collected ? collected : status; /* a failure is told before a stop */
 }
 
-enum tri_status par_phase(struct par_run *state, const struct par_partition *partition, int phase, int32_t only,
-                          struct tri_error *error)
+enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, struct tri_error *error)
 {
-    size_t n = (size_t)state->worklist.n + 1;
-    struct par_phase_run p = {.state = state, .partition = partition, .phase = phase, .only = only};
-    atomic_store(&state->reached, par_triangles(state));
-    assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
+    size_t n = (size_t)run->worklist.n + 1;
+    struct par_phase_run p = {.run = run, .partition = turn->partition, .phase = run->place.phase, .only = turn->only,
+                              .share = turn->share, .halt = turn->halt};
+    atomic_store(&run->reached, par_triangles(run));
+    assert(p.phase >= 0 && p.phase < PAR_PHASES && (p.only == TRI_NONE || p.only % 2 == 1 - p.phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);
-    p.is_done = calloc((size_t)par_blocks(partition), sizeof *p.is_done);
-    for (int32_t i = 0; p.is_done && i < state->done.n; i++)
-        p.is_done[state->done.item[i]] = true;
+    p.is_done = calloc((size_t)par_blocks(p.partition), sizeof *p.is_done);
+    for (int32_t i = 0; p.is_done && i < run->place.done.n; i++)
+        p.is_done[run->place.done.item[i]] = true;
     enum tri_status status = TRI_OK;
-    if (tri_stop_is_asked(state->mesh->stop))
+    if (tri_stop_is_asked(run->mesh->stop))
         status = tri_fail_stopped(error);
     else if (!p.block_of || !p.work || !p.worklist || !p.is_done)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
     if (status != TRI_STOPPED) {
-        state->done.n = 0;
-        state->done_share = 0;
+        run->place.done.n = 0;
+        run->share_done = 0;
     }
     free(p.block_of);
     free(p.work);

@@ -1,9 +1,9 @@
 /* One phase: its blocks, refined at once on views of the mesh. What the phases of a run hand on is here, too:
  *
- *   par_keys    who left each triangle of the worklist, which decides on the order
  *   par_share   how several ranks divide the blocks of a phase
- *   par_run     the run: the mesh, the worklist, the place that the run has reached, what has been counted
+ *   par_run     the run: what is asked, the place that it has reached (next.h), the work
  *   par_phase   runs a phase, of all blocks or of one column
+ *   par_steps   rounds of phases, and where they differ
  *
  * THEOREM (triangle/refine/refine.h, serialisation; docs/theory.md, cells and phases). The fences of a phase are
  * disjoint, so its result is that of running its blocks one after the other, in any order. Each block does its work in
@@ -20,13 +20,14 @@
 #include "sched/schedule/worklist.h"
 
 struct par_park;
+struct par_ranks;
 struct par_run;
 
 /* The number of triangles, with those that have been handed out. */
-int64_t par_triangles(const struct par_run *state);
+int64_t par_triangles(const struct par_run *run);
 
 /* Tells of the phase that begins. */
-void par_tell(const struct par_run *state, int phase);
+void par_tell(const struct par_run *run, int phase);
 
 /* Every triangle that gates and fences have kept back has had its turn: the report's total forgets them. */
 void par_forget_deferred(struct par_report *report);
@@ -34,15 +35,6 @@ void par_forget_deferred(struct par_report *report);
 /* Adds the points that a call inserted. par_add_up also adds what it left undone. */
 void par_add_points(struct tri_refine_report *sum, const struct tri_refine_report *add);
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
-
-/* Who left each triangle of a worklist, and when: round + 1 (8 bits), place of the block in the order of all, by
- * column, phase and row, + 1 (24 bits), how many triangles it had left before (32 bits). A triangle that no block has
- * had has the key PAR_NO_ROUND, its tile (block of the first phase) and its place in the tile's list
- * (sched/schedule/by_tile.h); or only its place in the list of all. So keys do not depend on who else was at work. */
-struct par_keys {
-    uint64_t *item;
-    int32_t n, capacity;
-};
 
 /* How ranks share the blocks of a phase (sched/ranks/ranks.h). */
 struct par_share {
@@ -54,63 +46,66 @@ struct par_share {
     void *user;
 };
 
-/* How near a mesh is to its end. */
-enum par_end {
-    PAR_UNFINISHED, /* it is being refined, or is as blocks have left it */
-    PAR_NUMBERED,   /* its vertices and triangles have the numbers by which they are handed out */
-    PAR_DELIVERED   /* it has been handed out */
-};
-
-/* What the phases of a schedule hand on. */
-struct par_run {
-    struct tri_mesh *mesh;
-    const struct tri_quality *quality;
+/* What is asked; nothing changes it while the run lasts. */
+struct par_asked {
+    const struct tri_quality *quality; /* by the caller */
     const struct par_options *options;
-    struct tri_executor executor;
-    struct par_ids worklist; /* triangles that may be bad, in canonical order; some may have gone since */
-    struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
-    struct par_ids remaining; /* where bad triangles are counted as they leave (sched/tiles/remain.h) */
-    bool counts_remaining;   /* such triangles are counted now */
-    int64_t remained[TRI_EXCUSES + 1]; /* bad triangles that have left (tri_count_bad_among) */
-    struct par_room spare;   /* unused ranges of the arrays */
-    double radius;           /* largest circumradius in the worklist when it was last filled */
-    struct par_report *report;
-    int32_t n_schedules;     /* begun so far; the last is the one that works */
-    enum par_next next;
-    int level;               /* of the schedule or the call at work */
-    int round, phase;        /* of the schedule; the phase from 0 */
-    int32_t step;            /* of the phase, on ranks */
-    int32_t column, n_columns; /* of a sweep, odd ones alone, from 1; 0: it is none */
-    struct par_ids done;     /* blocks of phase `phase` that have ended, where it has been halted */
-    double done_share;       /* of that phase, to the order */
-    _Atomic(int64_t) reached; /* triangles, while a phase runs, as far as blocks have ended */
-    const struct tri_stop *halt; /* asked by the blocks of a phase before they begin; NULL: nobody */
-    struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
-    int32_t n_kept;          /* vertices that there were before refinement */
-    bool sizes_first;        /* a schedule for sizes comes before the one for all bounds (tri_sizes_come_first) */
-    const struct tri_quality *then; /* what is asked for behind this schedule, on its cells, before the mesh is
-                                numbered; NULL: nothing, or something else */
-    bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */
-    struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */
-    enum par_end end;
-    int64_t gone;            /* triangles that have been handed out, and are no more */
-    bool stays;              /* the mesh is not swept, or no longer swept, though it does not fit in memory */
-    struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
+    struct tri_executor executor;      /* on as many threads as the options say */
+    int32_t n_kept;                    /* vertices that there were before refinement */
 };
 
-/* Those of the caller, for a sequential call. */
-static inline struct tri_refine_hooks par_hooks(const struct par_run *state)
+/* Bad triangles counted as they leave (sched/tiles/remain.h). */
+struct par_remain {
+    bool is_on;             /* false: nobody counts, and the others are empty */
+    struct par_ids listed;  /* given up so far, and not counted yet */
+    int64_t counted[TRI_EXCUSES + 1]; /* as tri_count_bad_among has it */
+};
+
+/* A run: what is asked, its place, and the work. */
+struct par_run {
+    const struct par_asked asked;
+    struct par_position place;
+    struct tri_mesh *mesh;      /* the caller's */
+    struct par_report *report;  /* the caller's */
+    struct tri_quality bounds;  /* that the schedule at work refines to */
+    struct par_ids worklist;    /* triangles that may be bad, in canonical order; some may have gone since */
+    struct par_keys key;        /* [worklist.n] ascending; n == 0: no block has had any */
+    struct par_room spare;      /* unused ranges of the mesh's arrays */
+    struct par_partition cells; /* of the last schedule of the whole mesh, whose tiles number it; x NULL: none yet */
+    struct par_remain remain;
+    int64_t gone;               /* triangles that have been handed out, and are no more */
+    int32_t n_schedules;        /* begun so far; the last is the one that works */
+    double radius;              /* largest circumradius in the worklist when it was last filled, in the mesh's units */
+    double share_done;          /* of the phase at work, by blocks that were done when it was halted, to the order */
+    _Atomic(int64_t) reached;   /* triangles, while a phase runs, as far as blocks have ended */
+    struct par_park *park;      /* bounds the memory of the mesh; NULL: it is not bounded */
+    struct par_ranks *ranks;    /* each rank has its part of the mesh (sched/ranks/ranks.h); NULL: all of it is here */
+};
+
+/* Goes on to another step, see next.h. */
+static inline void par_go(struct par_run *run, enum par_next to)
 {
-    return state->options->hooks ? *state->options->hooks : (struct tri_refine_hooks){0};
+    const struct par_options *options = run->asked.options;
+    if (options->went)
+        options->went(options->went_user, run->place.next, to);
+    run->place.next = to;
 }
 
-enum { PAR_NO_ROUND = -1 };
+/* Those of the caller, for a sequential call. */
+static inline struct tri_refine_hooks par_hooks(const struct par_run *run)
+{
+    return run->asked.options->hooks ? *run->asked.options->hooks : (struct tri_refine_hooks){0};
+}
 
-/* The key of the first triangle that a block leaves in a phase of a round. */
-uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block);
+/* Which blocks of a phase have their turn, and what they heed. */
+struct par_turn {
+    const struct par_partition *partition;
+    int32_t only;                /* blocks of this column; TRI_NONE: of all columns */
+    struct par_share *share;     /* NULL: all blocks are done here, with all that they may look at */
+    const struct tri_stop *halt; /* asked by blocks before they begin; NULL: nobody */
+};
 
-/* Refines the blocks of one phase; takes from the worklist what they can take and puts back what they leave. only: the
- * column whose blocks have their turn, or TRI_NONE: all of them.
+/* Refines blocks of the phase at place.phase; takes from the worklist what they can take and puts back what they leave.
  *
  * THEOREM (order of columns). A call with TRI_NONE is one for each column of this phase, in any order; and the phases
  * of odd columns may run column by column, an even one between them once both its neighbours are through. The mesh and
@@ -125,11 +120,40 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
  * THEOREM (a phase that is halted). It makes the same mesh, and leaves the same, up to ids. For it is two phases, of
  * some of the blocks and of the others; and what a block leaves no other of its phase takes, since two corners lie in
  * its own fence. */
-enum tri_status par_phase(struct par_run *state, const struct par_partition *partition, int phase, int32_t only,
-                          struct tri_error *error);
+enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, struct tri_error *error);
+
+/* The two steps of a round that differ: in memory (schedule.c), of a mesh that is swept (sched/tiles/sweep.c), where a
+ * round is a column, and on ranks (sched/ranks/ranks.c). */
+struct par_steps {
+    /* The phase at place.phase, with the states that are kept on the way. Then the place is that of the next phase. */
+    enum tri_status (*run_phase)(void *self, struct tri_error *error);
+    /* After the last phase. *again: another round follows, and is the place. */
+    enum tri_status (*end_round)(void *self, bool *again, struct tri_error *error);
+};
+
+/* Rounds of phases, from the place on. */
+enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *steps, void *self, struct tri_error *error);
+
+/* A schedule at work, which is what steps in memory and on ranks have as `self`. */
+struct par_schedule {
+    struct par_run *run;
+    struct par_partition partition; /* of the round at work */
+    bool is_whole;                  /* the mesh is the one that is asked for, not what comes before its schedule */
+    int64_t left;                   /* entries of the worklist after the last round, of all ranks */
+};
+
+/* The place is that of the next round, on blocks four times as large; false: nothing is left, or they cannot be. */
+bool par_next_round(struct par_schedule *schedule);
+
+/* One sequential call of the same loop. more: brings the triangles for which it waits (TRI_NO_ROOM); NULL: all are
+ * here. */
+enum tri_status par_refine_rest(struct par_run *run, const struct tri_refine_hooks *hooks,
+                                enum tri_status (*more)(void *user, struct tri_error *error), void *user,
+                                struct tri_error *error);
+
 
 /* Adds triangles to the worklist, by their keys, which ascend; whose key is there already is there. False: no memory,
  * and the worklist is as before. */
-bool par_merge_worklist(struct par_run *state, const int32_t *item, const uint64_t *key, int32_t n);
+bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t *key, int32_t n);
 
 #endif

@@ -18,13 +18,11 @@ enum par_progress {
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct par_task {
     int32_t block;
-    tri_triangle_id *worklist; /* part of the phase's list */
-    int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence;
     struct par_view view;
     struct tri_owners owners;
-    struct tri_refine_hooks hooks;
+    struct tri_refine_hooks hooks; /* its worklist is part of the phase's */
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     struct par_ids left;  /* what gate and fence left */
@@ -40,10 +38,12 @@ struct par_task {
 };
 
 struct par_phase_run {
-    struct par_run *state;
+    struct par_run *run;
     const struct par_partition *partition;
     int phase;
     int32_t only;       /* column, or TRI_NONE */
+    struct par_share *share;     /* as struct par_turn has it */
+    const struct tri_stop *halt; /* likewise */
     bool *is_done;      /* [blocks] in an earlier call */
     struct par_ids given; /* the worklist as it was, */
     struct par_keys given_key;

@@ -7,7 +7,35 @@
 
 #include "sched/tunables.h"
 #include "triangle/base/system.h"
+#include "triangle/geometry/shape.h"
 #include "triangle/size/estimate.h"
+
+static double sine(double degrees)
+{
+    double cosine = tri_cos_degrees(degrees);
+    return sqrt(1 - cosine * cosine);
+}
+
+double par_rho(double min_angle)
+{
+    assert(min_angle > 0 && min_angle <= 60);
+    return 1 / (2 * sine(min_angle));
+}
+
+double par_radius_lemma7(double max_area, double rho) { return 2 * rho * sqrt(rho) * sqrt(max_area); }
+
+double par_radius_tight(double max_area, double min_angle)
+{
+    double s = sine(min_angle);
+    assert(min_angle > 0 && min_angle < 90);
+    return sqrt(max_area / (2 * s * s * sine(2 * min_angle)));
+}
+
+double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    double area2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return tri_distance2(a, b) * tri_distance2(b, c) * tri_distance2(c, a) / (4 * area2 * area2);
+}
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. */
 struct coarse_test {
@@ -29,12 +57,12 @@ static bool is_too_long(void *user, const struct tri_point *xy, const tri_vertex
 }
 
 /* Those of the worklist that are too long, in their order. False: no memory. */
-static bool list_long_ones(const struct par_run *state, struct coarse_test *test, struct par_ids *found)
+static bool list_long_ones(const struct par_run *run, struct coarse_test *test, struct par_ids *found)
 {
-    const struct par_ids *worklist = &state->worklist;
+    const struct par_ids *worklist = &run->worklist;
     *found = (struct par_ids){malloc(((size_t)worklist->n + 1) * sizeof *found->item), 0, worklist->n};
     for (int32_t i = 0; found->item && i < worklist->n; i++)
-        if (is_too_long(test, state->mesh->xy, state->mesh->tri[worklist->item[i]].v))
+        if (is_too_long(test, run->mesh->xy, run->mesh->tri[worklist->item[i]].v))
             found->item[found->n++] = worklist->item[i];
     return found->item;
 }
@@ -60,22 +88,22 @@ struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double c
     return coarse;
 }
 
-bool par_areas_decide(const struct par_run *state, const struct tri_quality *quality, double estimate,
+bool par_areas_decide(const struct par_run *run, const struct tri_quality *quality, double estimate,
                       double cell)
 {
     struct tri_quality coarse = par_coarse_bounds(quality, cell);
     double sure, most = estimate * fmin(4 * PAR_COARSE_PER_CELL / cell, 0.25);
-    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
+    return tri_has_sizes(quality) && tri_estimate(run->mesh, &coarse, &run->asked.executor, &sure) < most;
 }
 
-enum tri_status par_fill_worklist(struct par_run *state, const struct tri_quality *quality, bool known,
+enum tri_status par_fill_worklist(struct par_run *run, const struct tri_quality *quality, bool known,
                                   struct tri_error *error)
 {
-    state->key.n = 0;
-    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
+    run->key.n = 0;
+    return par_worklist_fill(&run->worklist, run->mesh, quality, known, &run->asked.executor, &run->radius, error);
 }
 
-enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_quality *quality,
+enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quality *quality,
                                      const struct par_partition *partition, struct tri_error *error)
 {
     struct tri_quality coarse = *quality;
@@ -85,26 +113,26 @@ enum tri_status par_prerefine_graded(struct par_run *state, const struct tri_qua
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
     double began = tri_seconds();
-    enum tri_status status = par_fill_worklist(state, quality, false, error);
+    enum tri_status status = par_fill_worklist(run, quality, false, error);
     if (status)
         return status;
-    if (!list_long_ones(state, &test, &long_ones))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
-    assert(long_ones.n <= state->worklist.n);
-    struct tri_refine_hooks hooks = par_hooks(state);
+    if (!list_long_ones(run, &test, &long_ones))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)run->worklist.n);
+    assert(long_ones.n <= run->worklist.n);
+    struct tri_refine_hooks hooks = par_hooks(run);
     hooks.urgent = is_too_long;
     hooks.urgent_user = &test;
     hooks.worklist = long_ones.item;
     hooks.n_worklist = long_ones.n;
     double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
-        status = tri_refine_with(state->mesh, &coarse, &hooks, &report, error);
-        par_add_points(&state->report->total, &report);
+        status = tri_refine_with(run->mesh, &coarse, &hooks, &report, error);
+        par_add_points(&run->report->total, &report);
         refined = tri_seconds();
-        status = status ? status : par_fill_worklist(state, quality, true, error);
+        status = status ? status : par_fill_worklist(run, quality, true, error);
     }
     free(long_ones.item);
-    state->report->seconds_prerefine += refined - found;
-    state->report->seconds_find += tri_seconds() - refined + found - began;
+    run->report->seconds_prerefine += refined - found;
+    run->report->seconds_find += tri_seconds() - refined + found - began;
     return status;
 }

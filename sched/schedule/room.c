@@ -194,19 +194,17 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
     return status;
 }
 
-enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles,
-                                 struct tri_error *error)
+void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles)
 {
     enum tri_status status = TRI_OK;
     if (shared->bound || shared->storage)
-        return TRI_OK;
+        return;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
         int64_t need = wanted_of(kind, triangles, PAR_LEAST_ON_SEGMENTS);
         need -= par_ranges_unused(&spare->ranges[kind]);
         if (need > 0)
-            status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, error);
+            status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, NULL);
     }
-    return status;
 }
 
 void par_room_return(struct par_room *room, struct par_room *spare)

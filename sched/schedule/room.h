@@ -61,11 +61,11 @@ int32_t par_room_left(const struct par_room *room, enum par_kind kind);
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                 int32_t triangles, struct tri_error *error);
 
-/* Sees to it that the shared arrays have about the capacity for so many more triangles at once, `spare` used up: what
- * grows step by step is copied again and again. Does nothing where memory is bounded or arrays are elsewhere. As
- * par_room_extend. */
-enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles,
-                                 struct tri_error *error);
+/* Gives the shared arrays about the capacity for so many more triangles at once, `spare` used up: what grows step by
+ * step is copied again and again. Does nothing where memory is bounded or arrays are elsewhere. The number is a guess: if
+ * there is not so much memory, the arrays stay as they are, and par_room_extend tells whether blocks get what they
+ * need. */
+void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles);
 
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);

@@ -3,7 +3,7 @@
  * The mesh that comes out depends on the mesh and the bounds that go in, never on the number of threads, the machine or
  * the order in which blocks happen to be done.
  *
- * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/schedule/theory.h); segments, grading and
+ * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/schedule/prerefine.h); segments, grading and
  * ownership: see triangle/refine/refine.h and sched/schedule/partition.h. */
 #ifndef SCHED_SCHEDULE_SCHEDULE_H
 #define SCHED_SCHEDULE_SCHEDULE_H
@@ -67,6 +67,9 @@ struct par_options {
                                 of one process. What is no schedule, or has one call behind it, each rank does as a
                                 whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
+    void (*went)(void *user, int from, int to); /* for tests: told of each step from one enum par_next to another; NULL:
+                                nobody */
+    void *went_user;
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     void (*progress)(void *user, const struct par_place *place); /* told by the calling thread */
     void *progress_user;

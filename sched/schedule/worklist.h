@@ -1,7 +1,8 @@
-/* Lists of ids, and one of them: triangles that may be bad, which a schedule works off. */
+/* Lists of ids, and one of them: triangles that may be bad, which a schedule works off, with the keys that order it. */
 #ifndef SCHED_SCHEDULE_WORKLIST_H
 #define SCHED_SCHEDULE_WORKLIST_H
 
+#include "sched/schedule/partition.h"
 #include "triangle/base/executor.h"
 #include "triangle/refine/refine.h"
 
@@ -52,5 +53,37 @@ static inline bool par_is_in(const struct par_triangle_set *set, tri_triangle_id
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
                                   const struct tri_quality *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error);
+
+/* Who left each triangle of a worklist, and when: round + 1 (8 bits), place of the block in the order of all, by
+ * column, phase and row, + 1 (24 bits), how many triangles it had left before (32 bits). A triangle that no block has
+ * had has the key PAR_NO_ROUND, its tile (block of the first phase) and its place in the tile's list
+ * (par_order_by_tile); or only its place in the list of all. So keys do not depend on who else was at work. */
+struct par_keys {
+    uint64_t *item;
+    int32_t n, capacity;
+};
+
+enum { PAR_NO_ROUND = -1 };
+
+/* The key of the first triangle that a block leaves in a phase of a round. */
+uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block);
+
+/* Orders a worklist, whose triangles are listed once each, tile by tile, and within each along a Hilbert curve through
+ * the triangles' centres; gives each its key. A triangle is of the tile that holds its home: the corner behind the
+ * obtuse one, else the first. Triangles of no tile (block of the first phase) from first to end - 1 leave the list.
+ * False: no memory, and the worklist is as before. O(n).
+ *
+ * THEOREM. The order of the triangles, and their keys, depend on the mesh but for its ids: home and centre are those of
+ * the corners as the triangle is turned; of triangles with equal centres, that of the lower corners comes first, and
+ * two different ones do not have the same first two corners. So a rank that has all triangles with a corner in some
+ * tiles (sched/ranks/ranks.h) gives those of these tiles the keys that they have in one process. And it has found them:
+ * what is bad about a triangle is in its corners, or in a subsegment that it encroaches; that lies opposite its obtuse
+ * corner, so that it ends at the home, and is known here. */
+bool par_order_by_tile(struct par_ids *worklist, struct par_keys *key, const struct tri_mesh *mesh,
+                       const struct par_partition *tiles, int32_t first, int32_t end,
+                       const struct tri_executor *executor);
+
+/* Bytes that the sort takes beside the worklist. */
+static inline size_t par_order_bytes(const struct par_ids *worklist) { return 48 * (size_t)worklist->n; }
 
 #endif

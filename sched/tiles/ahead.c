@@ -26,18 +26,18 @@ static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
     return most > c ? most : c;
 }
 
-bool par_ahead_make(struct par_ahead *ahead, const struct par_run *state, const struct par_partition *partition)
+bool par_ahead_make(struct par_ahead *ahead, const struct par_run *run, const struct par_partition *partition)
 {
-    const struct par_ids *list = &state->worklist;
+    const struct par_ids *list = &run->worklist;
     int32_t n_odd = (partition->n_columns - 1) / 2;
     size_t n = (size_t)list->n + 1;
-    assert(state->key.n == 0);
+    assert(run->key.n == 0);
     *ahead = (struct par_ahead){malloc(n * sizeof *ahead->item), malloc(n * sizeof *ahead->key),
                                 calloc((size_t)n_odd + 2, sizeof *ahead->start), n_odd};
     int32_t *column = malloc(n * sizeof *column), *start = ahead->start;
     bool memory = ahead->item && ahead->key && start && column;
     for (int32_t i = 0; memory && i < list->n; i++) {
-        column[i] = column_beyond(partition, right_end(state->mesh, list->item[i]), n_odd);
+        column[i] = column_beyond(partition, right_end(run->mesh, list->item[i]), n_odd);
         start[column[i] + 2]++;
     }
     for (int32_t i = 0; memory && i < n_odd; i++)
@@ -59,11 +59,11 @@ void par_ahead_free(struct par_ahead *ahead)
     *ahead = (struct par_ahead){0};
 }
 
-bool par_ahead_give(const struct par_ahead *ahead, struct par_run *state, int32_t odd)
+bool par_ahead_give(const struct par_ahead *ahead, struct par_run *run, int32_t odd)
 {
     int32_t i = odd / 2;
     if (i >= ahead->n_odd)
         return true;
     int32_t first = ahead->start[i];
-    return par_merge_worklist(state, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
+    return par_merge_worklist(run, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
 }

@@ -18,10 +18,10 @@ struct par_ahead {
 };
 
 /* Of the worklist, which no block has had; the state is as before. False: no memory. To be freed in any case. */
-bool par_ahead_make(struct par_ahead *ahead, const struct par_run *state, const struct par_partition *partition);
+bool par_ahead_make(struct par_ahead *ahead, const struct par_run *run, const struct par_partition *partition);
 void par_ahead_free(struct par_ahead *ahead);
 
 /* Those that wait for an odd column come to the worklist. False: no memory. */
-bool par_ahead_give(const struct par_ahead *ahead, struct par_run *state, int32_t odd);
+bool par_ahead_give(const struct par_ahead *ahead, struct par_run *run, int32_t odd);
 
 #endif

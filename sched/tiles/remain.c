@@ -7,22 +7,22 @@
 #include "triangle/refine/census.h"
 
 /* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
-static struct tri_refine_report report_of(const struct par_run *state)
+static struct tri_refine_report report_of(const struct par_run *run)
 {
-    struct tri_refine_report report = state->report->total;
+    struct tri_refine_report report = run->report->total;
     report.gated = report.fenced = 0;
     return report;
 }
 
-bool par_remain_begin(struct par_run *state)
+bool par_remain_begin(struct par_run *run)
 {
-    struct par_ids *list = &state->remaining;
-    tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
-    const int32_t n = found ? tri_find_hopeless(state->mesh, state->quality, found) : 0;
+    struct par_ids *list = &run->remain.listed;
+    tri_triangle_id *found = malloc(((size_t)run->mesh->n_triangles + 1) * sizeof *found);
+    const int32_t n = found ? tri_find_hopeless(run->mesh, &run->bounds, found) : 0;
     list->n = 0;
     bool memory = found && par_ids_add_all(list, found, n);
     free(found);
-    memset(state->remained, 0, sizeof state->remained);
+    memset(run->remain.counted, 0, sizeof run->remain.counted);
     return memory;
 }
 
@@ -33,11 +33,11 @@ static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, d
 }
 
 /* Those to come stay in front, those to count go behind them, and are counted by one call. */
-void par_remain_count(struct par_run *state, double x)
+void par_remain_count(struct par_run *run, double x)
 {
-    const struct tri_mesh *mesh = state->mesh;
-    const struct tri_refine_report report = report_of(state);
-    struct par_ids *list = &state->remaining;
+    const struct tri_mesh *mesh = run->mesh;
+    const struct tri_refine_report report = report_of(run);
+    struct par_ids *list = &run->remain.listed;
     int32_t n = par_sort_unique(list->item, list->n), live = 0, kept = 0;
     for (int32_t i = 0; i < n; i++) {
         const tri_triangle_id t = list->item[i];
@@ -49,20 +49,20 @@ void par_remain_count(struct par_run *state, double x)
             list->item[kept++] = t;
         }
     }
-    tri_count_bad_among(mesh, state->quality, &report, list->item + kept, live - kept, state->remained);
+    tri_count_bad_among(mesh, &run->bounds, &report, list->item + kept, live - kept, run->remain.counted);
     list->n = kept;
 }
 
-void par_remain_settle(struct par_run *state)
+void par_remain_settle(struct par_run *run)
 {
-    const struct tri_refine_report report = report_of(state);
-    tri_settle_counts(&report, state->remained, state->report->remain);
-    state->report->remain_known = true;
+    const struct tri_refine_report report = report_of(run);
+    tri_settle_counts(&report, run->remain.counted, run->report->remain);
+    run->report->remain_known = true;
 }
 
-void par_remain_count_all(struct par_run *state)
+void par_remain_count_all(struct par_run *run)
 {
-    const struct tri_refine_report report = report_of(state);
-    tri_count_bad(state->mesh, state->quality, &report, &state->executor, state->report->remain);
-    state->report->remain_known = true;
+    const struct tri_refine_report report = report_of(run);
+    tri_count_bad(run->mesh, &run->bounds, &report, &run->asked.executor, run->report->remain);
+    run->report->remain_known = true;
 }

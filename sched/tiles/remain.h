@@ -10,16 +10,16 @@
 #include "sched/schedule/phase.h"
 
 /* Of a mesh whose worklist has been filled. False: no memory. */
-bool par_remain_begin(struct par_run *state);
+bool par_remain_begin(struct par_run *run);
 
 /* Counts the bad triangles with a corner left of x, of which none will change any more, and those that had one left of
  * the last x have been counted. Those that are beside them are still there. */
-void par_remain_count(struct par_run *state, double x);
+void par_remain_count(struct par_run *run, double x);
 
 /* Tells the report what has been counted. */
-void par_remain_settle(struct par_run *state);
+void par_remain_settle(struct par_run *run);
 
 /* Counts those of a whole mesh that is finished. */
-void par_remain_count_all(struct par_run *state);
+void par_remain_count_all(struct par_run *run);
 
 #endif

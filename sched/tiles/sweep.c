@@ -12,20 +12,20 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
 }
 
-struct par_tiles par_tiles_of(const struct par_run *state, const struct par_partition *partition)
+struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partition *partition)
 {
-    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
-                              .n_kept = state->n_kept, .sink = state->options->sink,
-                              .figure = state->options->figure, .region_column = state->options->region_column,
-                              .n_threads = state->report->threads};
+    return (struct par_tiles){.mesh = run->mesh, .partition = partition, .executor = &run->asked.executor,
+                              .n_kept = run->asked.n_kept, .sink = run->asked.options->sink,
+                              .figure = run->asked.options->figure, .region_column = run->asked.options->region_column,
+                              .n_threads = run->report->threads};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
-static bool is_left_behind(const struct par_run *state, double x)
+static bool is_left_behind(const struct par_run *run, double x)
 {
-    const struct tri_mesh *mesh = state->mesh;
-    for (int32_t i = 0; i < state->worklist.n; i++) {
-        const struct tri_triangle *t = &mesh->tri[state->worklist.item[i]];
+    const struct tri_mesh *mesh = run->mesh;
+    for (int32_t i = 0; i < run->worklist.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[run->worklist.item[i]];
         if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
             return true;
     }
@@ -33,131 +33,125 @@ static bool is_left_behind(const struct par_run *state, double x)
 }
 
 /* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
-static enum tri_status finish_column(struct par_run *state, struct par_tiles *tiles, int32_t column, bool *left,
+static enum tri_status finish_column(struct par_run *run, struct par_tiles *tiles, int32_t column, bool *left,
                                      struct tri_error *error)
 {
     double began = tri_seconds(), end = par_fence(tiles->partition, column, 0).x_max;
-    *left = is_left_behind(state, end);
-    enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
-    if (!status && !*left && state->counts_remaining)
-        par_remain_count(state, end);
+    *left = is_left_behind(run, end);
+    enum tri_status status = *left ? TRI_OK : par_park_expect(run->park, run->mesh, par_tiles_bytes(tiles), error);
+    if (!status && !*left && run->remain.is_on)
+        par_remain_count(run, end);
     if (!status && !*left)
-        status = par_tiles_column(tiles, column, &state->spare, error);
-    state->gone = tiles->n_triangles;
-    state->report->seconds_number += tri_seconds() - began;
+        status = par_tiles_column(tiles, column, &run->spare, error);
+    run->gone = tiles->n_triangles;
+    run->report->seconds_number += tri_seconds() - began;
     return status;
 }
 
-static enum tri_status refine_column(struct par_run *state, struct par_tiles *tiles, int32_t column,
-                                     struct tri_error *error)
-{
-    struct par_checkpoint *checkpoint = state->options->checkpoint;
-    return checkpoint ? par_state_phase(checkpoint, state, tiles->partition, tiles, column, error)
-                      : par_phase(state, tiles->partition, state->phase, column, error);
-}
+/* A sweep at work. */
+struct sweep {
+    struct par_run *run;
+    struct par_tiles tiles;
+    struct par_ahead ahead;
+    bool left; /* something is left behind */
+};
 
-/* The odd column of blocks that is the state's. */
-static int32_t odd_column(const struct par_run *state) { return 2 * state->column - 1; }
+/* The odd column of blocks that is the place's. */
+static int32_t odd_column(const struct par_run *run) { return 2 * run->place.column - 1; }
 
-/* The blocks of an odd column, and those of the even one behind it, from state->phase on. */
-static enum tri_status refine_columns(struct par_run *state, struct par_tiles *tiles, struct tri_error *error)
+/* The blocks of an odd column, or (the last two phases) those of the even one behind it. */
+static enum tri_status refine_column(void *self, struct tri_error *error)
 {
-    const int32_t odd = odd_column(state);
+    struct sweep *s = self;
+    struct par_run *run = s->run;
+    struct par_checkpoint *checkpoint = run->asked.options->checkpoint;
+    const int32_t odd = odd_column(run);
+    const struct par_turn turn = {.partition = s->tiles.partition, .only = run->place.phase < 2 ? odd : odd - 1};
     enum tri_status status = TRI_OK;
-    for (; !status && state->phase < PAR_PHASES; state->phase += !status) {
-        int32_t column = state->phase < 2 ? odd : odd - 1;
-        par_tell(state, state->phase + 1);
-        if (column < tiles->partition->n_columns)
-            status = refine_column(state, tiles, column, error);
+    if (run->place.next == PAR_COLUMN) {
+        if (!par_ahead_give(&s->ahead, run, odd))
+            return no_memory(error);
+        par_go(run, PAR_COLUMN_PHASE);
     }
+    par_tell(run, run->place.phase + 1);
+    if (turn.only < turn.partition->n_columns)
+        status = checkpoint ? par_state_phase(checkpoint, run, turn, &s->tiles, error) : par_phase(run, &turn, error);
+    run->place.phase += !status;
     return status;
 }
 
-/* A column from its beginning, or from where the state is amid it. */
-static enum tri_status go_through(struct par_run *state, struct par_tiles *tiles, const struct par_ahead *ahead,
-                                  struct tri_error *error)
+/* The tiles of the column before are handed out; *again: there is another column, and nothing is left behind. */
+static enum tri_status end_column(void *self, bool *again, struct tri_error *error)
 {
-    if (state->next != PAR_COLUMN_PHASE && !par_ahead_give(ahead, state, odd_column(state)))
-        return no_memory(error);
-    state->next = PAR_COLUMN_PHASE;
-    enum tri_status status = refine_columns(state, tiles, error);
-    if (status)
+    struct sweep *s = self;
+    struct par_run *run = s->run;
+    struct par_checkpoint *checkpoint = run->asked.options->checkpoint;
+    enum tri_status status = TRI_OK;
+    *again = false;
+    par_go(run, PAR_COLUMN);
+    run->place.phase = 0;
+    if (run->place.column > 1)
+        status = finish_column(run, &s->tiles, odd_column(run) - 2, &s->left, error);
+    if (status || s->left)
         return status;
-    state->next = PAR_COLUMN;
-    state->phase = 0;
-    return TRI_OK;
+    run->place.column++;
+    *again = odd_column(run) <= s->tiles.partition->n_columns;
+    return checkpoint && run->place.column > 2 ? par_state_border(checkpoint, run, &s->tiles, false, error) : TRI_OK;
 }
 
 /* Nobody is stopped any more, but the tiles' taker may have failed. */
-static enum tri_status end_tiles(struct par_run *state, struct par_tiles *tiles, struct tri_error *error)
+static enum tri_status end_tiles(struct par_run *run, struct par_tiles *tiles, struct tri_error *error)
 {
-    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    struct par_checkpoint *checkpoint = run->asked.options->checkpoint;
     enum tri_status status = par_tiles_end(tiles, error);
     return status || !checkpoint || !checkpoint->spool.failed ? status
-                                                              : par_state_border(checkpoint, state, tiles, true, error);
+                                                              : par_state_border(checkpoint, run, tiles, true, error);
 }
 
-/* From the state's column on, until something is left behind. */
-static enum tri_status sweep_columns(struct par_run *state, struct par_tiles *tiles, const struct par_ahead *ahead,
-                                     bool *left, struct tri_error *error)
-{
-    struct par_checkpoint *checkpoint = state->options->checkpoint;
-    enum tri_status status = TRI_OK;
-    while (!status && !*left && odd_column(state) <= tiles->partition->n_columns) {
-        status = go_through(state, tiles, ahead, error);
-        if (!status && state->column > 1)
-            status = finish_column(state, tiles, odd_column(state) - 2, left, error);
-        if (status || *left)
-            break;
-        state->column++;
-        if (checkpoint && state->column > 2)
-            status = par_state_border(checkpoint, state, tiles, false, error);
-    }
-    return status || *left ? status : end_tiles(state, tiles, error);
-}
-
-/* The state is of its first column, for which the worklist is empty; or as a checkpoint has it. */
-static enum tri_status begin_sweep(struct par_run *state, struct par_tiles *tiles, struct par_ahead *ahead,
+/* The place is the first column, for which the worklist is empty; or as a checkpoint has it. */
+static enum tri_status begin_sweep(struct par_run *run, struct par_tiles *tiles, struct par_ahead *ahead,
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    state->column = 0; /* unless there is a state */
-    state->n_columns = (tiles->partition->n_columns + 1) / 2;
-    if (!par_ahead_make(ahead, state, tiles->partition))
+    run->place.column = 0; /* unless there is a state */
+    par_go(run, PAR_COLUMN);
+    if (!par_ahead_make(ahead, run, tiles->partition))
         status = no_memory(error);
-    else if (state->options->checkpoint)
-        status = par_state_begin_sweep(state->options->checkpoint, state, tiles, error);
+    else if (run->asked.options->checkpoint)
+        status = par_state_begin_sweep(run->asked.options->checkpoint, run, tiles, error);
     else
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    state->counts_remaining = state->options->count_remaining && (state->column == 0 || state->counts_remaining);
-    if (status || state->column > 0)
+    run->remain.is_on = run->asked.options->count_remaining && (run->place.column == 0 || run->remain.is_on);
+    if (status || run->place.column > 0)
         return status;
-    state->next = PAR_COLUMN;
-    state->column = 1;
-    state->phase = state->worklist.n = 0;
-    return state->counts_remaining && !par_remain_begin(state) ? no_memory(error) : TRI_OK;
+    run->place.column = 1;
+    run->place.phase = run->worklist.n = 0;
+    return run->remain.is_on && !par_remain_begin(run) ? no_memory(error) : TRI_OK;
 }
 
-enum tri_status par_sweep(struct par_run *state, const struct par_partition *partition, bool *done,
+enum tri_status par_sweep(struct par_run *run, const struct par_partition *partition, bool *done,
                           struct tri_error *error)
 {
-    struct par_tiles tiles = par_tiles_of(state, partition);
-    struct par_ahead ahead;
-    bool left = false;
-    enum tri_status status = begin_sweep(state, &tiles, &ahead, error);
-    status = status ? status : sweep_columns(state, &tiles, &ahead, &left, error);
-    if (!status && state->counts_remaining)
-        par_remain_settle(state);
-    state->counts_remaining = false;
-    state->next = PAR_BOUNDS;
-    state->column = state->n_columns = 0;
-    par_ahead_free(&ahead);
-    if (!status && left && state->options->checkpoint)
-        status = par_state_give_up_sweep(state->options->checkpoint, state, error);
-    *done = !status && !left;
-    state->report->rounds++;
-    state->report->deferred += state->report->total.fenced;
-    par_forget_deferred(state->report);
-    par_tiles_free(&tiles);
+    static const struct par_steps steps = {refine_column, end_column};
+    struct sweep s = {.run = run, .tiles = par_tiles_of(run, partition)};
+    enum tri_status status = begin_sweep(run, &s.tiles, &s.ahead, error);
+    if (!status && odd_column(run) <= partition->n_columns) /* or a state was kept behind the last column */
+        status = par_run_rounds(run, &steps, &s, error);
+    if (!status && !s.left)
+        status = end_tiles(run, &s.tiles, error);
+    if (!status && run->remain.is_on)
+        par_remain_settle(run);
+    run->remain.is_on = false;
+    run->place.column = 0;
+    par_ahead_free(&s.ahead);
+    if (!status && s.left && run->asked.options->checkpoint)
+        status = par_state_give_up_sweep(run->asked.options->checkpoint, run, error);
+    *done = !status && !s.left;
+    if (!status)
+        par_go(run, s.left ? PAR_BOUNDS_WHOLE : PAR_END);
+    run->report->rounds++;
+    run->report->deferred += run->report->total.fenced;
+    par_forget_deferred(run->report);
+    par_tiles_free(&s.tiles);
     return status;
 }

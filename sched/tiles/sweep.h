@@ -11,11 +11,11 @@
 #include "sched/tiles/tiles.h"
 
 /* The tiles of a state's mesh, none of them handed out yet. */
-struct par_tiles par_tiles_of(const struct par_run *state, const struct par_partition *partition);
+struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partition *partition);
 
 /* *done: all of the mesh has been handed out. False: blocks leave something over, which further rounds would have to
  * do, with all that is around: the sweep has been given up, and neither mesh nor worklist is of any use. */
-enum tri_status par_sweep(struct par_run *state, const struct par_partition *partition, bool *done,
+enum tri_status par_sweep(struct par_run *run, const struct par_partition *partition, bool *done,
                           struct tri_error *error);
 
 #endif
