@@ -1,4 +1,11 @@
-/* The steps of the schedule on ranks: phases, rounds, the last call. */
+/* The steps of the schedule that differ on ranks; the rounds are those of sched/schedule/schedule.c.
+ *
+ * ALGORITHM. Before a step of a phase all ranks agree on who works on each block over the tiles of several (a shift).
+ * The others lend what that block needs; the worker refines with what it has borrowed, asks for more where a cavity
+ * reaches behind it, and gives back what has changed. The last call is a shift of one block, the plane. The paper moves
+ * strips between neighbours in the same places (section 3).
+ *
+ * INVARIANT. That of ranks.h holds before and after each shift. */
 #include "sched/ranks/ranks.h"
 
 #include <assert.h>

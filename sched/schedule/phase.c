@@ -546,3 +546,29 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
     free(p.order);
     return status;
 }
+
+/* --- rounds */
+
+enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *steps, void *self, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool again = true;
+    while (!status && again) {
+        while (!status && run->place.phase < PAR_PHASES)
+            status = steps->run_phase(self, error);
+        status = status ? status : steps->end_round(self, &again, error);
+    }
+    return status;
+}
+
+bool par_next_round(struct par_schedule *s)
+{
+    struct par_position *place = &s->run->place;
+    s->run->report->rounds++;
+    if (s->left == 0 || !par_can_coarsen(&s->partition))
+        return false;
+    par_partition_coarsen(&s->partition);
+    place->round++;
+    place->phase = 0;
+    return true;
+}
