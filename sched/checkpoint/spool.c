@@ -60,7 +60,7 @@ static bool pack_numbers(char *to, const int64_t *number, size_t n, int64_t end)
 }
 
 /* False: a tile reaches back too far. `to` is zero before. */
-static bool pack(char *to, const struct tri_tile *tile, int32_t n_attributes)
+static bool pack_tile(char *to, const struct tri_tile *tile, int32_t n_attributes)
 {
     struct par_array array[PAR_TILE_ARRAYS];
     bool fits = true;
@@ -95,7 +95,7 @@ static void send_off(struct par_spool *spool)
     spool->sent = spool->length;
 }
 
-static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status append_tile(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
 {
     const size_t n = bytes_of(tile, spool->n_attributes);
     struct head *h = calloc(1, sizeof *h + n);
@@ -108,7 +108,7 @@ static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile
                                 .first_triangle = tile->first_triangle, .first_segment = tile->first_segment,
                                 .n_vertices = tile->n_vertices, .n_triangles = tile->n_triangles,
                                 .n_segments = tile->n_segments};
-    if (!pack(arrays, tile, spool->n_attributes))
+    if (!pack_tile(arrays, tile, spool->n_attributes))
         status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
     h->hash = hash_of(h, arrays);
     if (!status && !tri_write_at(spool->file, h, sizeof *h + n, (uint64_t)spool->length))
@@ -133,8 +133,8 @@ static int64_t *unpacked(const char *at, size_t n, int64_t end)
 }
 
 /* Hands out one tile from its arrays. */
-static enum tri_status hand_out(const struct par_spool *spool, const struct head *h, const char *arrays,
-                                struct tri_error *error)
+static enum tri_status hand_out_tile(const struct par_spool *spool, const struct head *h, const char *arrays,
+                                     struct tri_error *error)
 {
     struct tri_tile tile = h->tile;
     struct par_array array[PAR_TILE_ARRAYS];
@@ -185,7 +185,7 @@ static enum tri_status hand_out_again(struct par_spool *spool, struct tri_error 
         struct head h;
         char *arrays;
         status = read_tile(spool, place, &h, &arrays, error);
-        status = status ? status : hand_out(spool, &h, arrays, error);
+        status = status ? status : hand_out_tile(spool, &h, arrays, error);
         place += status ? 0 : (int64_t)sizeof h + h.bytes;
         free(arrays);
     }
@@ -194,7 +194,7 @@ static enum tri_status hand_out_again(struct par_spool *spool, struct tri_error 
 
 /* --- the sink */
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+static enum tri_status begin_stream(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_spool *spool = user;
     spool->n_attributes = stream->n_attributes;
@@ -202,20 +202,20 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     return status || !spool->again ? status : hand_out_again(spool, error);
 }
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_spool *spool = user;
     if (spool->again) {
         spool->again = false;
         return TRI_OK;
     }
-    enum tri_status status = keep(spool, tile, error);
+    enum tri_status status = append_tile(spool, tile, error);
     if (!status && !spool->failed)
         spool->failed = spool->to->take(spool->to->user, tile, &spool->failure);
     return status;
 }
 
-static enum tri_status end(void *user, struct tri_error *error)
+static enum tri_status end_stream(void *user, struct tri_error *error)
 {
     struct par_spool *spool = user;
     (void)error;
@@ -224,4 +224,7 @@ static enum tri_status end(void *user, struct tri_error *error)
     return TRI_OK;
 }
 
-struct tri_sink par_spool_sink(struct par_spool *spool) { return (struct tri_sink){spool, begin, take, end}; }
+struct tri_sink par_spool_sink(struct par_spool *spool)
+{
+    return (struct tri_sink){spool, begin_stream, take_tile, end_stream};
+}

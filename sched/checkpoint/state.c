@@ -280,8 +280,6 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
     return status;
 }
 
-void par_state_let_stop(struct par_checkpoint *c, struct par_run *run) { run->mesh->stop = c->stop; }
-
 /* --- borders and phases */
 
 enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,

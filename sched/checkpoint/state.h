@@ -49,10 +49,6 @@ enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_r
 enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_run *run, struct par_turn turn,
                                 struct par_tiles *tiles, struct tri_error *error);
 
-/* Whoever asks for the end is heard within the step at hand, too, and not only at the next border; or the run has
- * ended. A step that is stopped is lost: the run goes on from the last state. */
-void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_run *run);
-
 /* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again; then par_tiles_begin;
  * and where there is a state, the mesh, the lists, the place and the tiles' counts become what they were. From here on
  * the mesh is stopped where a state is kept alone. TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY,

@@ -146,8 +146,8 @@ static enum tri_status look_for_any(struct par_carrier *carrier, const struct pa
 }
 
 /* Sizes are known before anything is sent, so that who has no memory for it can say so. */
-static enum tri_status prepare(struct par_carrier *carrier, const struct par_bytes *out, struct par_bytes *in,
-                               struct tri_error *error)
+static enum tri_status exchange_sizes(struct par_carrier *carrier, const struct par_bytes *out, struct par_bytes *in,
+                                      struct tri_error *error)
 {
     size_t n = (size_t)carrier->n_ranks;
     int64_t *from = carrier->of_each, *to = from + n;
@@ -180,7 +180,7 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
     bool any;
     status = look_for_any(carrier, out, &any, status, error);
     if (!status && any)
-        status = prepare(carrier, out, in, error);
+        status = exchange_sizes(carrier, out, in, error);
     double began = tri_seconds();
     if (!status && any && !carrier->transfer(carrier->self, out, in)) {
         status = out_of_touch(carrier, error);

@@ -177,7 +177,7 @@ static enum tri_status number_columns(struct handing *h, const int64_t base[3], 
     return status;
 }
 
-static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct tri_error *error)
+static enum tri_status hand_out_columns(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     struct par_tiles *tiles = h->tiles;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
@@ -191,7 +191,7 @@ static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct
     return status ? status : par_tiles_end(tiles, error);
 }
 
-static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_error *error)
+static enum tri_status prepare_tiles(struct handing *h, int64_t count[3], struct tri_error *error)
 {
     const struct par_territory *territory = &h->ranks->territory;
     int rank = territory->rank;
@@ -283,7 +283,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     int rank = r->carrier->rank;
     struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->run->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
-    status = status ? status : prepare(&h, count, error);
+    status = status ? status : prepare_tiles(&h, count, error);
     status = sum_up(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
         tell_first(tiles, r->carrier, first);
@@ -293,7 +293,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     assert(status || tiles->n_vertices == tiles->first[0][rank + 1]); /* as many as have been counted */
     status = exchange_numbers(&h, status, error);
     if (!status)
-        status = hand_out(&h, base, error);
+        status = hand_out_columns(&h, base, error);
     assert(status || tiles->n_triangles == tiles->first[1][rank + 1]);
     assert(status || tiles->n_segments == tiles->first[2][rank + 1]);
     clean_up(&h);

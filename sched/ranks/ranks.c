@@ -1,4 +1,11 @@
-/* The steps of the schedule on ranks: phases, rounds, the last call. */
+/* The steps of the schedule that differ on ranks; the rounds are those of sched/schedule/schedule.c.
+ *
+ * ALGORITHM. Before a step of a phase all ranks agree on who works on each block over the tiles of several (a shift).
+ * The others lend what that block needs; the worker refines with what it has borrowed, asks for more where a cavity
+ * reaches behind it, and gives back what has changed. The last call is a shift of one block, the plane. The paper moves
+ * strips between neighbours in the same places (section 3).
+ *
+ * INVARIANT. That of ranks.h holds before and after each shift. */
 #include "sched/ranks/ranks.h"
 
 #include <assert.h>
@@ -91,7 +98,7 @@ static void find_work(struct par_ranks *r, int64_t *word)
 
 static bool is_in(const int64_t *word, int32_t b) { return (uint64_t)word[b / 64] >> b % 64 & 1; }
 
-static void assign(struct par_ranks *r, const int64_t *word)
+static void assign_blocks(struct par_ranks *r, const int64_t *word)
 {
     struct par_shift *s = &r->shift;
     int rank = r->carrier->rank;
@@ -122,7 +129,7 @@ static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_e
         *any = *any || all[i] != 0;
     }
     if (!status)
-        assign(r, mine);
+        assign_blocks(r, mine);
     free(mine);
     free(all);
     return status;
@@ -130,7 +137,8 @@ static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_e
 
 /* --- what moves */
 
-static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_status status, struct tri_error *error)
+static enum tri_status swap_bytes(struct par_ranks *r, enum par_move move, enum tri_status status,
+                                  struct tri_error *error)
 {
     const bool is_left_over = r->run->place.round > 0 || !r->shift.partition;
     return par_swap(r->carrier, is_left_over ? PAR_MOVE_LEFT_OVER : move, r->out, r->in, status, error);
@@ -148,10 +156,10 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
     if (!*any)
         return status;
     status = par_ask(r, asked, error);
-    status = swap(r, PAR_MOVE_BORDERS, status, error);
+    status = swap_bytes(r, PAR_MOVE_BORDERS, status, error);
     status = status ? status : par_lend_more(r, error);
     free_in(r);
-    status = swap(r, PAR_MOVE_BORDERS, status, error);
+    status = swap_bytes(r, PAR_MOVE_BORDERS, status, error);
     bool came = n == 0;
     for (int p = 0; p < r->carrier->n_ranks; p++)
         came = came || r->in[p].n > 0;
@@ -191,7 +199,7 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
     bool any;
     enum tri_status status = par_index_straddlers(r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : par_lend(r, error);
-    status = swap(r, PAR_MOVE_BORDERS, status, error);
+    status = swap_bytes(r, PAR_MOVE_BORDERS, status, error);
     status = status ? status : par_borrow(r, error);
     free_in(r);
     if (!status && !find_unknown(r, &asked))
@@ -209,7 +217,7 @@ static enum tri_status fetch_more(void *user, const struct par_ids *asked, struc
 }
 
 /* Until nobody asks for more. Collective. */
-static enum tri_status serve(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+static enum tri_status serve_others(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     static const struct par_ids nothing;
     bool any = true;
@@ -221,7 +229,7 @@ static enum tri_status serve(struct par_ranks *r, enum tri_status status, struct
 static enum tri_status give_back(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     status = status ? status : par_give_back(r, &r->shift.changed, error);
-    status = swap(r, PAR_MOVE_BACK, status, error);
+    status = swap_bytes(r, PAR_MOVE_BACK, status, error);
     status = status ? status : par_take_back(r, error);
     free_in(r);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
@@ -232,9 +240,9 @@ static enum tri_status give_back(struct par_ranks *r, enum tri_status status, st
 }
 
 /* The blocks of a shift, with what they borrow, which is given back then. Collective. */
-static enum tri_status work(struct par_ranks *r, struct par_shift shift,
-                            enum tri_status (*refine)(struct par_ranks *r, struct tri_error *error),
-                            struct tri_error *error)
+static enum tri_status work_shift(struct par_ranks *r, struct par_shift shift,
+                                  enum tri_status (*refine)(struct par_ranks *r, struct tri_error *error),
+                                  struct tri_error *error)
 {
     bool any;
     r->shift = shift;
@@ -243,7 +251,7 @@ static enum tri_status work(struct par_ranks *r, struct par_shift shift,
         status = lend(r, error);
     status = status ? status : refine(r, error);
     if (any) {
-        status = serve(r, status, error);
+        status = serve_others(r, status, error);
         status = give_back(r, status, error);
     }
     free_shift(&r->shift);
@@ -284,7 +292,7 @@ static enum tri_status run_phase(void *self, struct tri_error *error)
     do {
         const struct par_shift shift = {.partition = &s->partition, .phase = place->phase, .step = place->step,
                                         .n_steps = n_steps};
-        status = work(r, shift, refine_step, error);
+        status = work_shift(r, shift, refine_step, error);
         place->step = (place->step + 1) % n_steps;
         place->phase += place->step == 0;
         status = par_keep(r, status, error);
@@ -354,7 +362,7 @@ static enum tri_status refine_left(struct par_ranks *r, struct tri_error *error)
 enum tri_status par_refine_rest_on_ranks(struct par_run *run, struct tri_error *error)
 {
     struct par_ranks *r = run->ranks;
-    enum tri_status status = work(r, (struct par_shift){.n_steps = 1}, refine_left, error);
+    enum tri_status status = work_shift(r, (struct par_shift){.n_steps = 1}, refine_left, error);
     par_go(run, par_is_of_sizes(run->place.next) ? PAR_BOUNDS_WHOLE : PAR_HAND_OUT);
     return par_keep(r, status, error);
 }
@@ -424,7 +432,7 @@ static enum tri_status take_part(struct par_ranks *r, struct tri_error *error)
     return par_agree(r->carrier, status, error);
 }
 
-static bool init(struct par_ranks *r)
+static bool init_ranks(struct par_ranks *r)
 {
     size_t n = (size_t)r->carrier->n_ranks;
     r->lent = calloc(n, sizeof *r->lent);
@@ -445,7 +453,7 @@ enum tri_status par_ranks_begin(struct par_run *run, struct tri_error *error)
                                 .left_before = run->report->left_over, .rounds_before = run->report->rounds};
         run->ranks = r;
     }
-    enum tri_status status = par_agree(carrier, r && init(r) ? TRI_OK : par_ranks_no_memory(error), error);
+    enum tri_status status = par_agree(carrier, r && init_ranks(r) ? TRI_OK : par_ranks_no_memory(error), error);
     return status ? status : take_part(r, error);
 }
 

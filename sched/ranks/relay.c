@@ -6,7 +6,7 @@
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 
-static bool pack(struct par_relay *relay, const struct tri_tile *tile)
+static bool pack_tile(struct par_relay *relay, const struct tri_tile *tile)
 {
     const size_t n = par_tile_bytes(tile, relay->n_attributes);
     if (!par_bytes_reserve(&relay->tiles, n))
@@ -80,7 +80,7 @@ static enum tri_status send_all(struct par_relay *relay, bool ends, struct tri_e
 
 /* --- the sink */
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+static enum tri_status begin_stream(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_relay *relay = user;
     struct tri_stream one = *stream;
@@ -98,17 +98,17 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     return relay->to->begin(relay->to->user, &one, error);
 }
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_relay *relay = user;
     if (relay->carrier->rank == 0)
         return relay->to->take(relay->to->user, tile, error);
-    if (!pack(relay, tile))
+    if (!pack_tile(relay, tile))
         return par_ranks_no_memory(error);
     return relay->room == 0 || relay->tiles.n < relay->room ? TRI_OK : send_all(relay, false, error);
 }
 
-static enum tri_status end(void *user, struct tri_error *error)
+static enum tri_status end_stream(void *user, struct tri_error *error)
 {
     struct par_relay *relay = user;
     const struct par_carrier *carrier = relay->carrier;
@@ -122,7 +122,7 @@ static enum tri_status end(void *user, struct tri_error *error)
 
 struct tri_sink par_relay_sink(struct par_relay *relay)
 {
-    return (struct tri_sink){.user = relay, .begin = begin, .take = take, .end = end};
+    return (struct tri_sink){.user = relay, .begin = begin_stream, .take = take_tile, .end = end_stream};
 }
 
 enum tri_status par_relay_finish(struct par_relay *relay, enum tri_status status, struct tri_error *error)

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/checkpoint/spool.h"
 #include "triangle/base/grow.h"
 
 /* --- maps */

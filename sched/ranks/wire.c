@@ -31,7 +31,7 @@ static char *room_for_one(struct coder *c)
     return c->failed ? NULL : to->at + to->n;
 }
 
-static void put(struct coder *c, uint64_t n)
+static void put_number(struct coder *c, uint64_t n)
 {
     char *at = room_for_one(c);
     if (!at)
@@ -42,7 +42,7 @@ static void put(struct coder *c, uint64_t n)
     c->to->n = (size_t)(at - c->to->at);
 }
 
-static uint64_t get(struct coder *c)
+static uint64_t get_number(struct coder *c)
 {
     uint64_t n = 0;
     for (int shift = 0; shift < 64 && c->at < c->end; shift += 7) {
@@ -58,9 +58,9 @@ static uint64_t get(struct coder *c)
 static void code(struct coder *c, uint64_t *n)
 {
     if (c->to)
-        put(c, *n);
+        put_number(c, *n);
     else
-        *n = get(c);
+        *n = get_number(c);
 }
 
 /* A number from `from` to end - 1. */
@@ -376,7 +376,7 @@ bool par_message_write(struct par_message *m, const struct par_talk *talk, const
     return !c.failed;
 }
 
-static bool reserve(struct par_message *m)
+static bool reserve_message(struct par_message *m)
 {
     return tri_grow(&m->gone.item, &m->gone.capacity, m->gone.n, sizeof *m->gone.item) &&
            tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, m->gone_subs.n, sizeof *m->gone_subs.item) &&
@@ -416,7 +416,7 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
     *m = (struct par_message){0};
     begin_reading(&c, from);
     code_counts(&c, m);
-    if (!c.failed && !reserve(m))
+    if (!c.failed && !reserve_message(m))
         return par_ranks_no_memory(error);
     if (!c.failed)
         code_all(&c, m);

@@ -313,7 +313,7 @@ int64_t par_triangles(const struct par_run *run)
 /* Each thread has one at an address of its own. */
 static _Thread_local char here;
 
-static void tell(const struct par_run *run, int phase, double done, int64_t triangles)
+static void tell_place(const struct par_run *run, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = run->asked.options;
     const struct par_place place = {.level = run->place.level, .sizes = par_is_of_sizes(run->place.next),
@@ -325,7 +325,7 @@ static void tell(const struct par_run *run, int phase, double done, int64_t tria
         options->progress(options->progress_user, &place);
 }
 
-void par_tell(const struct par_run *run, int phase) { tell(run, phase, 0, par_triangles(run)); }
+void par_tell(const struct par_run *run, int phase) { tell_place(run, phase, 0, par_triangles(run)); }
 
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
@@ -338,7 +338,7 @@ static void note_end(struct par_phase_run *p, const struct par_task *task)
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
     const double before = p->run->share_done, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell(p->run, p->phase + 1, before + (1 - before) * share, all);
+        tell_place(p->run, p->phase + 1, before + (1 - before) * share, all);
 }
 
 static void run_next(void *context, size_t index)
@@ -545,4 +545,30 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
     free(p.tasks);
     free(p.order);
     return status;
+}
+
+/* --- rounds */
+
+enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *steps, void *self, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool again = true;
+    while (!status && again) {
+        while (!status && run->place.phase < PAR_PHASES)
+            status = steps->run_phase(self, error);
+        status = status ? status : steps->end_round(self, &again, error);
+    }
+    return status;
+}
+
+bool par_next_round(struct par_schedule *s)
+{
+    struct par_position *place = &s->run->place;
+    s->run->report->rounds++;
+    if (s->left == 0 || !par_can_coarsen(&s->partition))
+        return false;
+    par_partition_coarsen(&s->partition);
+    place->round++;
+    place->phase = 0;
+    return true;
 }

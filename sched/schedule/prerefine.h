@@ -33,7 +33,7 @@ struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double c
 bool par_areas_decide(const struct par_run *run, const struct tri_quality *quality, double estimate,
                       double cell);
 
-/* par_worklist_fill for this state, whose keys are forgotten. */
+/* par_worklist_fill for this run, whose keys are forgotten. */
 enum tri_status par_fill_worklist(struct par_run *run, const struct tri_quality *quality, bool known,
                                   struct tri_error *error);
 

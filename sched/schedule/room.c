@@ -114,14 +114,14 @@ static int32_t usable(struct par_range range, enum par_kind kind)
     return n >= one_insertion[kind] ? n : 0;
 }
 
-static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
+static void deal_range(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
 {
     assert(to->n < to->capacity && range.next < range.end);
     to->item[to->n++] = range;
     spare->dealt++;
 }
 
-static enum tri_status reserve(struct tri_mesh *shared, enum par_kind kind, int32_t more, struct tri_error *error)
+static enum tri_status reserve_items(struct tri_mesh *shared, enum par_kind kind, int32_t more, struct tri_error *error)
 {
     switch (kind) {
     case PAR_VERTICES: return tri_mesh_reserve_vertices(shared, more, error);
@@ -135,8 +135,8 @@ static enum tri_status reserve(struct tri_mesh *shared, enum par_kind kind, int3
  * closing gaps would have to look through, too.
  *
  * Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
-static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
-                              enum par_kind kind, int32_t need, struct tri_error *error)
+static enum tri_status extend_kind(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                                   enum par_kind kind, int32_t need, struct tri_error *error)
 {
     struct par_ranges *to = &room->ranges[kind], *from = &spare->ranges[kind];
     while (need > 0 && from->n > 0) {
@@ -144,18 +144,18 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
             return no_memory(error);
         struct par_range range = from->item[--from->n];
         need -= usable(range, kind);
-        deal(to, from, range);
+        deal_range(to, from, range);
     }
     if (need <= 0)
         return TRI_OK;
     need = need < PAR_LEAST_RANGE ? PAR_LEAST_RANGE : need;
     if (!reserve_deal(to, from))
         return no_memory(error);
-    enum tri_status status = reserve(shared, kind, need, error);
+    enum tri_status status = reserve_items(shared, kind, need, error);
     if (status)
         return status;
     int32_t *used = counts_of(shared, kind).used;
-    deal(to, from, (struct par_range){*used, *used + need});
+    deal_range(to, from, (struct par_range){*used, *used + need});
     *used += need;
     return TRI_OK;
 }
@@ -189,8 +189,8 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 {
     enum tri_status status = TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
-        status = extend(room, spare, shared, kind,
-                        (int32_t)wanted_of(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
+        status = extend_kind(room, spare, shared, kind,
+                             (int32_t)wanted_of(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
     return status;
 }
 
@@ -203,7 +203,7 @@ void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int
         int64_t need = wanted_of(kind, triangles, PAR_LEAST_ON_SEGMENTS);
         need -= par_ranges_unused(&spare->ranges[kind]);
         if (need > 0)
-            status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, NULL);
+            status = reserve_items(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, NULL);
     }
 }
 

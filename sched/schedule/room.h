@@ -62,8 +62,8 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
                                 int32_t triangles, struct tri_error *error);
 
 /* Gives the shared arrays about the capacity for so many more triangles at once, `spare` used up: what grows step by
- * step is copied again and again. Does nothing where memory is bounded or arrays are elsewhere. The number is a guess: if
- * there is not so much memory, the arrays stay as they are, and par_room_extend tells whether blocks get what they
+ * step is copied again and again. Does nothing where memory is bounded or arrays are elsewhere. The number is a guess.
+ * If there is not so much memory, the arrays stay as they are; par_room_extend fails if blocks do not get what they
  * need. */
 void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles);
 

@@ -1,7 +1,12 @@
-/* The schedule: pre-refinement, rounds of four phases, what is left over.
+/* The schedule of the paper (Chernikov and Chrisochoides, ICS 2004), for any PSLG.
  *
- * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser
- * one before it, and so on until a level is small enough for one sequential call. */
+ * ALGORITHM. A coarse mesh (section 2.3.3), from which cells are cut (2.3.4); rounds of four phases, in each of which
+ * blocks of cells are refined at once, each round on blocks four times as large; one sequential call for what no block
+ * could do. The coarse mesh of a large mesh is itself large: it is a level of the same schedule, with a coarser one
+ * before it. If angles are expensive, all of this is done for sizes, then for all bounds. next.h lists the steps.
+ *
+ * INVARIANT. Between phases the mesh is a constrained Delaunay triangulation, apart from places that nobody uses (in
+ * the paper, loop invariant 1, section 2.3.1), and each bad triangle that has not been given up is in the worklist. */
 #include "sched/schedule/schedule.h"
 
 #include <assert.h>
@@ -135,11 +140,11 @@ static enum tri_status offer_checkpoint(struct par_run *run, struct tri_error *e
     return checkpoint ? par_state_border(checkpoint, run, NULL, false, error) : TRI_OK;
 }
 
-/* What comes now may be stopped, though not all that has been done is in a state. */
+/* From here on a step is stopped in its midst, too: what has been done since the last state is lost. */
 static void let_stop(struct par_run *run)
 {
     if (checkpoint_of(run))
-        par_state_let_stop(checkpoint_of(run), run);
+        run->mesh->stop = checkpoint_of(run)->stop;
 }
 
 static void note_size(struct par_run *run)
@@ -149,30 +154,6 @@ static void note_size(struct par_run *run)
 }
 
 /* --- rounds of phases */
-
-enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *steps, void *self, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    bool again = true;
-    while (!status && again) {
-        while (!status && run->place.phase < PAR_PHASES)
-            status = steps->run_phase(self, error);
-        status = status ? status : steps->end_round(self, &again, error);
-    }
-    return status;
-}
-
-bool par_next_round(struct par_schedule *s)
-{
-    struct par_position *place = &s->run->place;
-    s->run->report->rounds++;
-    if (s->left == 0 || !par_can_coarsen(&s->partition))
-        return false;
-    par_partition_coarsen(&s->partition);
-    place->round++;
-    place->phase = 0;
-    return true;
-}
 
 /* Of the whole mesh a state may be kept between any two blocks. */
 static enum tri_status run_phase(void *self, struct tri_error *error)
@@ -359,7 +340,7 @@ static enum tri_status run_schedule(struct par_run *run, const struct tri_qualit
     run->bounds = *quality;
     for (int round = 0; !status && round < run->place.round; round++)
         par_partition_coarsen(&s.partition);
-    if (!status && !(is_whole && par_is_rest(run->place.next))) {
+    if (!status && !par_is_rest(run->place.next)) {
         status = par_run_rounds(run, run->ranks ? &par_steps_on_ranks : &in_memory, &s, error);
         run->report->left_over += is_whole && !status ? s.left : 0;
         if (!run->ranks)
@@ -370,6 +351,12 @@ static enum tri_status run_schedule(struct par_run *run, const struct tri_qualit
     return close_schedule(&s, status, error);
 }
 
+static void begin_rounds(struct par_run *run)
+{
+    run->n_schedules++;
+    run->place.round = run->place.phase = run->place.step = 0;
+}
+
 /* The schedule of the whole mesh begins, in which it is swept, or goes to ranks or files. */
 static enum tri_status begin_schedule(struct par_run *run, const struct tri_quality *quality,
                                       const struct par_partition *partition, struct tri_error *error)
@@ -378,34 +365,29 @@ static enum tri_status begin_schedule(struct par_run *run, const struct tri_qual
     enum tri_status status = report_schedule(run, partition, error);
     const bool is_of_sizes = par_is_of_sizes(run->place.next);
     run->bounds = *quality;
-    par_partition_free(&run->cells);
-    status = status ? status : par_partition_copy(&run->cells, partition, error);
+    if (!status && partition != &run->cells) {
+        par_partition_free(&run->cells);
+        status = par_partition_copy(&run->cells, partition, error);
+    }
     if (!status && run->place.next != PAR_BOUNDS_WHOLE && is_too_much(run, partition->estimate))
         status = leave_memory(run, partition, error);
     if (status || run->place.next == PAR_END)
         return status;
     par_go(run, is_of_sizes ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE);
-    run->n_schedules++;
-    run->place.round = run->place.phase = run->place.step = 0;
+    begin_rounds(run);
     const bool spreads = options->sink && options->carrier && !options->by_block && !run->ranks;
     return spreads ? par_ranks_begin(run, error) : TRI_OK;
 }
 
-/* A level whose mesh has been refined before, with what is bad in it. */
-static enum tri_status refine_in_rounds(struct par_run *run, const struct tri_quality *quality,
-                                        const struct par_partition *partition, bool is_whole, struct tri_error *error)
+/* Where the place is amid the schedule that has begun; a state of ranks may be further. */
+static enum tri_status run_whole_schedule(struct par_run *run, const struct tri_quality *quality,
+                                          const struct par_partition *partition, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
     const bool is_of_sizes = par_is_of_sizes(run->place.next);
-    if (is_whole) {
-        status = begin_schedule(run, quality, partition, error);
-    } else {
-        run->n_schedules++;
-        run->place.round = run->place.phase = 0;
-    }
-    const bool is_over = is_whole && run->place.next != (is_of_sizes ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE) &&
-                         run->place.next != (is_of_sizes ? PAR_SIZES_REST : PAR_BOUNDS_REST);
-    return status || is_over ? status : run_schedule(run, quality, partition, is_whole, error);
+    enum tri_status status = begin_schedule(run, quality, partition, error);
+    const bool is_there = par_is_of_sizes(run->place.next) == is_of_sizes &&
+                          (par_is_phase(run->place.next) || par_is_rest(run->place.next));
+    return status || !is_there ? status : run_schedule(run, quality, &run->cells, true, error);
 }
 
 static double cell_size(const struct par_run *run, double estimate)
@@ -437,8 +419,12 @@ static enum tri_status schedule_level(struct par_run *run, const struct tri_qual
         status = par_prerefine_graded(run, quality, &partition, error);
     }
     run->place.level = level; /* again */
-    if (!status)
-        status = refine_in_rounds(run, quality, &partition, level == 0, error);
+    if (!status && level == 0) {
+        status = run_whole_schedule(run, quality, &partition, error);
+    } else if (!status) {
+        begin_rounds(run);
+        status = run_schedule(run, quality, &partition, false, error);
+    }
     par_partition_free(&partition);
     return status;
 }
@@ -515,7 +501,6 @@ static enum tri_status order_work(struct par_run *run, const struct tri_quality 
  * the whole of it anew. Triangles hardly larger than a share of a cell need no coarse mesh before. */
 static enum tri_status refine_again(struct par_run *run, const struct tri_quality *quality, struct tri_error *error)
 {
-    struct par_partition partition;
     double began = tri_seconds(), sure;
     if (!run->ranks && !run->asked.options->scratch && run->asked.options->memory > 0) {
         double estimate = estimate_of(run, quality, &sure);
@@ -524,12 +509,7 @@ static enum tri_status refine_again(struct par_run *run, const struct tri_qualit
     }
     enum tri_status status = order_work(run, quality, error);
     run->report->seconds_find += tri_seconds() - began;
-    status = status ? status : par_partition_copy(&partition, &run->cells, error);
-    if (status)
-        return status;
-    status = refine_in_rounds(run, quality, &partition, true, error);
-    par_partition_free(&partition);
-    return status;
+    return status ? status : run_whole_schedule(run, quality, &run->cells, error);
 }
 
 /* From its beginning, or from where the place is in its schedule. */
@@ -610,12 +590,6 @@ static enum tri_status deliver(struct par_run *run, enum tri_status status, stru
     return status;
 }
 
-/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
-static bool is_bounded(const struct par_options *options)
-{
-    return options->memory > 0 && (options->scratch || !options->sink);
-}
-
 static void clean_up(struct par_run *run)
 {
     const struct par_options *options = run->asked.options;
@@ -684,7 +658,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     enum tri_status status = tri_refine_prepare(mesh, &run.asked.executor, error);
     status = status || can_sweep ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);
     status = check_ranks(&run, status, error);
-    if (!status && is_bounded(options))
+    if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* else a sweep keeps the bound */
         status = par_park_open(&run.park, mesh, options->sink || options->park ? options->scratch : NULL,
                                options->memory, error);
     if (status)

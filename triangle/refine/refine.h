@@ -1,8 +1,9 @@
 /* Quality refinement: the one loop that inserts points until no triangle is bad.
  *
- * Its callers: the whole mesh (no gate, no fence), a coarser pre-refinement, one block of cells of a schedule (gate =
- * is the new point in a cell that is active now?, fence = what may be touched). A bad triangle that the gate refuses,
- * or whose cavity reaches beyond the fence, stays as it is and is counted; whoever calls again later finds it again.
+ * Its callers: the whole mesh (no gate, no fence), a coarser pre-refinement, one block of cells of a schedule. `sched/`
+ * gives each block a fence, which bounds what the call may touch, and sets no gate: that is the same test for other
+ * schedules, by the place of the new point. A bad triangle that the gate refuses, or whose cavity reaches beyond the
+ * fence, stays as it is and is counted; a later call finds it again.
  *
  * THEOREM (serialisation). A call with a fence changes only triangles whose three corners lie in the fence's half-open
  * box, and the link across their border. Calls with disjoint boxes may run at the same time on views of one mesh: the
