@@ -245,7 +245,8 @@ enum tri_status par_pieces_read(struct par_ranks *r, const struct par_piece_file
     char path[PAR_CHECKPOINT_PATH];
     if (first >= end)
         return TRI_OK;
-    const tri_file file = par_checkpoint_piece(path, r->state->options->checkpoint->directory, of->which, of->writer, false);
+    const char *directory = r->state->options->checkpoint->directory;
+    const tri_file file = par_checkpoint_piece(path, directory, of->which, of->writer, false);
     if (file == TRI_NO_FILE)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
     int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->run, of->hash);

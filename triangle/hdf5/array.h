@@ -7,7 +7,7 @@
 #ifndef TRIANGLE_HDF5_ARRAY_H
 #define TRIANGLE_HDF5_ARRAY_H
 
-#include "triangle/hdf5/buffer.h"
+#include "triangle/hdf5/rows.h"
 #include "triangle/hdf5/file.h"
 
 struct tri_h5_array {

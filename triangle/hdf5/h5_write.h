@@ -1,4 +1,4 @@
-/* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/layout.h, views for other programs, and beside the
+/* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/rows.h, views for other programs, and beside the
  * file a short XDMF text that names its arrays, for what reads meshes by way of that.
  *
  * The bytes depend on the mesh alone, not on how it was cut into tiles. Numbers of points take 32 bits as long as they
@@ -8,7 +8,7 @@
 #define TRIANGLE_HDF5_H5_WRITE_H
 
 #include "ptriangle/tiles.h"
-#include "triangle/hdf5/buffer.h"
+#include "triangle/hdf5/rows.h"
 #include "triangle/text/output.h"
 
 struct tri_h5_options {
