@@ -34,7 +34,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
 
 /* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
  * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
- * them there (triangle/hdf5/buffer.h), until before the end. The layout is the writer's. */
+ * them there (triangle/hdf5/rows.h), until before the end. The layout is the writer's. */
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer);
 
 /* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */

@@ -27,11 +27,6 @@ const struct tri_h5_form tri_h5_forms[TRI_H5_KINDS] = {
     {TRI_H5_SEGMENT_MARKERS, 0, false, TRI_H5_OF_SEGMENTS, NARROW},
 };
 
-static char *put_number(char *at, enum tri_h5_type type, int64_t number)
-{
-    return type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)number) : tri_put_i64(at, number);
-}
-
 static void put_markers(const int32_t *markers, int32_t i, int32_t end, char *at)
 {
     for (; i < end; i++)
@@ -44,18 +39,10 @@ static void put_reals(const double *reals, int64_t width, int32_t i, int32_t end
         at = tri_put_f64(at, reals[k]);
 }
 
-static void put_corners(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
+static void put_numbers(const int64_t *numbers, int width, enum tri_h5_type type, int32_t i, int32_t end, char *at)
 {
-    for (; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            at = put_number(at, type, rows->tile->corners[i][k]);
-}
-
-static void put_ends(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        for (int k = 0; k < 2; k++)
-            at = put_number(at, type, rows->tile->ends[i][k]);
+    for (int64_t k = (int64_t)i * width; k < (int64_t)end * width; k++)
+        at = type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)numbers[k]) : tri_put_i64(at, numbers[k]);
 }
 
 static void put_columns(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
@@ -75,9 +62,9 @@ void tri_h5_put(const struct tri_h5_rows *rows, enum tri_h5_kind kind, enum tri_
     case TRI_H5_OF_POINTS: put_reals(tile->points[0], 2, i, end, at); break;
     case TRI_H5_OF_POINT_MARKERS: put_markers(tile->point_markers, i, end, at); break;
     case TRI_H5_OF_POINT_ATTRIBUTES: put_reals(tile->attributes, rows->n_attributes, i, end, at); break;
-    case TRI_H5_OF_TRIANGLES: put_corners(rows, type, i, end, at); break;
+    case TRI_H5_OF_TRIANGLES: put_numbers(tile->corners[0], 3, type, i, end, at); break;
     case TRI_H5_OF_TRIANGLE_ATTRIBUTES: put_columns(rows, type, i, end, at); break;
-    case TRI_H5_OF_SEGMENTS: put_ends(rows, type, i, end, at); break;
+    case TRI_H5_OF_SEGMENTS: put_numbers(tile->ends[0], 2, type, i, end, at); break;
     case TRI_H5_OF_SEGMENT_MARKERS: put_markers(tile->segment_markers, i, end, at); break;
     case TRI_H5_KINDS: break;
     }
