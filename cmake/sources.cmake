@@ -80,20 +80,16 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
     triangle/text/names.c
     triangle/text/text.c
-    triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/parts.c
     triangle/text/write.c
     triangle/text/layouts.c
-    triangle/text/text_stream.c
-    triangle/text/tile_store.c
-    triangle/text/grouping.c
+    triangle/text/stream.c
     triangle/text/boundary.c
     triangle/text/vtu.c
     triangle/text/gmsh.c
     triangle/text/hydro.c
-    triangle/text/bytes.c
     triangle/text/reading.c
     triangle/text/read_vtu.c
     triangle/text/read_gmsh.c
@@ -106,14 +102,11 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/rows.c
     triangle/hdf5/array.c
-    triangle/hdf5/segment_spool.c
     triangle/hdf5/ends.c
     triangle/hdf5/views.c
-    triangle/hdf5/xdmf.c
     triangle/hdf5/h5_write.c
-    triangle/hdf5/buffer.c
     triangle/hdf5/h5_read.c)
-set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/buffer.c)
+set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c)

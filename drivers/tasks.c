@@ -50,12 +50,11 @@ static bool is_program(const char *path, const char *argv0)
     return strcmp(file ? file + 1 : path, name ? name + 1 : argv0) == 0;
 }
 
-bool tasks_is_busy(long running, long processors) { return running > (processors + 1) / 2; }
-
+/* Does every second processor have other work? */
 static bool is_machine_busy(void)
 {
     long running, processors;
-    return tri_work(&running, &processors) && tasks_is_busy(running, processors);
+    return tri_work(&running, &processors) && running > (processors + 1) / 2;
 }
 
 /* The variable that is set here tells the new program that it is the second start. The descriptors by which a launcher

@@ -58,7 +58,7 @@ void one_line_error(FILE *stream, const char *before, const struct tri_error *er
 /* --- taken */
 
 bool words_take_real(const char *text, const char *letters, const double *factor, double low, double high,
-                         double *value)
+                     double *value)
 {
     double number;
     const char *end = tri_scan_real(text, text + strlen(text), &number);
@@ -124,7 +124,7 @@ static enum words_end take_option(const struct program_words *words, int option,
 }
 
 enum words_end words_take_all(const struct program_words *words, int argc, char **argv, void *settings,
-                                        char **mesh)
+                              char **mesh)
 {
     enum words_end end = WORDS_TAKEN;
     int option, n = 0;

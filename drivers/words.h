@@ -1,5 +1,5 @@
-/* Words of the command line: options, numbers and sizes in them; and what they, which may hold anything, look like where
- * they are printed, as names of files do. */
+/* Words of the command line: options, numbers and sizes in them; and how these and names of files, which may hold
+ * anything, are printed. */
 #ifndef DRIVERS_WORDS_H
 #define DRIVERS_WORDS_H
 
@@ -27,7 +27,7 @@ void one_line_error(FILE *stream, const char *before, const struct tri_error *er
 /* From the command line, a number, and maybe a letter that stands for a factor; the product is from low to high. False:
  * it is none, and nothing has changed. */
 bool words_take_real(const char *text, const char *letters, const double *factor, double low, double high,
-                         double *value);
+                     double *value);
 
 /* Bytes, at least so many: 500M; or a share: 60%. The other one becomes 0. */
 bool words_take_size(const char *text, double least, double *bytes, double *share);
@@ -52,6 +52,6 @@ enum words_end {
 
 /* *mesh becomes the one word that is no option, borrowed from argv. */
 enum words_end words_take_all(const struct program_words *words, int argc, char **argv, void *settings,
-                                        char **mesh);
+                              char **mesh);
 
 #endif

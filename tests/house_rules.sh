@@ -66,11 +66,11 @@ tested_by() {
     triangle/api/* | sched/schedule/library.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
-    triangle/text/names.c | triangle/text/window.c) echo read ;;
+    triangle/text/names.c) echo read ;;
     triangle/text/output.c | triangle/text/layouts.c) echo write ;;
-    triangle/text/text_stream.c) echo text_stream ;;
-    triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
-    triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
+    triangle/text/stream.c) echo text_stream ;;
+    triangle/text/boundary.c | triangle/text/gmsh.c) echo formats ;;
+    triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/mesh/parents.c) echo groundwork ;;
     triangle/size/asked.c) echo criterion ;;

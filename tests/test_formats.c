@@ -16,7 +16,6 @@
 #include "tests/array_grid.h"
 #include "tests/msh_file.h"
 #include "triangle/text/boundary.h"
-#include "triangle/text/grouping.h"
 #include "triangle/text/parts.h"
 
 /* A square of 3 x 3 points less its upper right quarter; two regions; the marker 2 below, 0 left, else 1. Segment 6 is

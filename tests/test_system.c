@@ -240,7 +240,8 @@ static bool count_names(void *user, const char *name)
     return true;
 }
 
-/* A file gets its name when it is complete; links are not followed, and a second name is refused where it is extended. */
+/* A file gets its name when it is complete; links are not followed, and a second name is refused where the file is
+ * extended. */
 static void test_files_in_a_folder(void **state)
 {
     (void)state;

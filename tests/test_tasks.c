@@ -1,4 +1,4 @@
-/* What the system tells of the machine's work. */
+/* What launchers tell a program. */
 #include "drivers/start.h"
 
 #include <setjmp.h>
@@ -7,18 +7,6 @@
 #include <stdlib.h>
 
 #include <cmocka.h>
-
-/* Among those that run is this thread itself. */
-static void test_busy_where_half_of_the_processors_have_other_work(void **state)
-{
-    (void)state;
-    assert_false(tasks_is_busy(1, 1));
-    assert_true(tasks_is_busy(2, 1));
-    assert_false(tasks_is_busy(1, 2));
-    assert_true(tasks_is_busy(2, 2));
-    assert_false(tasks_is_busy(32, 64));
-    assert_true(tasks_is_busy(33, 64));
-}
 
 /* The launcher's variables, of this process: NULL: unset. Returns how many tasks there are. */
 static int tasks_of(const char *size, const char *rank, int *task)
@@ -56,7 +44,6 @@ static void test_nonsense_is_no_launcher(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_busy_where_half_of_the_processors_have_other_work),
         cmocka_unit_test(test_tasks_as_the_launcher_says),
         cmocka_unit_test(test_nonsense_is_no_launcher),
     };

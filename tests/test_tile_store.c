@@ -1,5 +1,5 @@
 /* A mesh that was kept in files tile by tile makes the files of one that was there as a whole, byte for byte. */
-#include "triangle/text/tile_store.h"
+#include "triangle/text/stream.h"
 
 #include <errno.h>
 #include <setjmp.h>

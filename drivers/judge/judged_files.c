@@ -160,39 +160,13 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
 
 /* --- an HDF5 file, in slices */
 
-struct judged_h5 {
-    struct tri_h5 *file;
-    int32_t columns;
-};
-
-static enum tri_status open_h5_file(struct judged_h5 **h5, const char *path, struct tri_error *error)
-{
-    *h5 = calloc(1, sizeof **h5);
-    enum tri_status status = *h5 ? tri_h5_open(path, &(*h5)->file, error)
-                                 : tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory");
-    if (status) {
-        free(*h5);
-        *h5 = NULL;
-    } else {
-        (*h5)->columns = tri_h5_count((*h5)->file)->columns;
-    }
-    return status;
-}
-
-static void close_h5_file(struct judged_h5 *h5)
-{
-    if (h5)
-        tri_h5_free(h5->file);
-    free(h5);
-}
-
 /* The last one of each triangle. */
-static enum tri_status read_attributes(struct judged_h5 *h5, int64_t first, int64_t n, double *out,
+static enum tri_status read_attributes(const struct tri_h5 *h5, int64_t first, int64_t n, double *out,
                                        struct tri_error *error)
 {
-    int64_t width = h5->columns;
+    const int64_t width = tri_h5_count(h5)->columns;
     double *rows = malloc(((size_t)n * (size_t)width + 1) * sizeof *rows);
-    enum tri_status status = rows ? tri_h5_read(h5->file, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, rows, error)
+    enum tri_status status = rows ? tri_h5_read(h5, TRI_H5_OF_TRIANGLE_ATTRIBUTES, first, n, rows, error)
                                   : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     for (int64_t i = 0; i < n && !status; i++)
         out[i] = rows[width * (i + 1) - 1];
@@ -211,14 +185,14 @@ static enum tri_status read_slice(void *user, enum tri_check_array array, int64_
         [TRI_CHECK_SEGMENT_MARKERS] = TRI_H5_OF_SEGMENT_MARKERS,
         [TRI_CHECK_POINT_ATTRIBUTES] = TRI_H5_OF_POINT_ATTRIBUTES,
     }; /* of others there are none */
-    struct judged_h5 *h5 = user;
+    const struct tri_h5 *h5 = user;
     return array == TRI_CHECK_ATTRIBUTES ? read_attributes(h5, first, n, out, error)
-                                         : tri_h5_read(h5->file, kinds[array], first, n, out, error);
+                                         : tri_h5_read(h5, kinds[array], first, n, out, error);
 }
 
-static struct tri_check_source h5_source(struct judged_h5 *h5)
+static struct tri_check_source h5_source(struct tri_h5 *h5)
 {
-    const struct tri_h5_counts *n = tri_h5_count(h5->file);
+    const struct tri_h5_counts *n = tri_h5_count(h5);
     unsigned given = 1u << TRI_CHECK_POINTS | 1u << TRI_CHECK_CORNERS;
     given |= (n->columns > 0 ? 1u : 0u) << TRI_CHECK_ATTRIBUTES;
     given |= (n->point_markers ? 1u : 0u) << TRI_CHECK_POINT_MARKERS;
@@ -232,7 +206,7 @@ static struct tri_check_source h5_source(struct judged_h5 *h5)
 
 static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    enum tri_status status = open_h5_file(&f->h5, ask->base, error);
+    enum tri_status status = tri_h5_open(ask->base, &f->h5, error);
     if (status != TRI_OK)
         return status;
     f->source = h5_source(f->h5);
@@ -306,5 +280,5 @@ void judged_files_free(struct judged_files *f)
     tri_elements_free(&f->elements);
     tri_pslg_free(&f->input);
     judged_text_close(&f->text);
-    close_h5_file(f->h5);
+    tri_h5_free(f->h5);
 }

@@ -17,7 +17,7 @@
 /* Bytes: less is not worth a refusal. */
 #define JUDGED_WORTH_A_LOOK 1e7
 
-struct judged_h5;
+struct tri_h5;
 
 struct judged_files {
     struct tri_check_source source; /* what they hold; its memory and scratch are those asked for */
@@ -33,7 +33,7 @@ struct judged_files {
     bool boundary_alone; /* it may have segments inside that its format does not keep */
     bool for_solvers;    /* its format leaves out points of the input that no triangle uses */
     struct judged_text text;
-    struct judged_h5 *h5; /* NULL: the mesh is not in HDF5 */
+    struct tri_h5 *h5; /* NULL: the mesh is not in HDF5 */
 };
 
 struct judged_ask {

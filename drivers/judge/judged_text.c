@@ -7,7 +7,7 @@
 
 #include "triangle/base/grow.h"
 #include "triangle/base/system.h"
-#include "triangle/text/window.h"
+#include "triangle/text/text.h"
 
 enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows of them at most */
 

@@ -2,7 +2,7 @@
  * there and committed there. They are byte for byte those of one process. Nothing of them moves between ranks.
  *
  * WHO WRITES WHAT WHERE. Before the first tile all know how many vertices, triangles and segments each rank owns.
- *   HDF5  Rank 0 lays the file out, and tells all where each array lies (triangle/hdf5/buffer.h); a row's place follows
+ *   HDF5  Rank 0 lays the file out, and tells all where each array lies (triangle/hdf5/rows.h); a row's place follows
  *         from its number. At the end rank 0 adds what describes the arrays.
  *   text  Lines have different lengths: each rank keeps its own in a file of its scratch folder, until all have told
  *         how many bytes they have; then it copies them behind those of the ranks before it. The first line, whose

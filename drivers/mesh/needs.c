@@ -25,7 +25,7 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
 /* The same of the lists of edges that lie beside it (tri_edge_list_make). */
 static const double LISTS_BYTES = 18;
-/* And of tiles that wait until all are there (triangle/text/tile_store.h), and what cutting them into parts adds. The
+/* And of tiles that wait until all are there (triangle/text/stream.h), and what cutting them into parts adds. The
  * boundary that a .14 wants then, a byte a vertex in memory, does not show at the peak (measured at 5 million
  * triangles). */
 static const double KEPT_BYTES = 46, PART_BYTES = 17;

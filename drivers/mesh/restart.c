@@ -62,7 +62,8 @@ static bool is_left_out(const char *word)
 
 /* The command that goes on: the words that were given, without the directory, which --resume names, and without the
  * limit of time, which was for the run that is over. */
-static void add_command(struct line *to, const struct restart *r, const char *program, const struct arguments *arguments)
+static void add_command(struct line *to, const struct restart *r, const char *program,
+                        const struct arguments *arguments)
 {
     add(to, program);
     for (int i = 1; i < arguments->argc; i++) {

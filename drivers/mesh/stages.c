@@ -102,7 +102,8 @@ static void add_hint(const struct run *r)
 {
     const char *file = r->arguments->file;
     struct tri_error *error = r->error;
-    bool is_another = error->status == TRI_CANNOT_READ && tri_path_allows(file, TRI_THERE) && strcmp(file, error->file) != 0;
+    bool is_another = error->status == TRI_CANNOT_READ && tri_path_allows(file, TRI_THERE) &&
+                      strcmp(file, error->file) != 0;
     bool is_no_text = error->status == TRI_BAD_INPUT && strstr(error->text, "not a text file");
     size_t n = strlen(error->text);
     if (is_another || is_no_text)

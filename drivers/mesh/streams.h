@@ -11,7 +11,6 @@
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/stream.h"
-#include "triangle/text/tile_store.h"
 
 /* One HDF5 file and the text beside it. */
 struct stream {

@@ -191,7 +191,7 @@ struct following {
     double first, estimate, done; /* triangles at first and at last; the share that was told */
 };
 
-static void tell(void *user, int64_t triangles)
+static void tell_progress(void *user, int64_t triangles)
 {
     struct following *f = user;
     const double most = 0.99; /* the end is told when it has come */
@@ -210,7 +210,7 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
         return status;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
     struct tri_refine_hooks told = *hooks;
-    told.told = tell;
+    told.told = tell_progress;
     told.told_user = &f;
     status = way->refine(way, mesh, how, &told, s, report, error);
     if (!status)

@@ -1,6 +1,6 @@
 /* The system is POSIX 2008, with what Linux has beside it where it has that: files without a name, /proc, writing past
  * the cache. */
-#define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, sync_file_range, madvise, malloc_trim */
+#define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, mkostemp, sync_file_range, madvise, malloc_trim */
 #include "triangle/base/system.h"
 
 #include <aio.h>
@@ -232,7 +232,7 @@ static tri_file make_nameless(char *path)
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int file = mkstemp(path), fault = errno;
+    const int file = mkostemp(path, O_CLOEXEC), fault = errno;
     if (file >= 0)
         (void)unlink(path);
     pthread_sigmask(SIG_SETMASK, &before, NULL);

@@ -1,13 +1,13 @@
 /* The dataset of an array that grows row by row, its length unknown until it ends.
  *
- * Its rows go past HDF5, straight to their places in the file (triangle/hdf5/buffer.h). Where chunks lie is decided by
+ * Its rows go past HDF5, straight to their places in the file (triangle/hdf5/rows.h). Where chunks lie is decided by
  * whoever allocates them, not by when they are full: so what the file holds need not depend on the order in which rows
  * of several arrays come. An array whose rows fit in one chunk, and for which nothing was allocated, is a dataset
  * without chunks, of just its size. */
 #ifndef TRIANGLE_HDF5_ARRAY_H
 #define TRIANGLE_HDF5_ARRAY_H
 
-#include "triangle/hdf5/buffer.h"
+#include "triangle/hdf5/rows.h"
 #include "triangle/hdf5/file.h"
 
 struct tri_h5_array {

@@ -239,8 +239,8 @@ bool tri_h5_add_group(struct tri_h5_file *file, const char *path)
 }
 
 /* type: in the file; memory: of the data. */
-static bool add(struct tri_h5_file *file, const char *path, const char *name, hid_t type, hid_t memory, int n,
-                const void *data)
+static bool add_attribute(struct tri_h5_file *file, const char *path, const char *name, hid_t type, hid_t memory, int n,
+                          const void *data)
 {
     const hsize_t size = (hsize_t)n;
     hid_t space = n > 0 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR), attribute = -1;
@@ -254,17 +254,18 @@ static bool add(struct tri_h5_file *file, const char *path, const char *name, hi
 
 bool tri_h5_add_integers(struct tri_h5_file *file, const char *path, const char *name, int n, const int64_t *values)
 {
-    return add(file, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, n, values);
+    return add_attribute(file, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, n, values);
 }
 
 bool tri_h5_add_reals(struct tri_h5_file *file, const char *path, const char *name, int n, const double *values)
 {
-    return add(file, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, n, values);
+    return add_attribute(file, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, n, values);
 }
 
 bool tri_h5_add_text(struct tri_h5_file *file, const char *path, const char *name, const char *text)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
-    bool done = type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 && add(file, path, name, type, type, 0, text);
+    bool done = type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 &&
+                add_attribute(file, path, name, type, type, 0, text);
     return type >= 0 && H5Tclose(type) >= 0 && done;
 }

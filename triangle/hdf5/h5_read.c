@@ -16,7 +16,6 @@
 
 #include "triangle/base/system.h"
 #include "triangle/hdf5/array.h"
-#include "triangle/hdf5/layout.h"
 
 static const struct tri_h5_form *const forms = tri_h5_forms;
 

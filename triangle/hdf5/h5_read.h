@@ -1,4 +1,4 @@
-/* Reads slices of a mesh from an HDF5 file (triangle/hdf5/layout.h), so that one of any size can be gone through. What
+/* Reads slices of a mesh from an HDF5 file (triangle/hdf5/rows.h), so that one of any size can be gone through. What
  * wants no more than points and triangles may come from another program, if its arrays are such as ours: of our types,
  * uncompressed, in full in the file itself. Calls come from one thread at a time. */
 #ifndef TRIANGLE_HDF5_H5_READ_H

@@ -11,16 +11,103 @@
 #include "triangle/hdf5/h5_write.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "triangle/base/grow.h"
-#include "triangle/hdf5/layout.h"
-#include "triangle/hdf5/segment_spool.h"
+#include "triangle/base/system.h"
 #include "triangle/hdf5/views.h"
 
 enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENTS = CHUNK_POINTS };
+
+/* --- segments
+ *
+ * On their way to the end of the file: how many there will be is not known before, and they may come sooner or
+ * later than points do. Few are kept in memory; more in a file that is needed only later. */
+
+enum { KEPT_SEGMENTS = 1 << 16 };
+
+struct segments {
+    struct tri_output *spool; /* borrowed; empty before and afterwards */
+    int64_t n, n_read;        /* in all; handed out again */
+    int64_t (*ends)[2];       /* [KEPT_SEGMENTS] */
+    int32_t *markers;         /* the same; both behind those in the spool, or those that were read last */
+};
+
+/* The spool holds batches of KEPT_SEGMENTS: their ends, then their markers, as they lie in memory. */
+enum { END_BYTES = KEPT_SEGMENTS * 16, BATCH_BYTES = KEPT_SEGMENTS * 20 };
+
+static enum tri_status open_segments(struct segments *segments, struct tri_output *spool, struct tri_error *error)
+{
+    *segments = (struct segments){.spool = spool, .ends = malloc(END_BYTES),
+                                  .markers = malloc(BATCH_BYTES - END_BYTES)};
+    if (segments->ends && segments->markers)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "no memory to write segments");
+}
+
+static void free_segments(struct segments *segments)
+{
+    free(segments->ends);
+    free(segments->markers);
+    *segments = (struct segments){0};
+}
+
+/* The first place of the batch that begins with segment i. */
+static uint64_t place_of(int64_t i) { return (uint64_t)(i / KEPT_SEGMENTS) * BATCH_BYTES; }
+
+static enum tri_status write_batch(struct segments *s, struct tri_error *error)
+{
+    const uint64_t place = place_of(s->n - 1);
+    int result = tri_output_write_at(s->spool, place, (const char *)s->ends, END_BYTES);
+    if (result == 0)
+        result = tri_output_write_at(s->spool, place + END_BYTES, (const char *)s->markers, BATCH_BYTES - END_BYTES);
+    return tri_output_conclude(s->spool, result, error);
+}
+
+/* Keeps those of a tile. */
+static enum tri_status add_segments(struct segments *s, const struct tri_tile *tile, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; i < tile->n_segments && !status; i++) {
+        const int64_t k = s->n % KEPT_SEGMENTS;
+        if (s->n > 0 && k == 0)
+            status = write_batch(s, error);
+        memcpy(s->ends[k], tile->ends[i], sizeof s->ends[k]);
+        s->markers[k] = tile->segment_markers[i];
+        s->n++;
+    }
+    return status;
+}
+
+static bool read_batch(struct segments *s)
+{
+    const uint64_t place = place_of(s->n_read);
+    return tri_read_again(s->spool->file, (char *)s->ends, END_BYTES, place) &&
+           tri_read_again(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
+}
+
+/* Once all are there: the next of them, in their order, as a tile that has nothing else; none are left: n_segments is
+ * 0, and the spool is empty. */
+static enum tri_status next_segments(struct segments *s, struct tri_tile *tile, struct tri_error *error)
+{
+    const int64_t left = s->n - s->n_read;
+    const bool spooled = s->n > KEPT_SEGMENTS;
+    enum tri_status status = TRI_OK;
+    if (spooled && s->n_read == 0) /* the last batch makes room for the first */
+        status = write_batch(s, error);
+    if (!status && spooled && !(left > 0 ? read_batch(s) : tri_file_cut(s->spool->file, 0)))
+        status = tri_fail_system(error, TRI_CANNOT_WRITE, s->spool->path, "cannot read segments again", errno);
+    *tile = (struct tri_tile){.ends = (const int64_t(*)[2])s->ends, .segment_markers = s->markers,
+                              .first_segment = s->n_read};
+    tile->n_segments = (int32_t)(left < KEPT_SEGMENTS ? left : KEPT_SEGMENTS);
+    s->n_read += tile->n_segments;
+    return status;
+}
+
+/* --- the writer */
 
 struct tri_h5_writer {
     struct tri_h5_options options;
@@ -28,7 +115,7 @@ struct tri_h5_writer {
     struct tri_h5_array arrays[TRI_H5_KINDS];
     struct tri_h5_layout layout; /* of them */
     struct tri_h5_part *part;    /* what has rows; NULL: others have */
-    struct tri_h5_segments segments;
+    struct segments segments;
     int64_t n_points, n_triangles, n_chunks; /* so far; the last of points, and of triangles, allocated */
     int64_t most_narrow;
     int64_t n_input;      /* points that there were before refinement */
@@ -99,7 +186,7 @@ static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struc
     return status;
 }
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
@@ -115,7 +202,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     }
     H5E_END_TRY
     status = status ? status : tri_h5_part_take(w->part, tile, error); /* there are no arrays of segments yet */
-    return status ? status : tri_h5_segments_add(&w->segments, tile, error);
+    return status ? status : add_segments(&w->segments, tile, error);
 }
 
 /* --- ending */
@@ -154,7 +241,7 @@ static enum tri_status write_rest(struct tri_h5_writer *w, struct tri_error *err
     struct tri_tile tile;
     enum tri_status status = TRI_OK;
     do {
-        status = tri_h5_segments_next(&w->segments, &tile, error);
+        status = next_segments(&w->segments, &tile, error);
         status = status ? status : tri_h5_part_take(w->part, &tile, error);
     } while (!status && tile.n_segments > 0);
     return status ? status : tri_h5_part_end(w->part, error);
@@ -197,7 +284,7 @@ static void let_go(struct tri_h5_writer *w)
     for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
         tri_h5_array_free(&w->arrays[kind]);
     tri_h5_part_free(w->part);
-    tri_h5_segments_free(&w->segments);
+    free_segments(&w->segments);
     (void)tri_h5_close(&w->file, NULL);
 }
 
@@ -208,7 +295,7 @@ static enum tri_status begin_again(struct tri_h5_writer *w, struct tri_error *er
     return tri_output_restart(w->options.file, error);
 }
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+static enum tri_status begin_file(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     const bool alone = stream->n_ranks <= 1;
@@ -217,7 +304,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     {
         status = w->segments.ends ? begin_again(w, error) : TRI_OK;
         begin_arrays(w, stream);
-        status = status ? status : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
+        status = status ? status : open_segments(&w->segments, w->options.xdmf, error);
         if (!status && alone)
             status = tri_h5_part_new(&w->part, &w->layout, true, stream, w->options.file, error);
         status = status ? status : tri_h5_create(&w->file, w->options.file, error);
@@ -244,7 +331,7 @@ static enum tri_status write_about(struct tri_h5_writer *w, struct tri_error *er
     return done ? TRI_OK : tri_h5_fail(f, about, error);
 }
 
-static enum tri_status end(void *user, struct tri_error *error)
+static enum tri_status end_file(void *user, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     const struct tri_h5_options *o = &w->options;
@@ -275,7 +362,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
     w->options = *options;
     empty(w);
     (void)H5dont_atexit(); /* at the end of the process HDF5 would print about files that could not be written */
-    *sink = (struct tri_sink){w, begin, take, end};
+    *sink = (struct tri_sink){w, begin_file, take_tile, end_file};
     return TRI_OK;
 }
 

@@ -1,4 +1,4 @@
-/* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/layout.h, views for other programs, and beside the
+/* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/rows.h, views for other programs, and beside the
  * file a short XDMF text that names its arrays, for what reads meshes by way of that.
  *
  * The bytes depend on the mesh alone, not on how it was cut into tiles. Numbers of points take 32 bits as long as they
@@ -8,7 +8,7 @@
 #define TRIANGLE_HDF5_H5_WRITE_H
 
 #include "ptriangle/tiles.h"
-#include "triangle/hdf5/buffer.h"
+#include "triangle/hdf5/rows.h"
 #include "triangle/text/output.h"
 
 struct tri_h5_options {
@@ -34,7 +34,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
 
 /* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
  * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
- * them there (triangle/hdf5/buffer.h), until before the end. The layout is the writer's. */
+ * them there (triangle/hdf5/rows.h), until before the end. The layout is the writer's. */
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer);
 
 /* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */

@@ -1,7 +1,19 @@
+/* A large piece is written behind its caller's back, past the system's cache where the file system allows that:
+ * what a mesh of many gigabytes would push out of the cache stays there, processors copy nothing, and little is left to
+ * sync at the end.
+ *
+ * INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
+ * not been written; all that have come before have been, or are on their way from the other buffer. */
 #include "triangle/hdf5/rows.h"
 
-#include "triangle/hdf5/layout.h"
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/base/system.h"
 #include "triangle/text/binary.h"
+#include "triangle/text/stream.h"
+
+/* --- rows as bytes */
 
 enum { REALS = 1 << TRI_H5_FLOAT64, NARROW = 1 << TRI_H5_INT32, NUMBERS = NARROW | 1 << TRI_H5_INT64 };
 
@@ -15,11 +27,6 @@ const struct tri_h5_form tri_h5_forms[TRI_H5_KINDS] = {
     {TRI_H5_SEGMENT_MARKERS, 0, false, TRI_H5_OF_SEGMENTS, NARROW},
 };
 
-static char *put_number(char *at, enum tri_h5_type type, int64_t number)
-{
-    return type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)number) : tri_put_i64(at, number);
-}
-
 static void put_markers(const int32_t *markers, int32_t i, int32_t end, char *at)
 {
     for (; i < end; i++)
@@ -32,18 +39,10 @@ static void put_reals(const double *reals, int64_t width, int32_t i, int32_t end
         at = tri_put_f64(at, reals[k]);
 }
 
-static void put_corners(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
+static void put_numbers(const int64_t *numbers, int width, enum tri_h5_type type, int32_t i, int32_t end, char *at)
 {
-    for (; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            at = put_number(at, type, rows->tile->corners[i][k]);
-}
-
-static void put_ends(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        for (int k = 0; k < 2; k++)
-            at = put_number(at, type, rows->tile->ends[i][k]);
+    for (int64_t k = (int64_t)i * width; k < (int64_t)end * width; k++)
+        at = type == TRI_H5_INT32 ? tri_put_i32(at, (int32_t)numbers[k]) : tri_put_i64(at, numbers[k]);
 }
 
 static void put_columns(const struct tri_h5_rows *rows, enum tri_h5_type type, int32_t i, int32_t end, char *at)
@@ -63,9 +62,9 @@ void tri_h5_put(const struct tri_h5_rows *rows, enum tri_h5_kind kind, enum tri_
     case TRI_H5_OF_POINTS: put_reals(tile->points[0], 2, i, end, at); break;
     case TRI_H5_OF_POINT_MARKERS: put_markers(tile->point_markers, i, end, at); break;
     case TRI_H5_OF_POINT_ATTRIBUTES: put_reals(tile->attributes, rows->n_attributes, i, end, at); break;
-    case TRI_H5_OF_TRIANGLES: put_corners(rows, type, i, end, at); break;
+    case TRI_H5_OF_TRIANGLES: put_numbers(tile->corners[0], 3, type, i, end, at); break;
     case TRI_H5_OF_TRIANGLE_ATTRIBUTES: put_columns(rows, type, i, end, at); break;
-    case TRI_H5_OF_SEGMENTS: put_ends(rows, type, i, end, at); break;
+    case TRI_H5_OF_SEGMENTS: put_numbers(tile->ends[0], 2, type, i, end, at); break;
     case TRI_H5_OF_SEGMENT_MARKERS: put_markers(tile->segment_markers, i, end, at); break;
     case TRI_H5_KINDS: break;
     }
@@ -80,4 +79,214 @@ void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile)
         bounds[2] = at[0] > bounds[2] ? at[0] : bounds[2];
         bounds[3] = at[1] > bounds[3] ? at[1] : bounds[3];
     }
+}
+
+/* --- buffers */
+
+enum { BUFFER_BYTES = 1 << 20 };
+
+/* At most one piece at a time. */
+struct behind {
+    struct tri_behind *under_way; /* NULL: nothing is */
+    const char *data;             /* lent */
+    size_t size;
+    uint64_t place;
+};
+
+struct strip {
+    const struct tri_h5_laid *laid;
+    int64_t next;
+    int32_t n, room; /* rows in the buffer, at most */
+    char *buffer;    /* NULL: nothing has come */
+    char *other;     /* as large: what is on its way into the file; NULL: none was needed */
+    struct behind behind;
+};
+
+struct tri_h5_part {
+    struct tri_output *file;
+    bool alone;
+    struct tri_h5_rows rows;
+    double *columns;
+    struct strip strip[TRI_H5_KINDS];
+};
+
+static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, part->file->path, 0, "no memory to write rows of the file");
+}
+
+/* --- writing that goes on while its caller does */
+
+static bool is_aligned(uint64_t place, const char *data, size_t size)
+{
+    return (place | (uint64_t)(uintptr_t)data | size) % TRI_PAGE_BYTES == 0;
+}
+
+/* Begins to write to a place; nothing is under way. The data are lent until it is waited for. Returns 0 or what
+ * tri_output_conclude makes an error of. */
+static int start_behind(struct behind *behind, struct tri_output *output, uint64_t place, const char *data, size_t size)
+{
+    assert(!behind->under_way && tri_output_has_places(output));
+    if (tri_stop_is_asked(output->stop))
+        return TRI_OUTPUT_STOPPED;
+    const tri_file file = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
+    *behind = (struct behind){tri_behind_start(file, data, size, place), data, size, place};
+    return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
+}
+
+/* Waits for what is under way, if anything is: then it is written. Returns the same. What cannot be asked for, or is
+ * done in part only, is written as everything else is. */
+static int wait_behind(struct behind *behind, const struct tri_output *output)
+{
+    if (!behind->under_way)
+        return 0;
+    const size_t done = tri_behind_wait(behind->under_way);
+    behind->under_way = NULL;
+    return tri_output_write_at(output, behind->place + done, behind->data + done, behind->size - done);
+}
+
+/* --- one array */
+
+/* Where bytes go that may pass the system's cache. */
+static char *new_buffer(const struct strip *s)
+{
+    return tri_page_alloc((size_t)s->room * tri_h5_row_bytes(s->laid));
+}
+
+static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
+{
+    const size_t bytes = tri_h5_row_bytes(s->laid);
+    s->room = part->alone ? s->laid->chunk_rows : bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / bytes) : 1;
+    s->buffer = new_buffer(s);
+    return s->buffer;
+}
+
+/* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
+static int send_buffer(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
+{
+    int result = wait_behind(&s->behind, part->file);
+    s->other = part->alone && !s->other ? new_buffer(s) : s->other;
+    if (result || !s->other)
+        return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
+    char *buffer = s->buffer;
+    result = start_behind(&s->behind, part->file, place, buffer, bytes);
+    s->buffer = s->other;
+    s->other = buffer;
+    return result;
+}
+
+static enum tri_status flush_strip(const struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+{
+    const int64_t first = s->next - s->n, chunk_rows = s->laid->chunk_rows;
+    const size_t row_bytes = tri_h5_row_bytes(s->laid), bytes = (size_t)s->n * row_bytes;
+    if (s->n == 0)
+        return TRI_OK;
+    assert(first / chunk_rows < s->laid->n);
+    const uint64_t place = (uint64_t)s->laid->place[first / chunk_rows] + (uint64_t)(first % chunk_rows) * row_bytes;
+    s->n = 0;
+    return tri_output_conclude(part->file, send_buffer(part, s, place, bytes), error);
+}
+
+/* How many rows may follow, as far as the buffer and the place reach. */
+static int32_t room_of(const struct strip *s)
+{
+    const int64_t here = s->laid->chunk_rows - s->next % s->laid->chunk_rows;
+    return here < s->room - s->n ? (int32_t)here : s->room - s->n;
+}
+
+static bool is_full(const struct strip *s)
+{
+    return s->n == s->room || (s->n > 0 && s->next % s->laid->chunk_rows == 0);
+}
+
+/* A full buffer is written when more comes: by then it is known where. */
+static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind, int64_t first, int32_t n,
+                                struct tri_error *error)
+{
+    struct strip *s = &part->strip[kind];
+    enum tri_status status = TRI_OK;
+    if (s->laid->width == 0 || n == 0)
+        return TRI_OK;
+    if (!s->buffer && !begin_strip(part, s))
+        return no_memory(part, error);
+    if (first != s->next)
+        status = flush_strip(part, s, error);
+    s->next = first;
+    for (int32_t i = 0; !status && i < n;) {
+        status = is_full(s) ? flush_strip(part, s, error) : TRI_OK;
+        const int32_t room = room_of(s), end = room < n - i ? i + room : n;
+        tri_h5_put(&part->rows, kind, s->laid->type, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
+        s->n += end - i;
+        s->next += end - i;
+        i = end;
+    }
+    return status;
+}
+
+enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
+{
+    struct strip *s = &part->strip[kind];
+    enum tri_status status = flush_strip(part, s, error);
+    status = status ? status : tri_output_conclude(part->file, wait_behind(&s->behind, part->file), error);
+    if (status)
+        return status;
+    free(s->buffer);
+    free(s->other);
+    s->buffer = s->other = NULL;
+    return TRI_OK;
+}
+
+/* --- all */
+
+enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, bool alone,
+                                const struct tri_stream *stream, struct tri_output *file, struct tri_error *error)
+{
+    struct tri_h5_part *p = calloc(1, sizeof *p);
+    double *columns = tri_copy_columns(stream);
+    *part = p;
+    if (!p || !columns) {
+        free(columns);
+        return tri_fail(error, TRI_NO_MEMORY, file->path, 0, "no memory to write the file");
+    }
+    *p = (struct tri_h5_part){.file = file, .alone = alone, .columns = columns,
+                              .rows = {NULL, columns, stream->n_attributes, stream->n_columns}};
+    for (int kind = 0; kind < TRI_H5_KINDS; kind++)
+        p->strip[kind].laid = &layout->array[kind];
+    return TRI_OK;
+}
+
+enum tri_status tri_h5_part_take(struct tri_h5_part *part, const struct tri_tile *tile, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    part->rows.tile = tile;
+    for (enum tri_h5_kind kind = 0; !status && kind < TRI_H5_KINDS; kind++) {
+        if (kind < TRI_H5_OF_TRIANGLES)
+            status = add_rows(part, kind, tile->first_vertex, tile->n_vertices, error);
+        else if (kind < TRI_H5_OF_SEGMENTS)
+            status = add_rows(part, kind, tile->first_triangle, tile->n_triangles, error);
+        else
+            status = add_rows(part, kind, tile->first_segment, tile->n_segments, error);
+    }
+    return status;
+}
+
+enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (enum tri_h5_kind kind = 0; !status && kind < TRI_H5_KINDS; kind++)
+        status = tri_h5_part_pause(part, kind, error);
+    return status;
+}
+
+void tri_h5_part_free(struct tri_h5_part *part)
+{
+    for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
+        struct strip *s = &part->strip[kind];
+        (void)wait_behind(&s->behind, part->file);
+        free(s->buffer);
+        free(s->other);
+    }
+    if (part)
+        free(part->columns);
+    free(part);
 }

@@ -1,7 +1,11 @@
 /* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
 #include "triangle/hdf5/views.h"
 
-#include "triangle/hdf5/layout.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };
 
@@ -167,4 +171,91 @@ enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5
     if (v.status)
         return v.status;
     return v.failed ? tri_h5_fail(file, "the views for other programs", error) : TRI_OK;
+}
+
+/* --- XDMF: one grid, its topology, its geometry, and its attributes */
+
+struct xdmf {
+    struct tri_output *output;
+    char *name; /* of the HDF5 file, as XML wants it */
+    enum tri_status status;
+    struct tri_error *error;
+};
+
+static void put_words(struct xdmf *text, const char *words)
+{
+    text->status = text->status ? text->status : tri_output_write(text->output, words, strlen(words), text->error);
+}
+
+/* The characters that XML takes for its own. Malloc'ed; NULL: no memory. */
+static char *escaped(const char *name)
+{
+    enum { LONGEST = 6 };
+    char *text = malloc(LONGEST * strlen(name) + 1), *at = text;
+    for (; text && *name; name++) {
+        const char *word = *name == '&' ? "&amp;" : *name == '<' ? "&lt;" : *name == '>' ? "&gt;" : NULL;
+        if (word)
+            at += sprintf(at, "%s", word);
+        else
+            *at++ = *name;
+    }
+    if (text)
+        *at = 0;
+    return text;
+}
+
+static void put_item(struct xdmf *text, const struct tri_h5_array *array)
+{
+    char words[200], width[20] = "";
+    if (!array->is_list)
+        snprintf(width, sizeof width, " %" PRId32, array->laid->width);
+    snprintf(words, sizeof words, "<DataItem Dimensions=\"%" PRId64 "%s\" NumberType=\"%s\" Precision=\"%d\" "
+             "Format=\"HDF\">", array->n, width, array->laid->type == TRI_H5_FLOAT64 ? "Float" : "Int",
+             array->laid->type == TRI_H5_INT32 ? 4 : 8);
+    put_words(text, words);
+    put_words(text, text->name);
+    put_words(text, ":/");
+    put_words(text, array->name);
+    put_words(text, "</DataItem>");
+}
+
+static void put_attribute(struct xdmf *text, const struct tri_h5_array *array, const char *name, const char *center)
+{
+    char words[200];
+    if (!array->file)
+        return;
+    snprintf(words, sizeof words, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", name,
+             array->laid->width == 1 ? "Scalar" : "Matrix", center);
+    put_words(text, words);
+    put_item(text, array);
+    put_words(text, "\n</Attribute>\n");
+}
+
+static void put_grid(struct xdmf *text, const struct tri_h5_array *triangles, const struct tri_h5_array *points)
+{
+    char words[300];
+    snprintf(words, sizeof words,
+             "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"mesh\" GridType=\"Uniform\">\n"
+             "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%" PRId64 "\" NodesPerElement=\"3\">\n",
+             triangles->n);
+    put_words(text, words);
+    put_item(text, triangles);
+    put_words(text, "\n</Topology>\n<Geometry GeometryType=\"XY\">\n");
+    put_item(text, points);
+    put_words(text, "\n</Geometry>\n");
+}
+
+enum tri_status tri_h5_write_xdmf(struct tri_output *output, const char *name,
+                                  const struct tri_h5_array arrays[TRI_H5_KINDS], struct tri_error *error)
+{
+    struct xdmf text = {output, escaped(name), TRI_OK, error};
+    if (!text.name)
+        return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "out of memory for file names");
+    put_grid(&text, &arrays[TRI_H5_OF_TRIANGLES], &arrays[TRI_H5_OF_POINTS]);
+    put_attribute(&text, &arrays[TRI_H5_OF_TRIANGLE_ATTRIBUTES], "attributes", "Cell");
+    put_attribute(&text, &arrays[TRI_H5_OF_POINT_MARKERS], "marker", "Node");
+    put_attribute(&text, &arrays[TRI_H5_OF_POINT_ATTRIBUTES], "point_attributes", "Node");
+    put_words(&text, "</Grid>\n</Domain>\n</Xdmf>\n");
+    free(text.name);
+    return text.status;
 }

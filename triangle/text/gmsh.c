@@ -21,7 +21,6 @@
 #include "triangle/text/binary.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
-#include "triangle/text/grouping.h"
 #include "triangle/text/parts.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9 };
@@ -548,7 +547,7 @@ static enum tri_status write_all(struct gmsh *g)
     return g->status;
 }
 
-static enum tri_status begin(struct gmsh *g)
+static enum tri_status begin_gmsh(struct gmsh *g)
 {
     const struct tri_grid *grid = g->grid;
     enum tri_status status = tri_group(&g->surfaces.all, grid->n_triangles, tri_triangle_group, grid, g->error);
@@ -565,7 +564,7 @@ static enum tri_status begin(struct gmsh *g)
     return TRI_OK;
 }
 
-static void end(struct gmsh *g)
+static void free_gmsh(struct gmsh *g)
 {
     tri_grouping_free(&g->surfaces.all);
     tri_grouping_free(&g->curves.all);
@@ -576,11 +575,11 @@ enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *
 {
     struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
                      .n_inner = grid->n_points};
-    enum tri_status status = begin(&g);
+    enum tri_status status = begin_gmsh(&g);
     choose(&g.surfaces, NULL, 0, grid->n_triangles);
     choose(&g.curves, NULL, 0, grid->n_segments);
     status = status ? status : write_all(&g);
-    end(&g);
+    free_gmsh(&g);
     return status;
 }
 
@@ -602,11 +601,11 @@ enum tri_status tri_write_msh_parts(struct tri_output *const *outputs, int n, co
 {
     struct tri_parts parts = {0};
     struct gmsh g = {.grid = grid, .executor = executor, .error = error, .parts = &parts};
-    enum tri_status status = begin(&g);
+    enum tri_status status = begin_gmsh(&g);
     status = status ? status : tri_parts_make(&parts, n, grid, &g.surfaces.all, &g.curves.all, error);
     for (int part = 0; part < n && !status; part++)
         status = write_part(&g, part, outputs[part]);
     tri_parts_free(&parts);
-    end(&g);
+    free_gmsh(&g);
     return status;
 }

@@ -11,7 +11,7 @@
 #include "triangle/text/boundary.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
-#include "triangle/text/grouping.h"
+#include "triangle/text/parts.h"
 
 enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4, NODES_A_LINE = 10 };
 
@@ -25,15 +25,15 @@ struct hydro {
     const struct tri_boundary_piece *piece; /* whose rows are written */
 };
 
-static char *put(char *at, const char *text)
+static char *put_words(char *at, const char *text)
 {
     const size_t n = strlen(text);
     memcpy(at, text, n);
     return at + n;
 }
 
-static char *put_integer(char *at, int64_t value) { return tri_print_integer(put(at, " "), value, 0); }
-static char *put_real(char *at, double value) { return tri_print_real(put(at, " "), value); }
+static char *put_integer(char *at, int64_t value) { return tri_print_integer(put_words(at, " "), value, 0); }
+static char *put_real(char *at, double value) { return tri_print_real(put_words(at, " "), value); }
 
 static enum tri_status put_text(const struct hydro *h, const char *text)
 {
@@ -52,9 +52,9 @@ static char *node_row(const void *user, int64_t i, char *at)
     const struct tri_grid *grid = h->grid;
     struct tri_grid_point point;
     grid->point(grid->user, i, &point);
-    at = put_integer(put(at, h->card), i + 1);
+    at = put_integer(put_words(at, h->card), i + 1);
     at = put_real(put_real(at, point.at[0]), point.at[1]);
-    return put(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, i, 0) : 0), "\n");
+    return put_words(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, i, 0) : 0), "\n");
 }
 
 static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), const char *card,
@@ -77,11 +77,11 @@ static char *element_card(const void *user, int64_t i, char *at)
     const struct hydro *h = user;
     int64_t nodes[6];
     h->grid->triangle(h->grid->user, i, nodes);
-    at = put_integer(put(at, h->grid->n_nodes == 6 ? "E6T" : "E3T"), i + 1);
+    at = put_integer(put_words(at, h->grid->n_nodes == 6 ? "E6T" : "E3T"), i + 1);
     for (int k = 0; k < h->grid->n_nodes; k++)
         at = put_integer(at, nodes[h->grid->n_nodes == 6 ? order[k] : k] + 1);
     int32_t material = tri_group_tag(tri_triangle_group(h->grid, i));
-    return put(put_integer(at, material > 0 ? material : 1), "\n");
+    return put_words(put_integer(at, material > 0 ? material : 1), "\n");
 }
 
 /* Ten nodes a line; the last is negative. */
@@ -90,12 +90,12 @@ static char *string_card(const void *user, int64_t i, char *at)
     const struct hydro *h = user;
     const struct tri_boundary_piece *piece = h->piece;
     const int64_t n = piece->n + piece->closed, begin = i * NODES_A_LINE;
-    at = put(at, "NS");
+    at = put_words(at, "NS");
     for (int64_t k = begin; k < n && k < begin + NODES_A_LINE; k++) {
         int64_t node = h->boundary.nodes[piece->first + k % piece->n] + 1;
         at = put_integer(at, k == n - 1 ? -node : node);
     }
-    return put(begin + NODES_A_LINE < n ? at : put_integer(at, piece->marker), "\n");
+    return put_words(begin + NODES_A_LINE < n ? at : put_integer(at, piece->marker), "\n");
 }
 
 static enum tri_status write_2dm(struct hydro *h)
@@ -128,7 +128,7 @@ static char *element_line(const void *user, int64_t i, char *at)
     at = put_integer(put_integer(at, i + 1), 3);
     for (int k = 0; k < 3; k++)
         at = put_integer(at, nodes[k] + 1);
-    return put(at, "\n");
+    return put_words(at, "\n");
 }
 
 /* Mainland 0 or island 1; 10 and 20 more with a marker of 10 to 29, and 12 or 22, a river, where that is the marker. */
@@ -152,13 +152,13 @@ static int64_t shown_nodes(const struct tri_boundary_piece *piece)
 static char *boundary_line(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
-    return put(put_integer(at, h->boundary.nodes[h->piece->first + i % h->piece->n] + 1), "\n");
+    return put_words(put_integer(at, h->boundary.nodes[h->piece->first + i % h->piece->n] + 1), "\n");
 }
 
 static enum tri_status put_numbers(const struct hydro *h, int64_t a, int64_t b, const char *what)
 {
     char line[2 * INTEGER_BYTES + 64], *at = put_integer(line, a);
-    at = put(put(b < 0 ? at : put_integer(at, b), what), "\n");
+    at = put_words(put_words(b < 0 ? at : put_integer(at, b), what), "\n");
     return tri_output_write(h->output, line, (size_t)(at - line), h->error);
 }
 

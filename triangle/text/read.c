@@ -43,7 +43,7 @@ static void fail(struct reader *r, enum tri_status status, const char *format, .
 }
 
 /* To be ended in any case. */
-static void begin(struct reader *r, const char *path)
+static void begin_reading(struct reader *r, const char *path)
 {
     const struct tri_read_options *o = r->options;
     r->status = tri_text_load(&r->text, path, o->chunk_bytes, o->executor, o->stop, r->error);
@@ -51,7 +51,7 @@ static void begin(struct reader *r, const char *path)
         r->cursor = tri_cursor_begin(&r->text);
 }
 
-static enum tri_status end(struct reader *r)
+static enum tri_status end_reading(struct reader *r)
 {
     tri_text_free(&r->text);
     if (r->status && r->pslg)
@@ -217,10 +217,10 @@ enum tri_status tri_read_node(const char *path, const struct tri_read_options *o
 {
     struct reader r = {.options = options, .pslg = out, .error = error};
     *out = (struct tri_pslg){0};
-    begin(&r, path);
+    begin_reading(&r, path);
     (void)read_vertices(&r, NULL, true);
     *base = r.base;
-    return end(&r);
+    return end_reading(&r);
 }
 
 /* --- segments */
@@ -343,14 +343,14 @@ enum tri_status tri_read_poly(const char *poly_path, const char *node_path, cons
 {
     struct reader r = {.options = options, .pslg = out, .error = error};
     *out = (struct tri_pslg){0};
-    begin(&r, poly_path);
+    begin_reading(&r, poly_path);
     *points_in_poly = read_vertices(&r, node_path, false);
     read_segments(&r);
     out->holes = read_sites(&r, &holes, 2, parse_hole, &out->n_holes);
     if (!r.status && (options->want_regions || (options->regions_if_any && tri_cursor_remaining(&r.cursor) > 0)))
         out->regions = read_sites(&r, &regions, 4, parse_region, &out->n_regions);
     *base = r.base;
-    return end(&r);
+    return end_reading(&r);
 }
 
 /* --- .ele */
@@ -416,9 +416,9 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
 {
     struct reader r = {.options = options, .elements = out, .base = base, .n_points = n_points, .error = error};
     *out = (struct tri_elements){0};
-    begin(&r, path);
+    begin_reading(&r, path);
     read_elements(&r);
-    return end(&r);
+    return end_reading(&r);
 }
 
 /* --- .area */
@@ -434,7 +434,7 @@ enum tri_status tri_read_area(const char *path, const struct tri_read_options *o
                               struct tri_elements *elements, struct tri_error *error)
 {
     struct reader r = {.options = options, .base = base, .error = error};
-    begin(&r, path);
+    begin_reading(&r, path);
     const int64_t n = read_header(&r, &bounds, NULL, 0);
     if (!r.status && n != elements->n)
         fail(&r, TRI_BAD_INPUT, "there are %lld area bounds, but %ld triangles", (long long)n, (long)elements->n);
@@ -444,5 +444,5 @@ enum tri_status tri_read_area(const char *path, const struct tri_read_options *o
         free(elements->areas);
         elements->areas = NULL;
     }
-    return end(&r);
+    return end_reading(&r);
 }

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "triangle/text/bytes.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/reading.h"

@@ -4,10 +4,12 @@
 #define TRIANGLE_TEXT_READING_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "triangle/base/executor.h"
 #include "triangle/mesh/pslg.h"
+#include "triangle/text/binary.h"
 
 struct tri_reading {
     const char *path;
@@ -48,5 +50,46 @@ bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading 
 /* The place of a tag; -1: there is none. O(1) or O(log n). */
 int64_t tri_tags_place(const struct tri_tags *tags, int64_t tag);
 void tri_tags_free(struct tri_tags *tags);
+
+/* --- a file in memory as bytes that are taken one after the other, for formats that are binary
+ *
+ * Little-endian numbers, and lines between them. What is not there is not taken: everyone who takes asks before. */
+
+struct tri_bytes {
+    char *data;           /* malloc'ed */
+    const char *at, *end; /* what has not been taken */
+};
+
+/* Reads a file whole; a pipe or device is refused. To be freed in any case. TRI_CANNOT_READ, TRI_NO_MEMORY. */
+enum tri_status tri_bytes_load(struct tri_bytes *bytes, const char *path, struct tri_error *error);
+void tri_bytes_free(struct tri_bytes *bytes);
+
+static inline uint64_t tri_bytes_left(const struct tri_bytes *bytes) { return (uint64_t)(bytes->end - bytes->at); }
+
+/* Are there n items of that size? */
+static inline bool tri_bytes_has(const struct tri_bytes *bytes, uint64_t n, uint64_t size)
+{
+    return n <= tri_bytes_left(bytes) / size;
+}
+
+/* The line that begins here, without its end, and moves behind it; false: there is none. */
+bool tri_bytes_line(struct tri_bytes *bytes, const char **line, size_t *length);
+
+/* Moves behind the text, wherever it is next; false: it does not come. */
+bool tri_bytes_pass(struct tri_bytes *bytes, const char *text);
+
+/* --- numbers that are taken: they are there */
+
+static inline int32_t tri_take_i32(struct tri_bytes *bytes)
+{
+    bytes->at += 4;
+    return tri_get_i32(bytes->at - 4);
+}
+
+static inline uint64_t tri_take_u64(struct tri_bytes *bytes)
+{
+    bytes->at += 8;
+    return tri_get_u64(bytes->at - 8);
+}
 
 #endif

@@ -20,6 +20,7 @@
 
 #include "triangle/base/executor.h"
 #include "triangle/base/status.h"
+#include "triangle/base/system.h"
 #include "triangle/text/decimal.h"
 
 struct tri_text_chunk {
@@ -37,7 +38,7 @@ struct tri_text {
     size_t chunk_bytes;
     size_t n_chunks;
     struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last is the end of the text */
-    size_t lines_before; /* of a text that is a stretch of a file (window.h) */
+    size_t lines_before; /* of a text that is a stretch of a file */
 };
 
 /* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GB.
@@ -173,5 +174,41 @@ struct tri_table {
  * reported, however many threads ran. Errors: TRI_BAD_INPUT, TRI_NO_MEMORY. */
 enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_table *table,
                                  const struct tri_executor *executor, struct tri_error *error);
+
+/* --- a text of any size, a stretch of lines in memory at a time: records in order
+ *
+ * Each stretch is indexed and parsed as a text of its own, by as many threads as the executor has. */
+
+struct tri_window {
+    struct tri_text text;     /* the stretch; its data are all of `data` up to the last whole line */
+    struct tri_cursor cursor;
+    tri_file file;            /* TRI_NO_FILE: not open */
+    char *data;
+    size_t room, used;        /* bytes */
+    bool at_end;              /* nothing is left to be read */
+    const struct tri_executor *executor;
+};
+
+/* Opens the file; path must live as long. bytes: of a stretch, > 0 (longer lines get more). *window is to be freed in
+ * any case. TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_BAD_INPUT (a NUL), as of all functions here. */
+enum tri_status tri_window_open(struct tri_window *window, const char *path, size_t bytes,
+                                const struct tri_executor *executor, struct tri_error *error);
+void tri_window_free(struct tri_window *window);
+
+/* Opens the next record, and moves past it; *found false: there is none. */
+enum tri_status tri_window_next(struct tri_window *window, struct tri_fields *fields, bool *found,
+                                struct tri_error *error);
+
+/* Looks at the next record without moving. */
+enum tri_status tri_window_peek(struct tri_window *window, struct tri_fields *fields, bool *found,
+                                struct tri_error *error);
+
+/* Parses the next table->n records, stretch by stretch: table->row counts from the begin of each, and behind each
+ * flush(user, n) takes its n rows, at most `most`. Fewer records: TRI_BAD_INPUT, told of the line before them, where
+ * nouns are announced. */
+enum tri_status tri_window_table(struct tri_window *window, const struct tri_table *table, const char *nouns,
+                                 size_t most,
+                                 enum tri_status (*flush)(void *user, size_t n, struct tri_error *error),
+                                 struct tri_error *error);
 
 #endif

@@ -117,7 +117,7 @@ static char *type_row(const void *user, int64_t i, char *at)
 
 /* --- arrays */
 
-static void add(struct vtu *v, struct array array)
+static void add_array(struct vtu *v, struct array array)
 {
     assert(v->n_arrays < MOST_ARRAYS);
     v->arrays[v->n_arrays++] = array;
@@ -130,19 +130,20 @@ static void list_arrays(struct vtu *v)
     const char *index = v->wide ? "Int64" : "Int32";
     const size_t wide = v->wide ? 8 : 4, attributes = 8 * (size_t)g->n_attributes, columns = 8 * (size_t)g->n_columns;
     if (g->has_markers)
-        add(v, (struct array){"PointData", "Int32", "marker", 1, {n}, {4}, marker_row});
+        add_array(v, (struct array){"PointData", "Int32", "marker", 1, {n}, {4}, marker_row});
     if (g->n_attributes > 0)
-        add(v, (struct array){"PointData", "Float64", "attributes", g->n_attributes, {n}, {attributes},
-                              attributes_row});
+        add_array(v, (struct array){"PointData", "Float64", "attributes", g->n_attributes, {n}, {attributes},
+                                    attributes_row});
     if (g->has_markers)
-        add(v, (struct array){"CellData", "Int32", "marker", 1, {m, s}, {4, 4}, cell_marker_row});
+        add_array(v, (struct array){"CellData", "Int32", "marker", 1, {m, s}, {4, 4}, cell_marker_row});
     if (g->n_columns > 0)
-        add(v, (struct array){"CellData", "Float64", "attributes", g->n_columns, {m, s}, {columns, columns},
-                              columns_row});
-    add(v, (struct array){"Points", "Float64", "points", 3, {n}, {24}, place_row});
-    add(v, (struct array){"Cells", index, "connectivity", 1, {m, s}, {wide * (size_t)g->n_nodes, 2 * wide}, nodes_row});
-    add(v, (struct array){"Cells", index, "offsets", 1, {m, s}, {wide, wide}, end_row});
-    add(v, (struct array){"Cells", "UInt8", "types", 1, {m, s}, {1, 1}, type_row});
+        add_array(v, (struct array){"CellData", "Float64", "attributes", g->n_columns, {m, s}, {columns, columns},
+                                    columns_row});
+    add_array(v, (struct array){"Points", "Float64", "points", 3, {n}, {24}, place_row});
+    add_array(v, (struct array){"Cells", index, "connectivity", 1, {m, s}, {wide * (size_t)g->n_nodes, 2 * wide},
+                                nodes_row});
+    add_array(v, (struct array){"Cells", index, "offsets", 1, {m, s}, {wide, wide}, end_row});
+    add_array(v, (struct array){"Cells", "UInt8", "types", 1, {m, s}, {1, 1}, type_row});
 }
 
 static uint64_t bytes_of(const struct array *array)

@@ -26,7 +26,7 @@ enum {
     WAVE_CHUNKS = 64    /* at a time, where there is an executor */
 };
 
-static char *put(char *at, const char *text, size_t length)
+static char *put_bytes(char *at, const char *text, size_t length)
 {
     memcpy(at, text, length);
     return at + length;
@@ -151,8 +151,8 @@ char *tri_put_counts(char at[TRI_COUNTS_ROOM], const int64_t *counts, int n)
 {
     assert(n >= 1 && n <= TRI_MOST_COUNTS);
     for (int i = 0; i < n; i++)
-        at = tri_print_integer(i ? put(at, "  ", 2) : at, counts[i], 0);
-    return put(at, "\n", 1);
+        at = tri_print_integer(i ? put_bytes(at, "  ", 2) : at, counts[i], 0);
+    return put_bytes(at, "\n", 1);
 }
 
 enum tri_status tri_write_counts(struct tri_output *output, const int64_t *counts, int n, struct tri_error *error)
@@ -179,10 +179,10 @@ enum tri_status tri_write_comment(struct tri_output *output, int argc, char *con
     char *const line = malloc(size);
     if (!line)
         return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to write a comment");
-    char *at = put(line, begin, sizeof begin - 1);
+    char *at = put_bytes(line, begin, sizeof begin - 1);
     for (int i = 0; i < argc; i++)
         at = put_word(at, argv[i]);
-    at = put(at, "\n", 1);
+    at = put_bytes(at, "\n", 1);
     const enum tri_status status = tri_output_write(output, line, (size_t)(at - line), error);
     free(line);
     return status;
