@@ -6,6 +6,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/base/status.c
     triangle/base/scratch_file.c
     triangle/base/mapped_file.c
+    triangle/base/order.c
     triangle/geometry/predicates.c
     triangle/mesh/pslg.c
     triangle/mesh/mesh.c
@@ -65,7 +66,6 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/pairs.c
     triangle/check/store.c
     triangle/check/subsegments.c
-    triangle/check/order.c
     triangle/check/missing.c
     triangle/check/winding.c
     triangle/check/segment_chains.c
@@ -120,7 +120,7 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/base/mapped_file.c
     triangle/mesh/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c
+set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c triangle/base/scratch_file.c triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which

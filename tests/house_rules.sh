@@ -148,7 +148,7 @@ refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $ot
 # The judge knows nothing of the judged but input, predicates and tools: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
-        grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|scratch_file)\.h)$')
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|order|scratch_file)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 
