@@ -34,12 +34,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/feature_size.c
     triangle/refine/split.c
     triangle/refine/bad_queue.c
-    triangle/refine/criterion.c
     triangle/refine/feed.c
     triangle/refine/treat.c
     triangle/refine/refine.c
     triangle/refine/census.c
-    triangle/size/asked.c
     triangle/size/crowd.c
     triangle/size/gap.c
     triangle/size/hopeless.c

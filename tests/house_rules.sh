@@ -72,7 +72,6 @@ tested_by() {
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/mesh/parents.c) echo groundwork ;;
-    triangle/size/asked.c) echo criterion ;;
     triangle/size/gap.c) echo hopeless ;;
     triangle/refine/place.c) echo inside ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;

@@ -15,8 +15,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/check/internal.h"
 #include "triangle/base/order.h"
+#include "triangle/check/internal.h"
 
 struct sweep_edge {
     struct tri_point left, right;
