@@ -4,6 +4,7 @@
 # Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
     triangle/base/status.c
+    triangle/base/order.c
     triangle/base/system_posix.c
     triangle/geometry/predicates.c
     triangle/mesh/pslg.c
@@ -32,12 +33,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/feature_size.c
     triangle/refine/split.c
     triangle/refine/bad_queue.c
-    triangle/refine/criterion.c
     triangle/refine/feed.c
     triangle/refine/treat.c
     triangle/refine/refine.c
     triangle/refine/census.c
-    triangle/size/asked.c
     triangle/size/crowd.c
     triangle/size/gap.c
     triangle/size/hopeless.c
@@ -64,7 +63,6 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/pairs.c
     triangle/check/store.c
     triangle/check/subsegments.c
-    triangle/check/order.c
     triangle/check/missing.c
     triangle/check/winding.c
     triangle/check/segment_chains.c
@@ -110,7 +108,8 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c
+set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c triangle/base/system_posix.c
+    triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which

@@ -73,7 +73,6 @@ tested_by() {
     triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/mesh/parents.c) echo groundwork ;;
-    triangle/size/asked.c) echo criterion ;;
     triangle/size/gap.c) echo hopeless ;;
     triangle/refine/place.c) echo inside ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
@@ -158,7 +157,7 @@ refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $ot
 # The judge knows nothing of the judged but input, predicates and tools: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
-        grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|system)\.h)$')
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|order|system)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 

@@ -31,9 +31,9 @@ for library in "$2" "$3" "$5"; do
     [ -z "$bad" ] || { echo "symbols: $library uses" $bad; failed=1; }
 done
 
-# The judge takes nothing from the judged but its predicates, files without a name and, at the public door, how
-# arrays are taken.
-foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|scratch_file|file_close|read_again|write_at|(orient2d|dot|incircle|in_circle)_near|api_(figure|struct)_[a-z]+)$')
+# The judge takes nothing from the judged but its predicates, the order of a sweep line, files without a name and, at
+# the public door, how arrays are taken.
+foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|order_[a-z]+|scratch_file|file_close|read_again|write_at|(orient2d|dot|incircle|in_circle)_near|api_(figure|struct)_[a-z]+)$')
 [ -z "$foreign" ] || { echo "symbols: the judge uses" $foreign; failed=1; }
 
 # Members that define triangulate define the same, so that none of the other library's is needed beside.

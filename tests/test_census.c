@@ -1,6 +1,6 @@
 /* What is counted in a whole mesh, against naive counts. */
 #include "tests/support.h"
-#include "triangle/refine/criterion.h"
+#include "triangle/size/quality.h"
 #include "triangle/base/grow.h"
 
 static struct tri_mesh refined_letter(const struct tri_options *options, struct tri_report *report)

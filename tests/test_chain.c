@@ -1,6 +1,6 @@
 /* Subsegments on one straight line get one parent; whatever turns, forks or changes its marker stays apart. */
 #include "support.h"
-#include "triangle/cdt/chain.h"
+#include "triangle/cdt/reconstruct.h"
 
 /* The mesh; of its subsegments some run one way, some the other. */
 static struct tri_mesh mesh_of(struct tri_pslg *pslg)

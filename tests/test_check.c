@@ -14,7 +14,6 @@
 
 #include "both_ways.h"
 #include "full.h"
-#include "triangle/check/order.h"
 
 enum { ROOM = 4096 };
 
@@ -1314,71 +1313,6 @@ static void hollow_hull(void **state)
     expect(TRI_CHECK_HULL, 1, -1);
 }
 
-/* --- the order of the sweep */
-
-static bool is_below_limit(const void *user, int32_t s)
-{
-    return s < *(const int32_t *)user;
-}
-
-/* In their order the items are 0, 1, 2 ..; `in` says which are there. */
-static void assert_order(const struct check_order *order, const bool *in, int32_t n)
-{
-    int32_t at = -1;
-    for (int32_t s = 0; s < n; s++) {
-        assert_int_equal(tri_check_order_find(order, is_below_limit, &s), at);
-        if (!in[s])
-            continue;
-        assert_int_equal(tri_check_order_above(order, at), s);
-        at = s;
-    }
-    assert_int_equal(tri_check_order_above(order, at), -1);
-}
-
-static void order_is_kept(void **state)
-{
-    (void)state;
-    enum { N = 300 };
-    struct check_order order;
-    bool in[N] = {false};
-    assert_int_equal(tri_check_order_init(&order, N), TRI_OK);
-    for (int i = 0; i < 20000; i++) {
-        int32_t s = (int32_t)random_below(N), below = s - 1;
-        while (below >= 0 && !in[below])
-            below--;
-        if (in[s])
-            tri_check_order_remove(&order, s);
-        else
-            tri_check_order_insert(&order, s, below);
-        in[s] = !in[s];
-        if (i % 100 == 0)
-            assert_order(&order, in, N);
-    }
-    tri_check_order_clear(&order);
-}
-
-static int asked;
-
-static bool count_and_compare(const void *user, int32_t s)
-{
-    asked++;
-    return is_below_limit(user, s);
-}
-
-static void order_is_searched_in_logarithmic_time(void **state)
-{
-    (void)state;
-    enum { N = 1 << 16 };
-    struct check_order order;
-    assert_int_equal(tri_check_order_init(&order, N), TRI_OK);
-    for (int32_t s = 0; s < N; s++)
-        tri_check_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
-    for (int32_t s = 0; s < N; s++)
-        assert_int_equal(tri_check_order_find(&order, count_and_compare, &s), s - 1);
-    assert_true(asked < 40 * N);
-    tri_check_order_clear(&order);
-}
-
 /* --- six nodes, attributes of vertices */
 
 static int32_t middles[3 * ROOM];
@@ -1544,8 +1478,6 @@ int main(void)
         cmocka_unit_test(good_nodes),
         cmocka_unit_test(broken_nodes),
         cmocka_unit_test(broken_vertex_attributes),
-        cmocka_unit_test(order_is_kept),
-        cmocka_unit_test(order_is_searched_in_logarithmic_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

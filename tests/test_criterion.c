@@ -1,5 +1,5 @@
 /* Which triangles are bad and which subsegments encroached, on triangles whose answer is known. */
-#include "triangle/refine/criterion.h"
+#include "triangle/size/quality.h"
 #include "triangle/refine/split.h"
 
 #include "tests/support.h"

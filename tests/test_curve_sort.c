@@ -1,6 +1,6 @@
 /* The order of a triangulation's triangles: what it is, and that nothing of how they came about is left in it. */
 #include "support.h"
-#include "triangle/cdt/insertion.h"
+#include "triangle/cdt/delaunay.h"
 
 /* A triangulation with ghosts of all vertices of a mesh, in numbers that leave gaps. */
 struct loose {

@@ -1,7 +1,7 @@
 /* Insertion into stretches of vertices: what a stretch owns it inserts, what it does not own stays untouched. */
 #include "support.h"
 
-#include "triangle/cdt/insertion.h"
+#include "triangle/cdt/delaunay.h"
 
 /* A triangulation with ghosts of points of which only the first three corners are in it yet. */
 struct trial {

@@ -7,7 +7,6 @@
 #include "full.h"
 #include "support.h"
 #include "triangle/refine/census.h"
-#include "triangle/cdt/chain.h"
 #include "triangle/cdt/crossing.h"
 #include "triangle/cdt/reconstruct.h"
 #include "triangle/mesh/topology.h"

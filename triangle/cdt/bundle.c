@@ -87,7 +87,7 @@ static void try_stop(struct bundles *b, tri_vertex_id v)
 }
 
 /* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
-static void walk(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
+static void walk_along(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
 {
     const struct tri_mesh *mesh = b->mesh;
     const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
@@ -179,7 +179,7 @@ static int64_t find_members(struct bundles *b)
 }
 
 /* What the members are shared out to takes their place. */
-static bool keep(struct bundles *b, const struct tri_piece *shared, int32_t n)
+static bool keep_shared(struct bundles *b, const struct tri_piece *shared, int32_t n)
 {
     if (!tri_grow(&b->result, &b->result_capacity, b->n_results + n, sizeof *b->result))
         return false;
@@ -190,7 +190,7 @@ static bool keep(struct bundles *b, const struct tri_piece *shared, int32_t n)
     return true;
 }
 
-static bool share(struct bundles *b)
+static bool share_members(struct bundles *b)
 {
     int64_t sum = find_members(b);
     int32_t n = b->n_members;
@@ -201,7 +201,7 @@ static bool share(struct bundles *b)
         shared[m] = b->piece[b->member[m]];
     bool room = shared && tri_share_stops(b->stop, b->n_stops, b->reach, &shared, &n);
     if (room && n < sum) /* else they do not overlap */
-        room = keep(b, shared, n);
+        room = keep_shared(b, shared, n);
     free(shared);
     return room;
 }
@@ -218,8 +218,8 @@ static bool is_longer(const void *context, int32_t i, int32_t k)
 }
 
 /* Is it worth while to walk along the piece? */
-static bool leave(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t, tri_vertex_id *from,
-                  tri_vertex_id *to)
+static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t,
+                       tri_vertex_id *from, tri_vertex_id *to)
 {
     *t = find_exit(context, from, to);
     const tri_vertex_id *v = *t == TRI_NONE ? NULL : b->mesh->tri[*t].v;
@@ -234,16 +234,16 @@ static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void 
     const int32_t n_results = b->n_results;
     const int64_t looked_at = b->looked_at;
     tri_triangle_id t;
-    if (from == to || !leave(b, find_exit, context, &t, &from, &to))
+    if (from == to || !leaves_end(b, find_exit, context, &t, &from, &to))
         return true;
     b->a = b->mesh->xy[from];
     b->b = b->mesh->xy[to];
-    walk(b, t, from, to);
+    walk_along(b, t, from, to);
     tri_vertex_id back_from = to, back_to = from;
-    if (leave(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
-        walk(b, t, back_from, back_to);
+    if (leaves_end(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
+        walk_along(b, t, back_from, back_to);
     sort_stops(b);
-    bool room = share(b);
+    bool room = share_members(b);
     forget_stops(b);
     if (b->n_results == n_results)
         b->in_vain += b->looked_at - looked_at;
@@ -268,7 +268,7 @@ static bool list_carriers(struct bundles *b, tri_exit *find_exit, void *context)
     for (int32_t i = 0; b->carrier && i < b->n; i++) {
         tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
         tri_triangle_id t;
-        if (leave(b, find_exit, context, &t, &from, &to))
+        if (leaves_end(b, find_exit, context, &t, &from, &to))
             b->carrier[b->n_carriers++] = i;
     }
     if (b->carrier)
@@ -276,7 +276,7 @@ static bool list_carriers(struct bundles *b, tri_exit *find_exit, void *context)
     return b->carrier;
 }
 
-static bool begin(struct bundles *b)
+static bool make_room(struct bundles *b)
 {
     size_t vertices = (size_t)b->n_vertices, n = (size_t)b->n;
     b->first = calloc(vertices + 1, sizeof *b->first);
@@ -316,17 +316,14 @@ static void free_bundles(struct bundles *b)
     free(b->result);
 }
 
-static bool share_all(struct bundles *b, tri_exit *find_exit, void *context)
-{
-    return begin(b) && carry_all(b, find_exit, context) && add_others(b);
-}
-
 bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
                        tri_exit *find_exit, void *context, int64_t *looked_at)
 {
     struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
     bool room = *n < 2 || list_carriers(&b, find_exit, context);
-    if (room && b.n_carriers > 0 && (room = share_all(&b, find_exit, context))) {
+    if (room && b.n_carriers > 0)
+        room = make_room(&b) && carry_all(&b, find_exit, context) && add_others(&b);
+    if (room && b.n_carriers > 0) {
         *piece = b.result;
         *n = b.n_results;
         b.result = b.piece;
@@ -374,7 +371,7 @@ static void take_marked(struct sharing *s, int32_t i)
         s->marked[k] = s->piece[i].course.marked;
 }
 
-static void take(struct sharing *s, int32_t i)
+static void take_free(struct sharing *s, int32_t i)
 {
     for (int32_t k = s->reach[i][0]; (k = find_free(s, k)) < s->reach[i][1]; s->next[k] = k + 1)
         s->result[s->n_results++] =
@@ -412,7 +409,7 @@ static void paint(struct sharing *s)
     find_odd(s);
     take_back(s);
     for (int32_t i = 0; i < s->n; i++)
-        take(s, i);
+        take_free(s, i);
 }
 
 bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,

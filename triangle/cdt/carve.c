@@ -72,7 +72,7 @@ struct dive {
     int32_t n, n_next;
 };
 
-static void visit(struct dive *d, tri_triangle_id t)
+static void visit_triangle(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] == SEEN)
         return;
@@ -90,7 +90,7 @@ static void put_off(struct dive *d, tri_triangle_id t)
     d->next[d->n_next++] = t;
 }
 
-static void cross(struct dive *d, tri_halfedge code)
+static void cross_edge(struct dive *d, tri_halfedge code)
 {
     tri_link link = *tri_link_at(d->mesh, code);
     tri_halfedge other = tri_across(d->mesh, code);
@@ -99,11 +99,11 @@ static void cross(struct dive *d, tri_halfedge code)
     if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
         put_off(d, tri_of(other));
     else
-        visit(d, tri_of(other));
+        visit_triangle(d, tri_of(other));
 }
 
 /* Triangles at the hull, at depth 0, or behind a barrier. Those at depth 0 are on the stack first. */
-static void enter(struct dive *d, bool keep_hull)
+static void enter_hull(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
     for (int pass = 0; pass < 2; pass++)
@@ -115,17 +115,17 @@ static void enter(struct dive *d, bool keep_hull)
                 const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
                 bool barrier = parent->odd || (keep_hull && parent->segment == TRI_NONE);
                 if (pass == 0 && !barrier)
-                    visit(d, t);
+                    visit_triangle(d, t);
                 if (pass == 1 && barrier)
                     put_off(d, t);
             }
 }
 
 /* INVARIANT: a depth is flooded to its end before the next begins; so the first depth at which a triangle is seen is
- * the least. A triangle waits at most once, and visit() may overtake it. */
+ * the least. A triangle waits at most once, and visit_triangle() may overtake it. */
 static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
 {
-    enter(d, keep_hull);
+    enter_hull(d, keep_hull);
     for (bool even = true; d->n + d->n_next > 0; even = !even) {
         while (d->n > 0) {
             tri_triangle_id t = d->stack[--d->n];
@@ -133,12 +133,12 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
             if (even)
                 f->mesh->tri[t].region = DEAD;
             for (int e = 0; e < 3; e++)
-                cross(d, tri_code(t, e));
+                cross_edge(d, tri_code(t, e));
         }
         int32_t n = d->n_next;
         d->n_next = 0;
         for (int32_t k = 0; k < n; k++)
-            visit(d, d->next[k]);
+            visit_triangle(d, d->next[k]);
     }
 }
 
@@ -178,18 +178,13 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
     return status;
 }
 
-static bool is_at(struct tri_point p, struct tri_point q) { return p.x == q.x && p.y == q.y; }
-
 /* Does a subsegment end at corner k of triangle t? */
 static bool ends_sub(const struct tri_mesh *mesh, tri_triangle_id t, int k)
 {
     tri_vertex_id v = mesh->tri[t].v[k];
     tri_triangle_id at = t;
     do {
-        const tri_vertex_id *corner = mesh->tri[at].v;
-        int e = corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
-        tri_link beyond = mesh->tri[at].n[tri_next[e]];
-        assert(corner[e] == v);
+        tri_link beyond = mesh->tri[at].n[tri_next[tri_corner_of(&mesh->tri[at], v)]];
         if (beyond < 0)
             return true;
         at = tri_of(beyond);
@@ -203,7 +198,7 @@ static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, str
     const tri_vertex_id *v = mesh->tri[t].v;
     bool on_sub = false;
     for (int k = 0; k < 3; k++)
-        if (is_at(mesh->xy[v[k]], q))
+        if (tri_compare_places(mesh->xy[v[k]], q) == 0)
             return ends_sub(mesh, t, k);
     for (int e = 0; e < 3; e++) {
         double side = tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q);

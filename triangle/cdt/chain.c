@@ -11,12 +11,13 @@
  * the parents of a refined mesh come back, and with them its corners, narrow spaces and sizes.
  *
  * COST. From the DEEP-th cut within a cut on, chains are halved: n vertices cost at most n * (DEEP + log2(n)). */
-#include "triangle/cdt/chain.h"
+#include "triangle/cdt/reconstruct.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/cdt/crossing.h"
+#include "triangle/tunables.h"
 
 enum { MANY = -2, DEEP = 32 };
 

@@ -379,7 +379,7 @@ static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
 }
 
 /* Rule 3: the piece crosses subsegment s. */
-static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
+static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
     assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
     if (l->crossings_left-- == 0)
@@ -516,7 +516,7 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
     if (met.beside != TRI_NONE)
         return stop_at(l, &piece, met.end);
     if (met.across != TRI_NONE)
-        return cross(l, &piece, met.across);
+        return cross_sub(l, &piece, met.across);
     assert(met.end != TRI_NONE); /* the hull is convex */
     assert(met.end == piece.to || comes_between(l, l->mesh->xy[met.end], &piece));
     enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
@@ -664,7 +664,7 @@ static enum tri_status list_courses(struct layer *l)
 
 /* Gives each subsegment its marker, and a parent of its own: as many as there are, since each came with one, or fewer,
  * since some were taken up. */
-static void settle(struct layer *l)
+static void settle_subs(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;
     assert(mesh->n_subs <= mesh->n_parents && mesh->n_subs <= l->course_capacity);
@@ -690,7 +690,7 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
     status = status ? status : list_courses(&l);
     status = status ? status : lay_all(&l);
     if (!status)
-        settle(&l);
+        settle_subs(&l);
     free_layer(&l);
     return status;
 }

@@ -37,11 +37,6 @@ static double go(double from, struct tri_pair way, struct tri_pair fraction)
     return tri_round_coordinate(h.head + (h.tail + step.tail));
 }
 
-static struct tri_pair squared_length(struct tri_pair x, struct tri_pair y)
-{
-    return sum(product(x, x), product(y, y));
-}
-
 double tri_line_distance(struct tri_point a, struct tri_point b, struct tri_point q)
 {
     struct tri_pair det = tri_orient2d_pair(a, b, q);
@@ -77,6 +72,6 @@ bool tri_crossing(struct tri_point a, struct tri_point b, struct tri_point c, st
 struct tri_point tri_onto_line(struct tri_point a, struct tri_point b, struct tri_point q)
 {
     struct tri_pair x = tri_two_difference(b.x, a.x), y = tri_two_difference(b.y, a.y);
-    struct tri_pair fraction = quotient(tri_orient2d_pair(a, b, q), squared_length(x, y));
+    struct tri_pair fraction = quotient(tri_orient2d_pair(a, b, q), sum(product(x, x), product(y, y)));
     return (struct tri_point){go(q.x, y, fraction), go(q.y, negative(x), fraction)};
 }

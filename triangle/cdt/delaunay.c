@@ -5,7 +5,7 @@
  * average.
  *
  * Vertices are numbered along the curve, and the curve is cut into leaves of equally many. Within a round, stretches
- * of leaves insert at the same time what they can (triangle/cdt/insertion.h); what lies at their borders waits for
+ * of leaves insert at the same time what they can (insertion.c); what lies at their borders waits for
  * stretches of WIDER times as many leaves, and what is left at last for one stretch that has all. Borders of stretches
  * with m vertices each are crossed by some n / sqrt(m) triangles: so each step leaves half of what the one before
  * left, and one stretch alone gets some sqrt(n). The triangulation is that of the set of points, whatever the order
@@ -17,7 +17,6 @@
 #include <stdlib.h>
 
 #include "triangle/base/scatter.h"
-#include "triangle/cdt/insertion.h"
 #include "triangle/geometry/predicates.h"
 
 enum {

@@ -1,5 +1,5 @@
-/* Walk, cavity, fan. */
-#include "triangle/cdt/insertion.h"
+/* Walk, cavity, fan; and the triangles that come of it in an order of their own. */
+#include "triangle/cdt/delaunay.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -151,7 +151,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
 }
 
 /* Replaces the cavity by the fan of v. */
-static void fill(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id fresh)
+static void fill_cavity(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id fresh)
 {
     tri_triangle_id before = TRI_NONE, first = TRI_NONE;
     assert(b->n_edges == b->n_cavity + 2 && b->n_edges >= 3); /* Euler: a disk without a vertex inside */
@@ -192,7 +192,7 @@ enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_trian
         if (found != TRI_INSERTED)
             return found;
     }
-    fill(b, v, triangle);
+    fill_cavity(b, v, triangle);
     return TRI_INSERTED;
 }
 

@@ -15,7 +15,6 @@
 #include "triangle/base/grow.h"
 #include "triangle/base/radix.h"
 #include "triangle/cdt/carve.h"
-#include "triangle/cdt/chain.h"
 #include "triangle/cdt/flip.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/surface.h"
@@ -410,16 +409,6 @@ struct values {
     size_t mask;
 };
 
-static const double *attributes_of(const struct tri_elements *elements, tri_triangle_id t)
-{
-    return elements->attributes ? elements->attributes + (size_t)t * (size_t)elements->n_attributes : NULL;
-}
-
-static double bound_of(const struct tri_elements *elements, tri_triangle_id t)
-{
-    return elements->areas && elements->areas[t] > 0 ? elements->areas[t] : 0;
-}
-
 static uint64_t mix(uint64_t hash, double value)
 {
     uint64_t bits;
@@ -470,8 +459,9 @@ static void assign_regions(struct values *values)
     struct tri_mesh *mesh = values->mesh;
     int32_t last = 0; /* most triangles have the values of the one before */
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
-        const double *attributes = attributes_of(elements, t);
-        double bound = bound_of(elements, t);
+        const double *attributes =
+            elements->attributes ? elements->attributes + (size_t)t * (size_t)elements->n_attributes : NULL;
+        double bound = elements->areas && elements->areas[t] > 0 ? elements->areas[t] : 0;
         if (!is_region(mesh, last, attributes, bound))
             last = find_region(values, attributes, bound);
         mesh->tri[t].region = last;

@@ -18,10 +18,10 @@ struct tri_reconstruct_options {
 /* Makes *mesh of the points of the PSLG and these triangles.
  *
  * Every vertex is one of the input, every edge of one triangle is a subsegment. So is, with use_segments, every edge
- * that is a segment: these come first, in the order of the segments, each with a parent of its own (with
- * `refine` straight chains of them share one, see chain.h); where several segments are one edge, the first of them with
- * a marker gives it. A segment that is no edge is left out; Triangle
- * passes it on to its output. Holes and regions of the PSLG are not looked at.
+ * that is a segment: these come first, in the order of the segments, each with a parent of its own (with `refine`
+ * straight chains of them share one, see tri_unite_chains); where several segments are one edge, the first of them with
+ * a marker gives it. A segment that is no edge is left out; Triangle passes it on to its output. Holes and regions of
+ * the PSLG are not looked at.
  *
  * Without `refine` the triangles are those given, in their order, with their first corners first; clockwise ones are
  * turned round. With it edges are flipped (tri_flip_to_delaunay).
@@ -40,5 +40,11 @@ struct tri_reconstruct_options {
  * empty. O(points + triangles + segments), and the flips; about 30 bytes a triangle while it runs, beside the mesh. */
 enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_elements *elements,
                                 const struct tri_reconstruct_options *options, struct tri_error *error);
+
+/* Subsegments that continue each other on one straight line, as far as rounding tells, get one parent; the vertices
+ * between them lie on it (mesh->on). Each subsegment has a parent of its own before. Subsegments keep their order; some
+ * turn round. O(vertices + subsegments), n log n for n in a row that run round a bend. TRI_NO_MEMORY: nothing has
+ * changed. */
+enum tri_status tri_unite_chains(struct tri_mesh *mesh, struct tri_error *error);
 
 #endif

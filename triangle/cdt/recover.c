@@ -71,8 +71,8 @@ static bool add_crossed(struct tri_recovery *r, tri_halfedge code)
 }
 
 /* Lists the edges through which ab enters triangles (of the first triangle, the one it leaves through). */
-static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
-                  tri_vertex_id b)
+static bool list_crossed(struct tri_recovery *r, const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
+                         tri_vertex_id b)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     tri_halfedge code = tri_code(t, v[0] == a ? 0 : v[1] == a ? 1 : 2);
@@ -165,7 +165,7 @@ static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 
 /* --- division and merging */
 
-static void put(struct gap *g, tri_link link, tri_link other)
+static void set_link(struct gap *g, tri_link link, tri_link other)
 {
     int32_t n = n_places(g->r);
     assert(link >= 0 || ~link < 2 * n);
@@ -179,8 +179,8 @@ static void put(struct gap *g, tri_link link, tri_link other)
 
 static void join(struct gap *g, tri_link x, tri_link y)
 {
-    put(g, x, y);
-    put(g, y, x);
+    set_link(g, x, y);
+    set_link(g, y, x);
 }
 
 static struct tri_point point_at(const struct gap *g, int32_t place)
@@ -339,7 +339,7 @@ static void name_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
 enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
                                  tri_vertex_id b, tri_halfedge *code, struct tri_error *error)
 {
-    if (!cross(r, mesh, t, a, b) || !make_room(r))
+    if (!list_crossed(r, mesh, t, a, b) || !make_room(r))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a segment across %d triangles",
                         (int)r->n_crossed);
     struct gap g = {.r = r, .mesh = mesh, .side = {r->gap[0], r->gap[1]}};

@@ -1,4 +1,4 @@
-/* Recovery of an edge: the triangles that the edge crosses make way for it. */
+/* Recovery of an edge: where it leaves its first vertex, and how the triangles that it crosses make way for it. */
 #ifndef TRIANGLE_CDT_RECOVER_H
 #define TRIANGLE_CDT_RECOVER_H
 
@@ -24,8 +24,6 @@ void tri_recovery_free(struct tri_recovery *r);
  * anything is changed. */
 enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, tri_triangle_id t,
                                  tri_vertex_id a, tri_vertex_id b, tri_halfedge *code, struct tri_error *error);
-
-/* Where a segment leaves the vertex that it begins at. */
 
 /* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
  * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the

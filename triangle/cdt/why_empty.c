@@ -83,18 +83,13 @@ static int32_t find_outline(const struct figure *f)
     return outline;
 }
 
-static double distance2(struct tri_point p, struct tri_point q)
-{
-    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-}
-
 /* The vertex of the part that is farthest from p. */
 static struct tri_point farthest(const struct figure *f, int32_t part, struct tri_point p)
 {
     struct tri_point far = p;
     for (tri_vertex_id v = 0; v < f->mesh->n_vertices; v++) {
         const struct tri_point q = f->mesh->xy[v];
-        if (root_of(f, v) == part && distance2(p, q) > distance2(p, far))
+        if (root_of(f, v) == part && tri_distance2(p, q) > tri_distance2(p, far))
             far = q;
     }
     return far;
@@ -106,7 +101,7 @@ static bool is_straight(const struct figure *f, int32_t part)
     const struct part *box = &f->parts[part];
     const double size = fmax(fmax(fabs(box->low.x), fabs(box->low.y)), fmax(fabs(box->high.x), fabs(box->high.y)));
     const struct tri_point a = farthest(f, part, f->mesh->xy[part]), b = farthest(f, part, a);
-    const double off = 2 * TRI_SEGMENT_ASTRAY * 0x1p-52 * size * sqrt(distance2(a, b));
+    const double off = 2 * TRI_SEGMENT_ASTRAY * 0x1p-52 * size * sqrt(tri_distance2(a, b));
     for (tri_vertex_id v = 0; v < f->mesh->n_vertices; v++)
         if (root_of(f, v) == part && fabs(tri_orient2d(a, b, f->mesh->xy[v])) > off)
             return false;

@@ -178,7 +178,7 @@ static void fault_at(struct loop *l, int32_t v)
 }
 
 /* True: the boundary is one loop. */
-static bool walk(struct loop *l)
+static bool walk_loop(struct loop *l)
 {
     const struct checker *c = l->c;
     int32_t e = 0;
@@ -243,7 +243,7 @@ static enum tri_status judge(struct loop *l)
 {
     tri_check_begin(l->c, TRI_CHECK_HULL);
     list_boundary(l);
-    if (l->c->boundary.n == 0 || !walk(l))
+    if (l->c->boundary.n == 0 || !walk_loop(l))
         return TRI_OK;
     enum tri_status status = find_loop_hull(l);
     int32_t first = status == TRI_OK ? next_corner(l, 0) : -1, place = first;

@@ -140,11 +140,6 @@ static bool has_state(const struct checker *c, const int64_t *v, int state)
     return ((c->state[v[0]] | c->state[v[1]] | c->state[v[2]]) & state) != 0;
 }
 
-static bool is_explained(struct apexes *q, const int64_t *v)
-{
-    return has_state(q->c, v, CHECK_NEAR) || spans_legs(q, v);
-}
-
 static double signed_squared_cosine(double degrees)
 {
     double cosine = cos(degrees * TRI_CHECK_RADIANS);
@@ -165,7 +160,7 @@ static void find_apexes(struct apexes *q)
     for (int32_t v = 0; v < c->n_frame; v++) {
         c->report->n_apexes += q->is_apex[v];
         if (q->is_apex[v])
-            c->state[check_vertex(c, v)] |= CHECK_APEX;
+            c->state[c->vertex[v]] |= CHECK_APEX;
     }
     for (int32_t i = 0; i < 2 * c->n_segments; i++)
         q->apex_of[i] = UNKNOWN;
@@ -412,8 +407,8 @@ static void judge_small(struct checker *c, struct apexes *apexes, int32_t t, con
 {
     int64_t v[3];
     for (int k = 0; k < 3; k++)
-        v[k] = check_global(c, c->part.triangles[3 * (size_t)t + (size_t)k]);
-    bool explained = is_explained(apexes, v);
+        v[k] = c->part.vertex[c->part.triangles[3 * (size_t)t + (size_t)k]];
+    bool explained = has_state(c, v, CHECK_NEAR) || spans_legs(apexes, v);
     c->report->n_small++;
     c->report->n_small_explained += explained;
     if (c->options->max_bad >= 0 ? c->report->n_small <= c->options->max_bad : explained)

@@ -414,14 +414,10 @@ static bool pairs_are_good(struct checker *c)
 static enum tri_status judge_frame(struct checker *c)
 {
     enum tri_status status = tri_check_find_twins(c);
-    if (status == TRI_OK)
-        status = tri_check_frame(c);
-    if (status == TRI_OK)
-        status = tri_check_subsegments(c);
-    if (status == TRI_OK)
-        status = tri_check_input(c);
-    if (status == TRI_OK)
-        status = tri_check_quality(c);
+    status = status ? status : tri_check_frame(c);
+    status = status ? status : tri_check_subsegments(c);
+    status = status ? status : tri_check_input(c);
+    status = status ? status : tri_check_quality(c);
     if (status != TRI_OK || !pairs_are_good(c))
         return status;
     tri_check_release_part(c); /* the sweep takes its place */
@@ -437,8 +433,7 @@ static enum tri_status run(struct checker *c)
 {
     bool good = true;
     enum tri_status status = tri_check_survey(c);
-    if (status == TRI_OK)
-        status = tri_check_list_segments(c);
+    status = status ? status : tri_check_list_segments(c);
     if (status != TRI_OK)
         return status;
     good = check_good(c, TRI_CHECK_ARRAYS);
@@ -452,12 +447,9 @@ static enum tri_status run(struct checker *c)
         return TRI_OK;
     }
     status = tri_check_match(c);
-    if (status == TRI_OK)
-        status = reckon_again(c);
-    if (status == TRI_OK)
-        status = tri_check_attributes(c);
-    if (status == TRI_OK)
-        status = tri_check_nodes(c);
+    status = status ? status : reckon_again(c);
+    status = status ? status : tri_check_attributes(c);
+    status = status ? status : tri_check_nodes(c);
     return status == TRI_OK ? judge_frame(c) : status;
 }
 
@@ -508,12 +500,9 @@ enum tri_status tri_check_from(const struct tri_check_source *source, const stru
                         .n_points = source->n_points, .n_triangles = source->n_triangles};
     c.state = tri_check_zeros(c.n_points, 1);
     enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : choose_part(&c, tri_check_least_bytes(source, input));
-    if (status == TRI_OK)
-        status = tri_check_store_new(&c);
-    if (status == TRI_OK)
-        status = tri_check_begin_quality(&c);
-    if (status == TRI_OK)
-        status = run(&c);
+    status = status ? status : tri_check_store_new(&c);
+    status = status ? status : tri_check_begin_quality(&c);
+    status = status ? status : run(&c);
     release(&c);
     if (status == TRI_OK)
         return TRI_OK;

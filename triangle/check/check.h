@@ -1,4 +1,4 @@
-/* The judge of meshes: asks, never mends, and shares no data structure with the mesher it judges.
+/* The judge of meshes: asks, never mends, and shares no form of a mesh with the mesher it judges.
  *
  * THEOREM (docs/theory.md, the judge). Triangles are a triangulation if and only if (1) each is strictly
  * counter-clockwise, (2) every directed edge belongs to at most one of them, and (3) the boundary edges, those of one

@@ -122,7 +122,13 @@ static int32_t lower_bound(const struct check_part *p, int32_t v, uint64_t key)
     return low;
 }
 
-struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b)
+/* The half-edges of a part from one vertex to another, and back. O(log n). */
+struct check_edge {
+    int32_t there, back;     /* the first; -1: none */
+    int32_t n_there, n_back; /* how many there are */
+};
+
+static struct check_edge find_edge(const struct checker *c, int32_t a, int32_t b)
 {
     const struct check_part *p = &c->part;
     int32_t v = lesser(a, b);
@@ -186,7 +192,7 @@ static void constrain(struct checker *c)
         int32_t u = a < 0 ? -1 : tri_check_local(c, a), v = u < 0 ? -1 : tri_check_local(c, b);
         if (v < 0)
             continue;
-        struct check_edge e = tri_check_find_edge(c, u, v);
+        struct check_edge e = find_edge(c, u, v);
         note_side(c, &c->sides[s][0], e.there);
         note_side(c, &c->sides[s][1], e.back);
     }
@@ -205,17 +211,11 @@ enum tri_status tri_check_pair(struct checker *c)
     return TRI_OK;
 }
 
-static int64_t given_neighbor(const struct checker *c, int32_t h)
-{
-    const struct check_part *p = &c->part;
-    return p->neighbors != NULL ? p->neighbors[h] : -1;
-}
-
 struct check_open tri_check_open(const struct checker *c, int32_t h)
 {
     int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h);
-    return (struct check_open){check_global(c, a), check_global(c, b), 3 * c->part.first + h, check_global(c, v),
-                               given_neighbor(c, h), check_attribute(c, h / 3),
+    return (struct check_open){c->part.vertex[a], c->part.vertex[b], 3 * c->part.first + h, c->part.vertex[v],
+                               c->part.neighbors != NULL ? c->part.neighbors[h] : -1, check_attribute(c, h / 3),
                                {check_place(c, a), check_place(c, b), check_place(c, v)}, check_is_constrained(c, h)};
 }
 

@@ -36,12 +36,6 @@ struct check_piece {
     struct tri_point from, to;
 };
 
-/* The half-edges of a part from one vertex to another, and back. */
-struct check_edge {
-    int32_t there, back;     /* the first; -1: none */
-    int32_t n_there, n_back; /* how many there are */
-};
-
 /* What lies on one side of a subsegment. */
 struct check_side {
     int64_t half_edge; /* the first; -1: none */
@@ -261,9 +255,6 @@ void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, 
 enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
                               double tolerance);
 
-/* In the part. O(log n). */
-struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
-
 /* n * size bytes, never a null pointer for n = 0. */
 void *tri_check_array(int64_t n, size_t size);
 void *tri_check_zeros(int64_t n, size_t size);
@@ -292,21 +283,13 @@ static inline bool check_wants_regions(const struct checker *c)
 
 /* --- the part */
 
-static inline int32_t check_next(int32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-static inline int32_t check_prev(int32_t corner)
-{
-    return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
 static inline int32_t check_org(const struct checker *c, int32_t half_edge)
 {
-    return c->part.triangles[check_next(half_edge)];
+    return c->part.triangles[half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1];
 }
 static inline int32_t check_dest(const struct checker *c, int32_t half_edge)
 {
-    return c->part.triangles[check_prev(half_edge)];
+    return c->part.triangles[half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1];
 }
 static inline int32_t check_apex(const struct checker *c, int32_t half_edge)
 {
@@ -316,10 +299,6 @@ static inline struct tri_point check_place(const struct checker *c, int32_t v)
 {
     const double *p = c->part.points + 2 * (size_t)v;
     return (struct tri_point){p[0], p[1]};
-}
-static inline int64_t check_global(const struct checker *c, int32_t v)
-{
-    return c->part.vertex[v];
 }
 static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)
 {
@@ -337,10 +316,6 @@ static inline struct tri_point check_point(const struct checker *c, int32_t v)
 {
     const double *p = c->points + 2 * (size_t)v;
     return (struct tri_point){p[0], p[1]};
-}
-static inline int64_t check_vertex(const struct checker *c, int32_t v)
-{
-    return c->vertex[v];
 }
 /* Are the ends of subsegment s two vertices? */
 static inline bool check_is_listed_well(const struct checker *c, int32_t s)
@@ -383,7 +358,7 @@ static inline long check_number(const struct checker *c, int64_t i)
 /* .. for vertex or triangle i of the part .. */
 static inline long check_part_vertex(const struct checker *c, int32_t v)
 {
-    return check_number(c, check_global(c, v));
+    return check_number(c, c->part.vertex[v]);
 }
 static inline long check_part_triangle(const struct checker *c, int32_t t)
 {
@@ -392,10 +367,10 @@ static inline long check_part_triangle(const struct checker *c, int32_t t)
 /* .. for a vertex of the frame. */
 static inline long check_frame_vertex(const struct checker *c, int32_t v)
 {
-    return check_number(c, check_vertex(c, v));
+    return check_number(c, c->vertex[v]);
 }
 
-/* Pieces of input segments that the mesh has no edges for. Private to the judge. */
+/* --- pieces of input segments that the mesh has no edges for */
 
 struct check_pieces {
     int32_t n;
@@ -409,20 +384,13 @@ void tri_check_sort_missing(struct checker *c);
  * that would take too long, or too much memory. About n sqrt(n) steps where they are short and apart. */
 enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces);
 
-/* Half-edges that wait for their other side. Private to the judge. */
-
-/* As many as the bound allows are in memory, the rest in nameless files, by a hash of their edge. */
+/* --- half-edges that wait for their other side
+ *
+ * As many as the bound allows are in memory, the rest in nameless files, by a hash of their edge. */
 enum tri_status tri_check_store_new(struct checker *c);
 void tri_check_store_free(struct check_store *store);
 
 /* TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
 enum tri_status tri_check_store_add(struct checker *c, struct check_open e);
-
-/* Calls take for all of each file, or all there are; what it is given it may sort. The store is empty then. */
-enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)(struct checker *c,
-                                                                                 struct check_open *at, int64_t n));
-
-/* At the end of the array. */
-enum tri_status tri_check_append(struct check_opens *opens, const struct check_open *e);
 
 #endif

@@ -233,12 +233,9 @@ static enum tri_status ask_for_regions(struct checker *c)
 enum tri_status tri_check_input(struct checker *c)
 {
     enum tri_status status = check_vertices(c);
-    if (status == TRI_OK)
-        status = ask_for_lost(c);
-    if (status == TRI_OK)
-        status = ask_for_holes(c);
-    if (status == TRI_OK)
-        status = ask_for_regions(c);
+    status = status ? status : ask_for_lost(c);
+    status = status ? status : ask_for_holes(c);
+    status = status ? status : ask_for_regions(c);
     if (status == TRI_OK && c->input != NULL && check_is_listed(c))
         status = tri_check_chains(c);
     if (status == TRI_OK && c->input != NULL)

@@ -90,8 +90,7 @@ static enum tri_status read_slice(struct trial *t)
 {
     struct slice *s = &t->slice;
     enum tri_status status = tri_check_read(t->c, TRI_CHECK_CORNERS, s->first, s->n_triangles, s->corners);
-    if (status == TRI_OK)
-        status = tri_check_read(t->c, TRI_CHECK_MIDDLES, s->first, s->n_triangles, s->middles);
+    status = status ? status : tri_check_read(t->c, TRI_CHECK_MIDDLES, s->first, s->n_triangles, s->middles);
     if (status != TRI_OK)
         return status;
     list_named(t);

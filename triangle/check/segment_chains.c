@@ -164,7 +164,7 @@ static bool has_side_step(const struct chains *k, const struct line *l, int32_t 
 
 /* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where
  * that the chain is its own is a guess, where the chain is exactly on its line. */
-static void mark(struct chains *k, const struct line *l, int32_t u, bool whole)
+static void mark_chain(struct chains *k, const struct line *l, int32_t u, bool whole)
 {
     const struct checker *c = k->c;
     int32_t end = u;
@@ -283,7 +283,7 @@ static enum tri_status cover(struct chains *k, const struct line *l)
         if (s.at > along(l, covered))
             status = ask_about(k, l, covered, check_point(k->c, s.vertex));
         int32_t end = follow(k, l, s.vertex, -1);
-        mark(k, l, end, false);
+        mark_chain(k, l, end, false);
         if (along(l, check_point(k->c, end)) >= along(l, covered))
             covered = check_point(k->c, end);
     }
@@ -326,7 +326,7 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     k->beside_border = false;
     int32_t reached = from >= 0 && to >= 0 ? follow(k, &l, from, to) : -1;
     if (reached >= 0 && reached == to) {
-        mark(k, &l, to, true);
+        mark_chain(k, &l, to, true);
         return TRI_OK;
     }
     const int64_t n_asked = (int64_t)k->c->n_queries + k->c->n_missing;

@@ -123,7 +123,7 @@ enum tri_status tri_check_sample(struct checker *c, double *vertices)
 }
 
 /* Step 1. */
-static void mark(struct check_room *r, const int64_t *corners, int64_t n)
+static void mark_corners(struct check_room *r, const int64_t *corners, int64_t n)
 {
     if (r->first <= r->last)
         memset(r->marked + r->first, 0, (size_t)(r->last - r->first + 1) * sizeof *r->marked);
@@ -207,7 +207,7 @@ static enum tri_status read_part(struct checker *c, bool *good)
     enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, p->first, p->n_triangles, p->corners);
     if (status != TRI_OK || !(*good = judge_corners(c)) || !check_good(c, TRI_CHECK_ARRAYS))
         return status;
-    mark(r, p->corners, p->n_half_edges);
+    mark_corners(r, p->corners, p->n_half_edges);
     status = number(c);
     if (status == TRI_OK)
         status = read_points(c);

@@ -49,14 +49,6 @@ void tri_check_store_free(struct check_store *s)
     free(s);
 }
 
-enum tri_status tri_check_append(struct check_opens *o, const struct check_open *e)
-{
-    if (!tri_grow_far(&o->at, &o->room, o->n + 1, sizeof *o->at))
-        return TRI_NO_MEMORY;
-    o->at[o->n++] = *e;
-    return TRI_OK;
-}
-
 static int hash(const struct check_open *e)
 {
     uint64_t low = (uint64_t)(e->from < e->to ? e->from : e->to), high = (uint64_t)(e->from < e->to ? e->to : e->from);
@@ -114,7 +106,12 @@ static enum tri_status spill(struct checker *c)
 enum tri_status tri_check_store_add(struct checker *c, struct check_open e)
 {
     enum tri_status status = c->store->here.n >= c->store->most ? spill(c) : TRI_OK;
-    return status == TRI_OK ? tri_check_append(&c->store->here, &e) : status;
+    struct check_opens *here = &c->store->here;
+    if (status == TRI_OK && !tri_grow_far(&here->at, &here->room, here->n + 1, sizeof *here->at))
+        return TRI_NO_MEMORY;
+    if (status == TRI_OK)
+        here->at[here->n++] = e;
+    return status;
 }
 
 static enum tri_status fetch(struct checker *c, struct file *file)
@@ -136,8 +133,9 @@ static enum tri_status fetch(struct checker *c, struct file *file)
     return TRI_OK;
 }
 
-enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)(struct checker *c,
-                                                                                 struct check_open *at, int64_t n))
+/* Calls take for all of each file, or all there are; what it is given it may sort. The store is empty then. */
+static enum tri_status drain(struct checker *c,
+                             enum tri_status (*take)(struct checker *c, struct check_open *at, int64_t n))
 {
     struct check_store *s = c->store;
     bool spilled = false;
@@ -194,7 +192,7 @@ static void tell_bad(struct checker *c, const struct check_open *at, int64_t n)
     c->report->item[TRI_CHECK_EDGES].count += n - 1;
 }
 
-static enum tri_status keep(struct checker *c, const struct check_open *e)
+static enum tri_status keep_boundary(struct checker *c, const struct check_open *e)
 {
     struct check_boundary *b = &c->boundary;
     if (!tri_grow_far(&b->at, &b->room, b->n + 1, sizeof *b->at))
@@ -216,7 +214,7 @@ static enum tri_status match_edge(struct checker *c, const struct check_open *at
         tell_bad(c, at, n);
     enum tri_status status = TRI_OK;
     for (int64_t i = 0; i < n && status == TRI_OK; i++)
-        status = keep(c, &at[i]);
+        status = keep_boundary(c, &at[i]);
     return status;
 }
 
@@ -233,7 +231,7 @@ static enum tri_status match_all(struct checker *c, struct check_open *at, int64
     return status;
 }
 
-static void count(struct checker *c)
+static void count_edges(struct checker *c)
 {
     struct tri_check_report *r = c->report;
     int64_t first;
@@ -250,11 +248,11 @@ enum tri_status tri_check_match(struct checker *c)
 {
     tri_check_begin(c, TRI_CHECK_EDGES);
     tri_check_release_part(c); /* room for the others; it comes back when asked for */
-    enum tri_status status = tri_check_store_drain(c, match_all);
+    enum tri_status status = drain(c, match_all);
     if (status != TRI_OK)
         return status;
     if (c->boundary.n > 1)
         qsort(c->boundary.at, (size_t)c->boundary.n, sizeof *c->boundary.at, compare_half_edges);
-    count(c);
+    count_edges(c);
     return c->boundary.n > INT32_MAX / 2 ? TRI_TOO_LARGE : TRI_OK;
 }

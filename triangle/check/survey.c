@@ -1,6 +1,6 @@
 /* Coordinates of any size, in the range of the predicates: what is very large or very small as a whole is multiplied by
  * a power of two, and what is below 2^-216 then is rounded, in the mesh as in the input. The multiplication is exact
- * otherwise, and changes no judgement but those on areas, which quality.c scales back. */
+ * otherwise, and changes no judgement but those on areas, which bounds.c scales back. */
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
@@ -56,17 +56,12 @@ static void look(void *looking, int64_t first, int64_t n, const void *points)
     }
 }
 
-static bool is_out_of_range(const double *p)
-{
-    return !tri_is_exact_point((struct tri_point){p[0], p[1]});
-}
-
 static void judge(void *checker, int64_t first, int64_t n, const void *points)
 {
     struct checker *c = checker;
     for (int64_t i = 0; i < n; i++) {
         const double *p = (const double *)points + 2 * i;
-        if (!is_out_of_range(p))
+        if (tri_is_exact_point((struct tri_point){p[0], p[1]}))
             continue;
         c->at = 3 * c->n_triangles + first + i; /* corners come first */
         tri_check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
@@ -136,8 +131,7 @@ enum tri_status tri_check_survey(struct checker *c)
         c->exponent = choose_exponent(&l.all);
         c->rounded = true;
         status = scale_input(c); /* the mesh is scaled on reading */
-        if (status == TRI_OK)
-            status = tri_check_each_slice(c, TRI_CHECK_POINTS, c->n_points, bytes, judge, c);
+        status = status ? status : tri_check_each_slice(c, TRI_CHECK_POINTS, c->n_points, bytes, judge, c);
     }
     c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * ldexp(l.all.largest, c->exponent);
     return status;

@@ -1,4 +1,4 @@
-/* Markers of vertices in use.
+/* Markers of vertices in use; attributes of vertices are below.
  *
  * An input point keeps its own unless that is 0. Any other vertex has the marker of a subsegment at it, or of an input
  * segment through it (of which nothing may be left there, where it was carved, and whose marker another one's may
@@ -74,7 +74,7 @@ static bool may_be_zero(const struct markers *m, int32_t v, bool boundary)
 static bool is_right(struct markers *m, int32_t v, int32_t marker)
 {
     const struct checker *c = m->c;
-    bool boundary = (c->state[check_vertex(c, v)] & CHECK_BOUNDARY) != 0;
+    bool boundary = (c->state[c->vertex[v]] & CHECK_BOUNDARY) != 0;
     if (m->own[v] != 0)
         return marker == m->own[v];
     if (marker == 0)
@@ -91,10 +91,10 @@ static void check_one(struct markers *m, int64_t v, int32_t marker)
 {
     struct checker *c = m->c;
     double place[2];
-    while (m->at < c->n_frame && check_vertex(c, m->at) < v)
+    while (m->at < c->n_frame && c->vertex[m->at] < v)
         m->at++;
     bool right = marker == 0;
-    if (m->at < c->n_frame && check_vertex(c, m->at) == v) {
+    if (m->at < c->n_frame && c->vertex[m->at] == v) {
         right = is_right(m, m->at, marker);
     } else if (!right) {
         m->status = tri_check_read(c, TRI_CHECK_POINTS, v, 1, place);

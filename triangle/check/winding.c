@@ -15,8 +15,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/base/order.h"
 #include "triangle/check/internal.h"
-#include "triangle/check/order.h"
 
 struct sweep_edge {
     struct tri_point left, right;
@@ -44,7 +44,7 @@ struct sweep {
     struct event *event;      /* [2 * n_edges + n_queries] */
     struct start *start;      /* [n_edges] work space */
     int32_t n_edges, n_events;
-    struct check_order order;
+    struct tri_order order;
     /* For each side 2 * edge + BELOW or ABOVE, and for the outer face, number 2 * n_edges: */
     int32_t *face;    /* a forest: another side of the same face */
     uint8_t *emptied; /* is there a hole point in the face? */
@@ -97,7 +97,7 @@ static bool is_below(const void *user, int32_t s)
 static int32_t find_below(const struct sweep *w, struct tri_point p)
 {
     struct place place = {w, p};
-    return tri_check_order_find(&w->order, is_below, &place);
+    return tri_order_find(&w->order, is_below, &place);
 }
 
 static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
@@ -150,12 +150,12 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
 static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending, int32_t witness, int32_t *below)
 {
     *below = find_below(w, p);
-    int32_t s = tri_check_order_above(&w->order, *below), n = 0;
+    int32_t s = tri_order_above(&w->order, *below), n = 0;
     while (s >= 0 && side(w, s, p) == 0) {
-        int32_t next = tri_check_order_above(&w->order, s);
+        int32_t next = tri_order_above(&w->order, s);
         if (!check_same_place(w->edge[s].right, p))
             return fault(w, "a vertex of one lies inside the other", s, witness);
-        tri_check_order_remove(&w->order, s);
+        tri_order_remove(&w->order, s);
         s = next;
         n++;
     }
@@ -180,12 +180,12 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
         if (i > 0 && compare_directions(&w->start[i - 1], &w->start[i]) == 0) {
             return fault(w, "one runs along the other", top, s);
         }
-        tri_check_order_insert(&w->order, s, top);
+        tri_order_insert(&w->order, s, top);
         top = s;
     }
     int32_t a = below;
     for (int32_t i = 0; i <= n; i++) {
-        int32_t b = tri_check_order_above(&w->order, a);
+        int32_t b = tri_order_above(&w->order, a);
         if (!neighbors_are_good(w, a, b))
             return false;
         a = b;
@@ -223,7 +223,7 @@ static void note_point(struct sweep *w, struct check_query *q, int32_t s, int si
 static void answer(struct sweep *w, int32_t number)
 {
     struct check_query *q = &w->c->queries[number];
-    int32_t below = find_below(w, q->at), s = tri_check_order_above(&w->order, below);
+    int32_t below = find_below(w, q->at), s = tri_order_above(&w->order, below);
     bool on_edge = s >= 0 && side(w, s, q->at) == 0;
     bool near_below = is_near(w, below, q->at, q->tolerance), near_above = is_near(w, s, q->at, q->tolerance);
     bool inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : is_meshed(w, below, ABOVE);
@@ -241,7 +241,7 @@ static void answer(struct sweep *w, int32_t number)
  * end there are no longer in the order, those that start not yet. */
 static void note_all(struct sweep *w, const struct event *event, int32_t n, int32_t below)
 {
-    int32_t above = tri_check_order_above(&w->order, below);
+    int32_t above = tri_order_above(&w->order, below);
     for (int32_t i = 0; i < n; i++) {
         if (event[i].code >= 0)
             continue;
@@ -349,7 +349,7 @@ static enum tri_status init(struct sweep *w, int64_t n)
     w->vague = tri_check_zeros(2 * n + 1, 1);
     w->region = tri_check_array(2 * n + 1, sizeof *w->region);
     bool room = w->edge && w->start && w->event && w->face && w->emptied && w->vague && w->region;
-    return room ? tri_check_order_init(&w->order, (int32_t)n) : TRI_NO_MEMORY;
+    return room ? tri_order_init(&w->order, (int32_t)n) : TRI_NO_MEMORY;
 }
 
 static void clear(struct sweep *w)
@@ -361,7 +361,7 @@ static void clear(struct sweep *w)
     free(w->emptied);
     free(w->vague);
     free(w->region);
-    tri_check_order_clear(&w->order);
+    tri_order_clear(&w->order);
 }
 
 /* False: the sweep has found a fault. */
@@ -374,7 +374,7 @@ static bool run(struct sweep *w)
         if (!process(w, w->event + i, j - i))
             return false;
     }
-    assert(tri_check_order_above(&w->order, -1) == -1);
+    assert(tri_order_above(&w->order, -1) == -1);
     return true;
 }
 

@@ -58,7 +58,7 @@ static bool is_stopped(void *user)
 /* --- messages */
 
 /* Errors, and remarks on input that was hardly meant so. Q keeps these remarks off standard error alone. */
-static void tell(const struct io_run *run, bool is_error, const char *text)
+static void tell_client(const struct io_run *run, bool is_error, const char *text)
 {
     if (run->options->message)
         run->options->message(run->options->message_user, is_error, text);
@@ -66,9 +66,7 @@ static void tell(const struct io_run *run, bool is_error, const char *text)
         tri_io_print(text);
 }
 
-static void tell_remark(const struct io_run *run, const char *text) { tell(run, false, text); }
-
-static void warn(const struct io_run *run, const char *text)
+static void warn_client(const struct io_run *run, const char *text)
 {
     if (run->options->message && !run->switches->quiet)
         run->options->message(run->options->message_user, 0, text);
@@ -78,9 +76,9 @@ static void tell_notes(const struct io_run *run)
 {
     const struct tri_notes *notes = &run->report.notes;
     if (notes->skipped[0] && !run->switches->quiet)
-        tell_remark(run, notes->skipped);
+        tell_client(run, false, notes->skipped);
     if (notes->empty[0])
-        tell_remark(run, notes->empty);
+        tell_client(run, false, notes->empty);
 }
 
 static void warn_number(const struct io_run *run, int n, const char *one, const char *several)
@@ -88,12 +86,15 @@ static void warn_number(const struct io_run *run, int n, const char *one, const 
     char text[160];
     snprintf(text, sizeof text, "%d %s", n, n == 1 ? one : several);
     if (n > 0)
-        warn(run, text);
+        warn_client(run, text);
 }
 
 static void warn_of_switch(void *user, const char *text, bool misread)
 {
-    (misread ? tell_remark : warn)(user, text);
+    if (misread)
+        tell_client(user, false, text);
+    else
+        warn_client(user, text);
 }
 
 static void warn_of_input(const struct io_run *run)
@@ -107,7 +108,7 @@ static void warn_of_input(const struct io_run *run)
     warn_number(run, report->carve.between, "hole point lies on a segment, and empties nothing",
                 "hole points lie on segments, and empty nothing");
     if (report->quality.hit_limit && run->how.quality.conforming)
-        warn(run, "the limit of S was reached before the mesh was conforming");
+        warn_client(run, "the limit of S was reached before the mesh was conforming");
 }
 
 /* --- stages */
@@ -179,8 +180,8 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (status && vorout && vorout != in)
         zero_counts(vorout);
     if (status)
-        tell(&run, true, error.text);
+        tell_client(&run, true, error.text);
     else if (no_diagram)
-        tell_remark(&run, "switch v: there is no struct for the Voronoi diagram");
+        tell_client(&run, false, "switch v: there is no struct for the Voronoi diagram");
     return (int)status;
 }

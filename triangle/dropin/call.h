@@ -3,8 +3,8 @@
 #ifndef TRIANGLE_DROPIN_CALL_H
 #define TRIANGLE_DROPIN_CALL_H
 
-#include "triangle/dropin/triangle.h"
 #include "triangle/api/generate.h"
+#include "triangle/dropin/triangle.h"
 
 /* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
  * executor (or NULL) runs what comes in pieces. aloud: for triangulate(). Errors, why the mesh is empty, and that

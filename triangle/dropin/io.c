@@ -117,20 +117,12 @@ static void take_points(struct taking *t)
 /* A count that clients of Triangle may leave negative: no items. */
 static int count_of(int given) { return given > 0 ? given : 0; }
 
-static void take_holes(struct taking *t)
+/* Holes or regions. */
+static double *take_places(struct taking *t, const char *what, REAL *list, int given, int width, int32_t *n)
 {
-    const int n = count_of(t->in->numberofholes);
-    check(t, "holes", n, t->in->holelist);
-    t->input->pslg.n_holes = n;
-    t->input->pslg.holes = take_reals(t, t->in->holelist, n, 2);
-}
-
-static void take_regions(struct taking *t)
-{
-    const int n = count_of(t->in->numberofregions);
-    check(t, "regions", n, t->in->regionlist);
-    t->input->pslg.n_regions = n;
-    t->input->pslg.regions = take_reals(t, t->in->regionlist, n, 4);
+    *n = count_of(given);
+    check(t, what, *n, list);
+    return take_reals(t, list, *n, width);
 }
 
 /* Corners, and the nodes amid edges apart from them. */
@@ -175,9 +167,10 @@ enum tri_status tri_io_input_make(struct tri_io_input *input, const struct trian
     if (switches->segments)
         take_segments(&t);
     if (switches->segments && !switches->mesh)
-        take_holes(&t);
+        input->pslg.holes = take_places(&t, "holes", in->holelist, in->numberofholes, 2, &input->pslg.n_holes);
     if (tri_switches_use_regions(switches))
-        take_regions(&t);
+        input->pslg.regions = take_places(&t, "regions", in->regionlist, in->numberofregions, 4,
+                                          &input->pslg.n_regions);
     if (switches->mesh)
         take_triangles(&t, switches->area_lists);
     return t.status;

@@ -13,8 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "triangle/mesh/grid.h"
 #include "triangle/api/generate.h"
+#include "triangle/mesh/grid.h"
 
 enum { TRI_SWITCH_NOTES = 4, TRI_SWITCH_NOTE_CHARS = 32 };
 

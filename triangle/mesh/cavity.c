@@ -120,7 +120,7 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
     return TRI_SEARCH_FOUND;
 }
 
-static void begin(struct tri_cavity *c, struct tri_point p)
+static void begin_search(struct tri_cavity *c, struct tri_point p)
 {
     c->p = p;
     c->n_tri = c->n_corners = c->n_edges = c->n_wall = 0;
@@ -164,7 +164,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
         return TRI_SEARCH_OUTSIDE;
     enum tri_search found;
     do {
-        begin(c, p);
+        begin_search(c, p);
         found = explore_from(c, mesh, t, 0, 3);
     } while (found == TOO_LARGE && grow(c));
     return found;
@@ -260,7 +260,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
     enum tri_search found;
     do {
-        begin(c, p);
+        begin_search(c, p);
         found = search_split(c, mesh, s, n_left);
     } while (found == TOO_LARGE && grow(c));
     return found;

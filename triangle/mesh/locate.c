@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "triangle/base/heap_sort.h"
+#include "triangle/base/order.h"
 #include "triangle/geometry/hilbert.h"
 #include "triangle/geometry/predicates.h"
 
@@ -60,7 +61,7 @@ struct sweep {
     struct event *event; /* [2 * n_subs + points] */
     int32_t n_events;
     int32_t *start; /* [n_subs] work space: subsegments that start at one place */
-    struct tri_sweep_line order;
+    struct tri_order order;
 };
 
 /* At one place the subsegments come first. */
@@ -90,17 +91,21 @@ static double height_over(const struct tri_mesh *mesh, tri_sub_id s, struct tri_
     return tri_orient2d(end_of(mesh, s, 0), end_of(mesh, s, 1), q);
 }
 
-/* The highest subsegment below q, or TRI_NONE; *next, the lowest that is not. */
-static tri_sub_id find_below(const struct sweep *w, struct tri_point q, tri_sub_id *next)
+struct place {
+    const struct tri_mesh *mesh;
+    struct tri_point q;
+};
+
+static bool is_below(const void *place, tri_sub_id s)
 {
-    tri_sub_id s = w->order.root, below = TRI_NONE;
-    *next = TRI_NONE;
-    while (s >= 0) {
-        bool under = height_over(w->mesh, s, q) > 0;
-        *(under ? &below : next) = s;
-        s = w->order.node[s].down[under];
-    }
-    return below;
+    const struct place *at = place;
+    return height_over(at->mesh, s, at->q) > 0;
+}
+
+/* The highest subsegment below q, or TRI_NONE. */
+static tri_sub_id find_below(const struct sweep *w, struct tri_point q)
+{
+    return tri_order_find(&w->order, is_below, &(struct place){w->mesh, q});
 }
 
 /* Of two subsegments that start at one place: does a lie below b? */
@@ -112,19 +117,19 @@ static bool is_lower(const void *mesh, tri_sub_id a, tri_sub_id b)
 /* What happens at one place: subsegments end, others start. */
 static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
 {
-    int32_t n_start = 0, next, below;
+    int32_t n_start = 0;
     assert(n > 0);
     for (int32_t i = 0; i < n; i++) {
         if (event[i].code & 1)
-            tri_sweep_line_remove(&w->order, event[i].code >> 1);
+            tri_order_remove(&w->order, event[i].code >> 1);
         else
             w->start[n_start++] = event[i].code >> 1;
     }
     tri_heap_sort(w->start, n_start, is_lower, w->mesh);
     assert(n_start <= w->mesh->n_subs);
-    below = find_below(w, event->at, &next);
+    tri_sub_id below = find_below(w, event->at);
     for (int32_t i = 0; i < n_start; i++) {
-        tri_sweep_line_insert(&w->order, w->start[i], below);
+        tri_order_insert(&w->order, w->start[i], below);
         below = w->start[i];
     }
 }
@@ -140,7 +145,7 @@ static tri_triangle_id face_at(const struct tri_mesh *mesh, tri_sub_id s, bool i
 
 static tri_triangle_id face_of(const struct sweep *w, struct tri_point q)
 {
-    tri_sub_id next, below = find_below(w, q, &next);
+    tri_sub_id below = find_below(w, q), next = tri_order_above(&w->order, below);
     if (next != TRI_NONE && height_over(w->mesh, next, q) == 0)
         return face_at(w->mesh, next, true);
     return below == TRI_NONE ? TRI_NONE : face_at(w->mesh, below, false);
@@ -171,7 +176,7 @@ static void sweep(struct sweep *w, tri_triangle_id *faces)
         for (int32_t k = i + n_ends; k < end; k++)
             faces[~w->event[k].code] = face;
     }
-    assert(w->order.root == TRI_NONE);
+    assert(tri_order_above(&w->order, TRI_NONE) == TRI_NONE);
 }
 
 static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
@@ -181,14 +186,14 @@ static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_p
     size_t n_subs = (size_t)mesh->n_subs;
     w.event = malloc((2 * n_subs + (size_t)n) * sizeof *w.event);
     w.start = malloc((n_subs + 1) * sizeof *w.start);
-    bool room = tri_sweep_line_init(&w.order, mesh->n_subs) == TRI_OK && w.event && w.start;
+    bool room = tri_order_init(&w.order, mesh->n_subs) == TRI_OK && w.event && w.start;
     if (room) {
         list_events(&w, points, n, faces);
         sweep(&w, faces);
     }
     free(w.event);
     free(w.start);
-    tri_sweep_line_clear(&w.order);
+    tri_order_clear(&w.order);
     return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
 }
 
@@ -246,110 +251,4 @@ tri_sub_id tri_sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct 
         if (at->n[e] < 0 && tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) == 0)
             return ~at->n[e];
     return TRI_NONE;
-}
-
-/* The sweep line as a threaded treap. Seidel & Aragon 1996.
- *
- * INVARIANT: next[0] and next[1] are the neighbours in the in-order walk of the tree, and a parent's priority is never
- * below its children's. */
-
-static uint32_t priority(int32_t s)
-{
-    uint32_t x = (uint32_t)s * 0x9e3779b1u;
-    x ^= x >> 15;
-    x *= 0x85ebca77u;
-    return x ^ x >> 13;
-}
-
-enum tri_status tri_sweep_line_init(struct tri_sweep_line *order, int32_t n)
-{
-    order->root = -1;
-    order->node = malloc(((size_t)n + 1) * sizeof *order->node);
-    return order->node == NULL ? TRI_NO_MEMORY : TRI_OK;
-}
-
-void tri_sweep_line_clear(struct tri_sweep_line *order)
-{
-    free(order->node);
-    order->node = NULL;
-}
-
-/* Makes `child` (or -1) the child of `parent` (or the root, if -1) that `old` was. */
-static void replace_child(struct tri_sweep_line *o, int32_t parent, int32_t old, int32_t child)
-{
-    if (child >= 0)
-        o->node[child].up = parent;
-    if (parent < 0) {
-        o->root = child;
-        return;
-    }
-    int side = o->node[parent].down[1] == old;
-    assert(o->node[parent].down[side] == old);
-    o->node[parent].down[side] = child;
-}
-
-/* Lifts s above its parent. */
-static void rotate_up(struct tri_sweep_line *o, int32_t s)
-{
-    struct tri_sweep_line_node *node = o->node;
-    int32_t parent = node[s].up;
-    int side = node[parent].down[1] == s;
-    int32_t moved = node[s].down[!side];
-    replace_child(o, node[parent].up, parent, s);
-    node[s].down[!side] = parent;
-    node[parent].up = s;
-    node[parent].down[side] = moved;
-    if (moved >= 0)
-        node[moved].up = parent;
-}
-
-int32_t tri_sweep_line_above(const struct tri_sweep_line *o, int32_t s)
-{
-    if (s >= 0)
-        return o->node[s].next[1];
-    s = o->root;
-    while (s >= 0 && o->node[s].down[0] >= 0)
-        s = o->node[s].down[0];
-    return s;
-}
-
-static void thread(struct tri_sweep_line *o, int32_t below, int32_t above)
-{
-    if (below >= 0)
-        o->node[below].next[1] = above;
-    if (above >= 0)
-        o->node[above].next[0] = below;
-}
-
-void tri_sweep_line_insert(struct tri_sweep_line *o, int32_t s, int32_t below)
-{
-    struct tri_sweep_line_node *node = o->node;
-    int32_t above = tri_sweep_line_above(o, below);
-    node[s] = (struct tri_sweep_line_node){-1, {-1, -1}, {below, above}};
-    thread(o, below, s);
-    thread(o, s, above);
-    if (below >= 0 && node[below].down[1] < 0) { /* room above it? else its successor has room below */
-        node[below].down[1] = s;
-        node[s].up = below;
-    } else if (above >= 0) {
-        assert(node[above].down[0] < 0);
-        node[above].down[0] = s;
-        node[s].up = above;
-    } else {
-        o->root = s;
-    }
-    while (node[s].up >= 0 && priority(node[s].up) < priority(s))
-        rotate_up(o, s);
-}
-
-void tri_sweep_line_remove(struct tri_sweep_line *o, int32_t s)
-{
-    struct tri_sweep_line_node *node = o->node;
-    while (node[s].down[0] >= 0 && node[s].down[1] >= 0) {
-        int32_t a = node[s].down[0], b = node[s].down[1];
-        rotate_up(o, priority(a) > priority(b) ? a : b);
-    }
-    int32_t child = node[s].down[0] >= 0 ? node[s].down[0] : node[s].down[1];
-    replace_child(o, node[s].up, s, child);
-    thread(o, node[s].next[0], node[s].next[1]);
 }

@@ -107,7 +107,8 @@ static bool grow_array(struct tri_mesh *mesh, enum tri_array which, int32_t capa
     return fresh || a.item == 0;
 }
 
-size_t tri_mesh_bytes(const struct tri_mesh *mesh)
+/* Of the arrays that grow with refinement, with room for more. */
+static size_t bytes_reserved(const struct tri_mesh *mesh)
 {
     size_t bytes = 0;
     for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++)
@@ -211,7 +212,7 @@ void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b)
     take_counts(b, &before);
 }
 
-static bool fill(struct tri_mesh *to, enum tri_array which, const void *from, size_t bytes)
+static bool fill_array(struct tri_mesh *to, enum tri_array which, const void *from, size_t bytes)
 {
     if (to->storage)
         return to->storage->fill(to->storage->user, which, from, bytes);
@@ -228,7 +229,7 @@ static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const 
         struct array a = array_of(from, which);
         memory = a.capacity == 0 || grow_array(to, which, a.capacity);
         if (memory && a.n > 0 && a.item > 0)
-            memory = fill(to, which, a.at, (size_t)a.n * a.item);
+            memory = fill_array(to, which, a.at, (size_t)a.n * a.item);
     }
     if (memory)
         take_counts(to, from);
@@ -268,7 +269,7 @@ static enum tri_status choose_capacity(struct tri_mesh *mesh, const struct group
     size_t item = 0;
     for (enum tri_array which = g->first; which <= g->last; which++)
         item += array_of(mesh, which).item;
-    const size_t others = tri_mesh_bytes(mesh) - (size_t)*g->capacity * item;
+    const size_t others = bytes_reserved(mesh) - (size_t)*g->capacity * item;
     *capacity = next_capacity(*g->capacity, need, g->limit, mesh->storage);
     if (!*capacity)
         return too_large(error, g->items);
@@ -280,9 +281,12 @@ static enum tri_status choose_capacity(struct tri_mesh *mesh, const struct group
     return bound->leave(bound->user, mesh, error);
 }
 
-static enum tri_status grow_group(struct tri_mesh *mesh, const struct group *g, int64_t need, struct tri_error *error)
+static enum tri_status reserve_group(struct tri_mesh *mesh, const struct group *g, int64_t need,
+                                     struct tri_error *error)
 {
     int32_t capacity;
+    if (need <= *g->capacity)
+        return TRI_OK;
     enum tri_status status = choose_capacity(mesh, g, need, &capacity, error);
     for (enum tri_array which = g->first; !status && which <= g->last; which++)
         if (!grow_array(mesh, which, capacity))
@@ -294,22 +298,16 @@ static enum tri_status grow_group(struct tri_mesh *mesh, const struct group *g, 
 
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
-    const int64_t need = (int64_t)mesh->n_vertices + more;
-    assert(more >= 0);
-    if (need <= mesh->vertex_capacity)
-        return TRI_OK;
     const struct group g = {TRI_XY, TRI_ATTRIBUTES, &mesh->vertex_capacity, TRI_MAX_VERTICES, "vertices"};
-    return grow_group(mesh, &g, need, error);
+    assert(more >= 0);
+    return reserve_group(mesh, &g, (int64_t)mesh->n_vertices + more, error);
 }
 
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
-    const int64_t need = (int64_t)mesh->n_triangles + more;
-    assert(more >= 0);
-    if (need <= mesh->triangle_capacity)
-        return TRI_OK;
     const struct group g = {TRI_TRIANGLES, TRI_TRIANGLES, &mesh->triangle_capacity, TRI_MAX_TRIANGLES, "triangles"};
-    return grow_group(mesh, &g, need, error);
+    assert(more >= 0);
+    return reserve_group(mesh, &g, (int64_t)mesh->n_triangles + more, error);
 }
 
 static enum tri_status reserve_parents(struct tri_mesh *mesh, int64_t need, struct tri_error *error)
@@ -325,10 +323,10 @@ static enum tri_status reserve_parents(struct tri_mesh *mesh, int64_t need, stru
 
 enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
-    const int64_t need = (int64_t)mesh->n_subs + more, parents = (int64_t)mesh->n_parents + more;
+    const int64_t parents = (int64_t)mesh->n_parents + more;
     const struct group g = {TRI_SUBS, TRI_SUBS, &mesh->sub_capacity, TRI_MAX_TRIANGLES, "subsegments"};
     assert(more >= 0);
-    enum tri_status status = need > mesh->sub_capacity ? grow_group(mesh, &g, need, error) : TRI_OK;
+    enum tri_status status = reserve_group(mesh, &g, (int64_t)mesh->n_subs + more, error);
     return status || parents <= mesh->parent_capacity ? status : reserve_parents(mesh, parents, error);
 }
 

@@ -201,8 +201,7 @@ void tri_mesh_free(struct tri_mesh *mesh);
 void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes);
 void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
 
-/* Bytes of the arrays that grow with refinement: with room for more, and of what is in use. */
-size_t tri_mesh_bytes(const struct tri_mesh *mesh);
+/* Bytes in use of the arrays that grow with refinement. */
 size_t tri_mesh_bytes_used(const struct tri_mesh *mesh);
 
 /* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has

@@ -38,13 +38,6 @@ static bool is_before(const void *context, int32_t a, int32_t b)
                             far_end(hub->mesh, b, hub->vertex));
 }
 
-static void sort_around(const struct tri_mesh *mesh, tri_vertex_id v, tri_parent_id *parent, int32_t n)
-{
-    struct hub hub = {mesh, v};
-    if (n > MANY_PARENTS)
-        tri_heap_sort(parent, n, is_before, &hub);
-}
-
 void tri_incidence_fill(struct tri_mesh *mesh)
 {
     size_t n = (size_t)mesh->incidence.n_vertices;
@@ -60,8 +53,9 @@ void tri_incidence_fill(struct tri_mesh *mesh)
             mesh->incidence.parent[fill[mesh->parents[p].v[k]]++] = p;
     assert(mesh->incidence.start[n] == 2 * mesh->n_parents);
     for (tri_vertex_id v = 0; v < mesh->incidence.n_vertices; v++) {
-        int32_t first = mesh->incidence.start[v];
-        sort_around(mesh, v, mesh->incidence.parent + first, mesh->incidence.start[v + 1] - first);
+        const int32_t first = mesh->incidence.start[v], n_parents = mesh->incidence.start[v + 1] - first;
+        if (n_parents > MANY_PARENTS)
+            tri_heap_sort(mesh->incidence.parent + first, n_parents, is_before, &(struct hub){mesh, v});
     }
 }
 

@@ -1,4 +1,5 @@
-/* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use.
+/* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use;
+ * and what is printed about it, its counts and the shapes of its triangles.
  *
  * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are
  * made only where an order has to be counted out. No number is free in the mesh.
@@ -82,8 +83,6 @@ void tri_used_free(struct tri_used *used);
  * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
                               bool jettison, struct tri_error *error);
-
-/* What is printed about a mesh: its counts, and the shapes of its triangles. */
 
 struct tri_counts {
     int64_t vertices; /* that are corners of triangles */

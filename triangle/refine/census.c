@@ -5,11 +5,11 @@
 #include <math.h>
 
 #include "triangle/geometry/predicates.h"
-#include "triangle/refine/criterion.h"
-#include "triangle/refine/split.h"
 #include "triangle/mesh/parents.h"
+#include "triangle/refine/split.h"
 #include "triangle/size/gap.h"
 #include "triangle/size/hopeless.h"
+#include "triangle/size/quality.h"
 
 static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
@@ -36,13 +36,10 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_quality *quality, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found)
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, quality);
-    int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
     for (tri_triangle_id triangle = first; triangle < last; triangle++)
-        if (needs_work(&c, triangle))
-            found[n++] = triangle;
-    return n;
+        found[triangle - first] = triangle;
+    return tri_find_work_among(mesh, quality, found, last - first, found);
 }
 
 int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_quality *quality,

@@ -52,17 +52,21 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
+/* Queues the triangle if it is bad, but not if it is bad in the way that does not count. */
+static bool feed_but(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badness other)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+    enum tri_badness badness = tri_refiner_judge(r, t, &shape);
+    return badness == TRI_GOOD || badness == other || push(r, triangle, badness, shape.l[shape.shortest]);
+}
+
 /* Judges the new triangles where only urgent ones count (tri_refine_hooks). */
 static bool judge_urgent(struct tri_refiner *r)
 {
-    for (int32_t i = 0; i < r->cavity.n_edges; i++) {
-        tri_triangle_id triangle = r->cavity.tri[i];
-        const struct tri_triangle *t = &r->mesh->tri[triangle];
-        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-        enum tri_badness badness = tri_refiner_judge(r, t, &shape);
-        if (badness != TRI_GOOD && !push(r, triangle, badness, shape.l[shape.shortest]))
+    for (int32_t i = 0; i < r->cavity.n_edges; i++)
+        if (!feed_but(r, r->cavity.tri[i], TRI_GOOD))
             return false;
-    }
     return true;
 }
 
@@ -132,14 +136,7 @@ bool tri_feed_walls(struct tri_refiner *r)
 
 bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes)
 {
-    const struct tri_triangle *t = &r->mesh->tri[triangle];
-    if (!tri_is_live(t))
-        return true;
-    struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-    enum tri_badness badness = tri_refiner_judge(r, t, &shape);
-    if (badness == TRI_GOOD || (badness == TRI_BAD_SIZE) != sizes)
-        return true;
-    return push(r, triangle, badness, shape.l[shape.shortest]);
+    return !tri_is_live(&r->mesh->tri[triangle]) || feed_but(r, triangle, sizes ? TRI_BAD_ANGLE : TRI_BAD_SIZE);
 }
 
 /* The subsegments beside a triangle. */

@@ -69,7 +69,7 @@ static void consider(struct petal *petal, struct tri_point q, tri_vertex_id v)
 }
 
 /* Where the way from c, in the disk, to d leaves it. */
-static bool leave(const struct petal *petal, struct tri_point c, struct tri_point d, struct tri_point *at)
+static bool leave_disk(const struct petal *petal, struct tri_point c, struct tri_point d, struct tri_point *at)
 {
     double x = d.x - c.x, y = d.y - c.y, cx = c.x - petal->o.x, cy = c.y - petal->o.y;
     double l = x * x + y * y, half = cx * x + cy * y, inside = cx * cx + cy * cy - petal->r2;
@@ -102,14 +102,14 @@ static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence
         return TRI_NONE;
     struct tri_point at = *d;
     bool inside = is_in_disk(petal, *d);
-    if (inside || leave(petal, edge->c, *d, &at))
+    if (inside || leave_disk(petal, edge->c, *d, &at))
         consider(petal, at, beside);
     return inside && is_above(petal, *d) ? tri_of(across) : TRI_NONE;
 }
 
 /* Walks on from triangle t with circumcentre c, in the petal, which is not left by edge `from`. */
-static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangle_id t, int from, struct tri_point c,
-                 tri_vertex_id beyond[2])
+static bool walk_diagram(struct petal *petal, const struct tri_fence *fence, tri_triangle_id t, int from,
+                         struct tri_point c, tri_vertex_id beyond[2])
 {
     struct pending pending[MOST_PENDING];
     int n = 0;
@@ -148,7 +148,7 @@ enum tri_petal tri_petal_point(const struct tri_mesh *mesh, const struct tri_fen
         return TRI_PETAL_USUAL;
     const double usual2 = c.x * c.x + c.y * c.y;
     petal.best2 = usual2 * TRI_PETAL_GAIN;
-    if (!walk(&petal, fence, triangle, s, c, beyond))
+    if (!walk_diagram(&petal, fence, triangle, s, c, beyond))
         return TRI_PETAL_BEYOND;
     if (!(petal.best2 > usual2 * TRI_PETAL_GAIN))
         return TRI_PETAL_USUAL;

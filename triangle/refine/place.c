@@ -1,4 +1,4 @@
-/* The usual new point. */
+/* The usual new point, and that of a triangle which is too large where the usual one cannot be had. */
 #include "triangle/refine/place.h"
 
 #include <assert.h>

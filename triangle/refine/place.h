@@ -1,16 +1,15 @@
-/* The usual point of a bad triangle: circumcentre or off-centre. treat.c chooses between it and petal.h. */
+/* The usual point of a bad triangle, circumcentre or off-centre, and the point that a triangle which is too large gets
+ * where it cannot have that one. treat.c chooses between these and petal.h. */
 #ifndef TRIANGLE_REFINE_PLACE_H
 #define TRIANGLE_REFINE_PLACE_H
 
 #include "triangle/geometry/shape.h"
-#include "triangle/refine/criterion.h"
+#include "triangle/size/quality.h"
 
 /* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies
  * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Üngör 2004). */
 struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
                            double reach);
-
-/* The point that a triangle that is too large gets where it cannot have the usual one. */
 
 /* The longest subsegment of the triangle, if it is at least half as long as the longest edge and may be split; else
  * TRI_NONE. */

@@ -48,11 +48,6 @@ static tri_triangle_id listed(const struct tri_refiner *r, int32_t i)
     return r->hooks->worklist ? r->hooks->worklist[i] : i;
 }
 
-static int32_t listed_count(const struct tri_refiner *r)
-{
-    return r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
-}
-
 /* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
 static bool queue_chunk(struct tri_refiner *r)
 {
@@ -75,7 +70,7 @@ static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
         assert(!r->in_hand && r->n_encroached == 0);
-        r->n_worklist = listed_count(r);
+        r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
         r->next_listed = 0;
         r->step = FIRST_PASS;
     }
@@ -107,20 +102,14 @@ static void begin_stages(struct tri_refiner *r)
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality), r->quality->conforming);
 }
 
-static void next_stage(struct tri_refiner *r)
-{
-    r->step = NOT_BEGUN;
-    r->stage++;
-    r->criterion.bounds = tri_bounds_for(tri_worked_angle(r->quality), r->quality->conforming);
-}
-
 /* Resumable, as refine_worklist. */
 static bool refine_in_stages(struct tri_refiner *r)
 {
-    while (r->stage != LAST_STAGE) {
+    for (; r->stage != LAST_STAGE; r->stage++) {
         if (!refine_worklist(r))
             return false;
-        next_stage(r);
+        r->step = NOT_BEGUN;
+        r->criterion.bounds = tri_bounds_for(tri_worked_angle(r->quality), r->quality->conforming);
     }
     return true;
 }

@@ -5,8 +5,8 @@
 
 #include "triangle/mesh/cavity.h"
 #include "triangle/refine/bad_queue.h"
-#include "triangle/refine/criterion.h"
 #include "triangle/refine/refine.h"
+#include "triangle/size/quality.h"
 
 enum tri_bound_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 

@@ -15,7 +15,6 @@
 #include <assert.h>
 #include <float.h>
 
-#include "triangle/cdt/chain.h"
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/parents.h"
 #include "triangle/size/gap.h"
@@ -88,7 +87,8 @@ static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subse
     return choice < 2 * TRI_PLACES ? grain : (struct tri_point){coarse, coarse};
 }
 
-bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
+/* Does a split of s at p keep within TRI_SPLIT_ASTRAY resolutions of its parent's line, and the boundary to itself? */
+static bool may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     const tri_vertex_id *end = mesh->parents[s->parent].v;
     return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= TRI_SPLIT_ASTRAY * tri_resolution(p) &&
@@ -103,8 +103,9 @@ struct tri_split_base tri_split_base(const struct tri_mesh *mesh, const struct t
     return (struct tri_split_base){tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], between), between};
 }
 
-struct tri_split_base tri_split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
-                                           struct tri_point at)
+/* At the foot of the perpendicular from `at`. */
+static struct tri_split_base split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                                              struct tri_point at)
 {
     assert(s->parent >= 0 && s->parent < mesh->n_parents);
     const tri_vertex_id *end = mesh->parents[s->parent].v;
@@ -182,14 +183,14 @@ static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subse
     return (struct sight){l, h, d, level >= 0.5, d >= 0.9 * h};
 }
 
-/* The fraction at which to split, by the rule. A d below the shortest edge is rounding. */
-static double fraction_for(const struct sight *v, double usual, double shortest)
+/* Where to split for vertex v, by the rule. A d below the shortest edge is rounding. */
+static struct tri_disk_split split_for(const struct sight *s, tri_vertex_id v, double usual, double shortest)
 {
-    double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
-    if (TRI_NARROW * v->h >= v->l || v->d < shortest || (!v->far && far >= from_nearer))
-        return usual;
-    double fraction = v->far ? v->d / v->l : far;
-    return v->from_end ? 1 - fraction : fraction;
+    double from_nearer = s->from_end ? 1 - usual : usual, far = (s->d + s->h * (s->h / s->d)) / s->l;
+    if (TRI_NARROW * s->h >= s->l || s->d < shortest || (!s->far && far >= from_nearer))
+        return (struct tri_disk_split){usual, TRI_NONE};
+    double fraction = s->far ? s->d / s->l : far;
+    return (struct tri_disk_split){s->from_end ? 1 - fraction : fraction, s->far ? v : TRI_NONE};
 }
 
 /* A unit in the last place. */
@@ -231,8 +232,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
     const double shortest = sqrt(mesh->limits.shortest2), h2 = sight.h * sight.h;
     if (!tri_is_resolved_from(mesh, s, v))
         return false;
-    split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
-    split->level = TRI_NARROW * sight.h < sight.l && sight.d >= shortest && sight.far ? v : TRI_NONE;
+    *split = split_for(&sight, v, tri_split_fraction(mesh, s), shortest);
     if (sight.d < shortest)
         return TRI_NARROW * sight.h >= sight.l || fmax(sight.d, ULP * shortest) * sight.l <= TRI_NARROW * h2;
     const double grain = grain_at(mesh, s, mesh->xy[v]);
@@ -267,7 +267,7 @@ struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tr
     struct tri_point between = tri_point_between(a, b, split->fraction);
     double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * fmax(tri_resolution(a), tri_resolution(b));
     double off = (x * (at.x - between.x) + y * (at.y - between.y));
-    return off * off <= near * near * l2 ? tri_split_base_level(mesh, s, at)
+    return off * off <= near * near * l2 ? split_base_level(mesh, s, at)
                                          : tri_split_base(mesh, s, split->fraction);
 }
 
@@ -300,7 +300,7 @@ static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subseg
         q.x = coordinate_beside(at.x, -(q.y - at.y) * (y / x), other);
     }
     *p = q;
-    return tri_leaves_disks_empty(mesh, s, q, at) && tri_may_split_at(mesh, s, q);
+    return tri_leaves_disks_empty(mesh, s, q, at) && may_split_at(mesh, s, q);
 }
 
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,

@@ -19,19 +19,14 @@ struct tri_split_base {
     struct tri_point on_line, on_sub;
 };
 
-/* At this fraction of the subsegment; at the foot of the perpendicular from `at`. */
+/* At this fraction of the subsegment. */
 struct tri_split_base tri_split_base(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction);
-struct tri_split_base tri_split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
-                                           struct tri_point at);
 
 /* *p: one of TRI_SPLIT_PLACES beside the base, up to about one resolution from it (crossing.h); choice: which one, the
  * best are the first. False where the place does not keep the boundary to itself, or is too far from the line: see
  * split.c. */
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_split_base *base,
                      int choice, struct tri_point *p);
-
-/* Does a split of s at p keep within four resolutions of its parent's line, and the boundary to itself? */
-bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p);
 
 /* --- diametral circles: what -D promises of every subsegment, and where to split one whose circle is not empty */
 

@@ -152,12 +152,6 @@ struct place {
     double h;
 };
 
-static double area_of(const struct place p[3])
-{
-    double bx = p[1].at.x - p[0].at.x, by = p[1].at.y - p[0].at.y;
-    return 0.5 * fabs(bx * (p[2].at.y - p[0].at.y) - by * (p[2].at.x - p[0].at.x));
-}
-
 /* Index of the corner opposite the longest edge. */
 static int opposite_longest(const struct place p[3])
 {
@@ -189,7 +183,7 @@ static bool is_simple(const struct tri_size_field *f, const struct place p[3], i
 
 static double count_in(const struct tri_size_field *f, const struct place p[3], int depth)
 {
-    double area = area_of(p);
+    double area = fabs(tri_area_of(p[0].at, p[1].at, p[2].at));
     if (depth == 0 || (f->left && *f->left <= 0))
         return count_by_corners(f, p, area, false);
     int k = opposite_longest(p);

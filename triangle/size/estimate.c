@@ -8,8 +8,8 @@
 
 #include "triangle/base/size_text.h"
 #include "triangle/base/status.h"
-#include "triangle/size/asked.h"
 #include "triangle/size/crowd.h"
+#include "triangle/size/quality.h"
 #include "triangle/tunables.h"
 
 enum { DEEPEST_CUT = 12 };

@@ -16,9 +16,7 @@
 #include "triangle/size/feature_size.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
-#include "triangle/base/grow.h"
 #include "triangle/geometry/shape.h"
 #include "triangle/mesh/parents.h"
 #include "triangle/mesh/surface.h"
@@ -34,11 +32,6 @@ static bool is_beside(double edge, double left, double right) { return left <= r
 struct estimate {
     struct tri_mesh *mesh;
     tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
-    struct crossing {
-        tri_triangle_id *item; /* [n] triangles of the share that have a vertex of another one */
-        int32_t n, capacity;
-        bool lost;             /* no memory to tell, or too many */
-    } crossing[TRI_MOST_SHARES];
 };
 
 static void divide_vertices(struct estimate *e)
@@ -71,56 +64,29 @@ static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
     return v >= e->own[share] && v < e->own[share + 1];
 }
 
-/* At most so many: in a mesh that is in no order they are nearly all, and not worth the memory. */
-static void note_crossing(struct crossing *crossing, int32_t most, tri_triangle_id t)
+/* The share's triangles at its own vertices, or at those of other shares. */
+static void estimate_share(const struct estimate *e, size_t share, bool own)
 {
-    crossing->lost |= crossing->n >= most;
-    if (!crossing->lost && tri_grow(&crossing->item, &crossing->capacity, crossing->n + 1, sizeof *crossing->item))
-        crossing->item[crossing->n++] = t;
-    else
-        crossing->lost = true;
-}
-
-/* The share's triangles at its own vertices. */
-static void estimate_own(void *context, size_t share)
-{
-    struct estimate *e = context;
     struct tri_mesh *mesh = e->mesh;
-    struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
-        mesh->feature[v] = HUGE_VAL;
+    const struct tri_range range = tri_share(share, mesh->n_triangles);
     for (tri_triangle_id i = range.first; i < range.last; i++) {
         const struct tri_triangle *t = &mesh->tri[i];
-        if (!tri_is_live(t))
+        const bool is_own[3] = {owns(e, share, t->v[0]), owns(e, share, t->v[1]), owns(e, share, t->v[2])};
+        if (!tri_is_live(t) || (!own && is_own[0] && is_own[1] && is_own[2]))
             continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
-        int own = 0;
+        const struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
         for (int k = 0; k < 3; k++)
-            if (owns(e, share, t->v[k])) {
+            if (is_own[k] == own)
                 estimate_corner(mesh, t, &shape, k);
-                own++;
-            }
-        if (own < 3)
-            note_crossing(&e->crossing[share], (range.last - range.first) / 8, i);
     }
 }
 
-/* The share's triangles at vertices of other shares. Where they have not been noted, all triangles are looked at. */
-static void estimate_others(const struct estimate *e, size_t share)
+static void estimate_own(void *context, size_t share)
 {
-    struct tri_mesh *mesh = e->mesh;
-    const struct crossing *crossing = &e->crossing[share];
-    struct tri_range range = tri_share(share, mesh->n_triangles);
-    int32_t n = crossing->lost ? range.last - range.first : crossing->n;
-    for (int32_t i = 0; i < n; i++) {
-        const struct tri_triangle *t = &mesh->tri[crossing->lost ? range.first + i : crossing->item[i]];
-        if (!tri_is_live(t))
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
-        for (int k = 0; k < 3; k++)
-            if (!owns(e, share, t->v[k]))
-                estimate_corner(mesh, t, &shape, k);
-    }
+    const struct estimate *e = context;
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
+        e->mesh->feature[v] = HUGE_VAL;
+    estimate_share(e, share, true);
 }
 
 /* Vertices of which no distance can be resolved. */
@@ -132,15 +98,14 @@ static void settle_own(void *context, size_t share)
         feature[v] = feature[v] < HUGE_VAL ? feature[v] : sqrt(e->mesh->limits.shortest2);
 }
 
-void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
+/* Sets the feature size of every vertex from the triangles around it. O(triangles). */
+static void estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     struct estimate e = {.mesh = mesh};
     divide_vertices(&e);
     tri_execute(executor, tri_shares(mesh->n_triangles), estimate_own, &e);
-    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++) {
-        estimate_others(&e, share);
-        free(e.crossing[share].item);
-    }
+    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
+        estimate_share(&e, share, false);
     tri_execute(executor, tri_shares(mesh->n_triangles), settle_own, &e);
 }
 
@@ -265,7 +230,7 @@ static int32_t find_features(struct tri_mesh *mesh, double rounding, const struc
     int32_t n = 0;
     mesh->limits.shortest2 = rounding * rounding;
     tri_choose_gaps(mesh, executor);
-    tri_estimate_features(mesh, executor);
+    estimate_features(mesh, executor);
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         n += mesh->feature[v] > rounding && mesh->feature[v] < TRI_BLUR * rounding;
     return n;

@@ -1,12 +1,10 @@
-/* How small edges may become for the sake of angles: the size of the features around each vertex. */
+/* What refinement has to know of the input before it inserts its first point, and how small edges may become for the
+ * sake of angles: the size of the features around each vertex. */
 #ifndef TRIANGLE_SIZE_FEATURE_SIZE_H
 #define TRIANGLE_SIZE_FEATURE_SIZE_H
 
 #include "triangle/mesh/cavity.h"
 #include "triangle/mesh/mesh.h"
-
-/* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
-void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor);
 
 /* The feature size at a point p that is inserted for a triangle with shortest edge ab; sized: because it is too large,
  * not because of its angles. */
@@ -19,9 +17,6 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
 /* Is the edge between vertices a and b, of squared length l2, too short for what is around it, regardless of
  * angles? */
 bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2);
-
-/* What refinement has to know of the input before it inserts its first point: found once, by tri_refine_prepare, and
- * kept with the mesh. */
 
 /* Makes the mesh ready for refinement: keeps the surface of the attributes, lists the parents at each vertex, estimates
  * feature sizes, sets the limits, and marks the input vertices at which two subsegments meet at less than 60 degrees

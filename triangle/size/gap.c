@@ -34,16 +34,30 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
 }
 
-double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v)
+/* The cost of the dearest space between the parent, which runs through u, and one that bounds triangle v, u, w at v. */
+static double dearest_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id w,
+                             tri_vertex_id v, bool apart)
 {
     int32_t n;
     double cost = 0;
     tri_parent_id listed[8];
-    const tri_parent_id *at = tri_parents_beside(mesh, v, u, u, listed, &n);
+    const tri_parent_id *at = tri_parents_beside(mesh, v, u, w, listed, &n);
     for (int32_t i = 0; i < n; i++)
-        if (at[i] != parent && tri_corner_between(mesh, parent, at[i]) == TRI_APART)
+        if (at[i] != parent && (!apart || tri_corner_between(mesh, parent, at[i]) == TRI_APART))
             cost = fmax(cost, tri_filling_cost(mesh, parent, at[i], mesh->xy[u], mesh->xy[v]));
+    return cost;
+}
+
+double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v)
+{
+    const double cost = dearest_across(mesh, parent, u, u, v, true);
     return cost > mesh->limits.dearest_gap ? cost : 0;
+}
+
+bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v)
+{
+    const tri_vertex_id *end = mesh->parents[p].v;
+    return dearest_across(mesh, p, end[0], end[1], v, false) > mesh->limits.dearest_gap;
 }
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
@@ -147,18 +161,6 @@ bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, co
     const tri_vertex_id *v = mesh->tri[triangle].v;
     const int k = shape->shortest;
     return tri_spans_gap(mesh, v[tri_next[k]], v[tri_prev[k]]) || tri_bridges_spike(mesh, triangle, shape);
-}
-
-bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v)
-{
-    int32_t n;
-    tri_parent_id beside[8];
-    const tri_vertex_id *end = mesh->parents[p].v;
-    const tri_parent_id *q = tri_parents_beside(mesh, v, end[0], end[1], beside, &n);
-    for (int32_t i = 0; i < n; i++)
-        if (q[i] != p && tri_filling_cost(mesh, p, q[i], mesh->xy[end[0]], mesh->xy[v]) > mesh->limits.dearest_gap)
-            return true;
-    return false;
 }
 
 enum { OCTAVES = 64 };

@@ -1,9 +1,14 @@
-/* What is asked of a mesh, and an angle bound in the form in which the inner loop compares it. */
+/* What is asked of a mesh, in the form in which the inner loop compares it, and which triangles are bad.
+ *
+ * Nothing here changes the mesh. */
 #ifndef TRIANGLE_SIZE_QUALITY_H
 #define TRIANGLE_SIZE_QUALITY_H
 
 #include <stdbool.h>
 #include <stdint.h>
+
+#include "triangle/geometry/shape.h"
+#include "triangle/mesh/mesh.h"
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule/schedule.h). */
@@ -68,5 +73,65 @@ struct tri_bounds {
 /* min_angle in degrees; above 60 as 60, which no mesh keeps; 0: no bound. conforming: the lens is the whole diametral
  * disk. */
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
+
+/* --- the sizes that are asked for, at a place and of a triangle
+ *
+ * Who asks for what, of which mesh. Both are borrowed. */
+struct tri_asked {
+    const struct tri_mesh *mesh;
+    const struct tri_quality *quality;
+    double area2; /* twice the bound for all areas, in the mesh's units; infinity: none */
+};
+
+struct tri_asked tri_asked_of(const struct tri_mesh *mesh, const struct tri_quality *quality);
+
+/* The smaller of the bound for all areas and that of a region. */
+double tri_area2_in_region(const struct tri_asked *asked, tri_region_id region);
+
+/* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
+static inline double tri_area2_bound(const struct tri_asked *asked, tri_region_id region)
+{
+    return asked->quality->region_areas ? tri_area2_in_region(asked, region) : asked->area2;
+}
+
+/* Do the caller's functions (tri_asks_caller) refuse a triangle of these corners, in the mesh's units? A
+ * quality->area_scale above 1 asks on behalf of a coarser mesh: the size test sees the triangle shrunk about its
+ * centroid, to 1 / area_scale of its area. */
+bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c);
+
+/* The same for a triangle with these corners. */
+bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3]);
+
+/* The longest edge that the caller's functions accept about a place in a triangle, in the mesh's units, at
+ * quality->area_scale. The size test is asked about the triangle shrunk about the place, from the whole down to a
+ * 65,536th of its lengths; an edge is that of an equilateral triangle of the same area, to a factor of 1.5. A test that
+ * accepts the first, or refuses all, asks for nothing: 1e100. */
+double tri_asked_length(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at);
+
+/* Does the triangle break a bound on areas, or do the caller's functions refuse it? */
+bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *t, const struct tri_shape *shape);
+
+/* --- which triangles are bad: the criterion that the refinement loop works for, and its census counts */
+
+struct tri_criterion {
+    struct tri_asked asked;
+    struct tri_bounds bounds; /* for the angle that is worked for now, which may be below the one that is asked for */
+};
+
+enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
+
+/* Both are borrowed. */
+struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct tri_quality *quality);
+
+/* A bad angle counts before a bad size. */
+enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
+                           const struct tri_shape *shape);
+
+/* -Y, -YY: must the subsegment not be split? */
+bool tri_is_protected(const struct tri_quality *quality, const struct tri_subsegment *s);
+
+/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
+ * rounding. */
+bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape);
 
 #endif
