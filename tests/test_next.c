@@ -220,7 +220,8 @@ static void run_on_ranks(const struct trial *trial, struct steps *steps)
 
 static const struct trial little = {"letter.poly", 20, 300, 500, false, false, 0};
 static const struct trial easy = {"letter.poly", 20, 15000, 500, false, false, 0};
-static const struct trial stubborn = {"cracked_plate.poly", 20, 5000, 256, false, false, 1}; /* blocks leave something */
+/* Blocks leave something. */
+static const struct trial stubborn = {"cracked_plate.poly", 20, 5000, 256, false, false, 1};
 static const struct trial expensive = {"letter.poly", 33, 15000, 500, false, false, 0};
 static const struct trial both = {"cracked_plate.poly", 33, 5000, 256, false, false, 1};
 static const struct trial few_cells = {"cracked_plate.poly", 36, 15000, 2000, false, false, 1}; /* none for sizes alone */
