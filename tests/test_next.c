@@ -224,7 +224,8 @@ static const struct trial easy = {"letter.poly", 20, 15000, 500, false, false, 0
 static const struct trial stubborn = {"cracked_plate.poly", 20, 5000, 256, false, false, 1};
 static const struct trial expensive = {"letter.poly", 33, 15000, 500, false, false, 0};
 static const struct trial both = {"cracked_plate.poly", 33, 5000, 256, false, false, 1};
-static const struct trial few_cells = {"cracked_plate.poly", 36, 15000, 2000, false, false, 1}; /* none for sizes alone */
+/* No cells for sizes alone. */
+static const struct trial few_cells = {"cracked_plate.poly", 36, 15000, 2000, false, false, 1};
 static const struct trial no_cells = {"letter.poly", 33, 15000, 1e6, false, false, 0};
 
 static void run_all(struct steps *made)
