@@ -146,28 +146,22 @@ set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/scratch_file.c tr
 set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/theory.c
     sched/schedule/threads.c
+    sched/schedule/deal.c
     sched/schedule/by_tile.c
     sched/schedule/partition.c
     sched/schedule/room.c
     sched/tiles/tile_arrays.c
-    sched/tiles/tile_copy.c
     sched/tiles/finds.c
     sched/tiles/pipeline.c
-    sched/tiles/tile_fill.c
     sched/tiles/tiles.c
     sched/tiles/tile_stream.c
     sched/tiles/queue.c
-    sched/tiles/deal.c
-    sched/tiles/sort_triangles.c
-    sched/tiles/move_triangles.c
     sched/tiles/numbering.c
     sched/tiles/park.c
     sched/checkpoint/spool.c
     sched/checkpoint/folder.c
     sched/checkpoint/checkpoint.c
     sched/checkpoint/state.c
-    sched/tiles/ahead.c
-    sched/tiles/remain.c
     sched/tiles/sweep.c
     sched/schedule/worklist.c
     sched/schedule/phase.c
@@ -229,7 +223,6 @@ set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
     drivers/plot/plot_part.c
     drivers/plot/plot_density.c
-    drivers/plot/plot_colour.c
     drivers/plot/plot_shade.c
     drivers/plot/plot_field.c
     drivers/plot/plot_draw.c)
@@ -239,12 +232,9 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/arguments.c
     drivers/mesh/console.c
     drivers/one_line.c
-    drivers/mesh/help.c
     drivers/interrupt.c
-    drivers/mesh/export.c
     drivers/mesh/mesh_files.c
     drivers/mesh/summary.c
-    drivers/mesh/self_check.c
     drivers/resources.c
     drivers/mesh/needs.c
     drivers/mesh/plan.c
@@ -258,8 +248,6 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/long_options.c
     drivers/mesh/orphans.c
     drivers/mesh/progress.c
-    drivers/mesh/rank_report.c
-    drivers/mesh/shared_input.c
     drivers/mesh/streams.c
     drivers/mesh/restart.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)

@@ -81,7 +81,7 @@ tested_by() {
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
     sched/checkpoint/checkpoint.c | sched/checkpoint/spool.c) echo checkpoint ;;
     sched/checkpoint/state.c | sched/checkpoint/folder.c) echo checkpoint ;;
-    sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
+    sched/schedule/deal.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;
     sched/schedule/prerefine.c | sched/schedule/report.c | sched/schedule/threads.c | sched/tiles/*) echo schedule ;;

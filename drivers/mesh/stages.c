@@ -9,9 +9,7 @@
 #include <unistd.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/help.h"
 #include "drivers/mesh/plan.h"
-#include "drivers/mesh/self_check.h"
 #include "drivers/mesh/summary.h"
 #include "drivers/resources.h"
 #include "triangle/base/clock.h"

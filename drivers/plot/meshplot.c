@@ -12,7 +12,7 @@
 #include "drivers/judge/judged_files.h"
 #include "drivers/judge/judged_words.h"
 #include "drivers/one_line.h"
-#include "drivers/plot/plot_part.h"
+#include "drivers/plot/plot.h"
 #include "drivers/resources.h"
 #include "drivers/start.h"
 #include "triangle/mesh/pslg.h"

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "sched/tiles/deal.h"
+#include "sched/schedule/deal.h"
 #include "triangle/geometry/hilbert.h"
 #include "triangle/refine/census.h"
 

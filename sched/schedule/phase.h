@@ -69,7 +69,7 @@ struct par_run {
     struct tri_executor executor;
     struct par_ids worklist; /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
-    struct par_ids remaining; /* where bad triangles are counted as they leave (sched/tiles/remain.h) */
+    struct par_ids remaining; /* where bad triangles are counted as they leave (sched/tiles/sweep.h) */
     bool counts_remaining;   /* such triangles are counted now */
     int64_t remained[TRI_EXCUSES + 1]; /* bad triangles that have left (tri_count_bad_among) */
     struct par_room spare;   /* unused ranges of the arrays */

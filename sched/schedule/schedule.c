@@ -17,7 +17,6 @@
 #include "sched/schedule/threads.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
-#include "sched/tiles/remain.h"
 #include "sched/tiles/sweep.h"
 #include "sched/tunables.h"
 #include "triangle/base/clock.h"
