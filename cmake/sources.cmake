@@ -116,26 +116,20 @@ set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c triangle/
 # hand out threads (sched/schedule/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/threads.c
+    sched/schedule/deal.c
     sched/schedule/partition.c
     sched/schedule/room.c
     sched/tiles/tile_arrays.c
-    sched/tiles/tile_copy.c
     sched/tiles/finds.c
     sched/tiles/pipeline.c
-    sched/tiles/tile_fill.c
     sched/tiles/tiles.c
     sched/tiles/tile_stream.c
     sched/tiles/queue.c
-    sched/tiles/deal.c
-    sched/tiles/sort_triangles.c
-    sched/tiles/move_triangles.c
     sched/tiles/numbering.c
     sched/tiles/park.c
     sched/checkpoint/spool.c
     sched/checkpoint/checkpoint.c
     sched/checkpoint/state.c
-    sched/tiles/ahead.c
-    sched/tiles/remain.c
     sched/tiles/sweep.c
     sched/schedule/worklist.c
     sched/schedule/phase.c
@@ -190,7 +184,6 @@ set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
     drivers/plot/plot_part.c
     drivers/plot/plot_density.c
-    drivers/plot/plot_colour.c
     drivers/plot/plot_shade.c
     drivers/plot/plot_field.c
     drivers/plot/plot_draw.c)
@@ -200,13 +193,10 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/arguments.c
     drivers/mesh/console.c
     drivers/words.c
-    drivers/mesh/help.c
     triangle/base/system_posix_process.c
     drivers/interrupt.c
-    drivers/mesh/export.c
     drivers/mesh/mesh_files.c
     drivers/mesh/summary.c
-    drivers/mesh/self_check.c
     drivers/mesh/needs.c
     drivers/mesh/plan.c
     drivers/mesh/stages.c)
@@ -219,8 +209,6 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/long_options.c
     drivers/mesh/orphans.c
     drivers/mesh/progress.c
-    drivers/mesh/rank_report.c
-    drivers/mesh/shared_input.c
     drivers/mesh/streams.c
     drivers/mesh/restart.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)

@@ -78,7 +78,7 @@ tested_by() {
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
     sched/checkpoint/*) echo checkpoint ;;
-    sched/tiles/deal.c | sched/tiles/sort_triangles.c | sched/tiles/move_triangles.c) echo numbering ;;
+    sched/schedule/deal.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;
     sched/schedule/prerefine.c) echo theory ;;

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "triangle/mesh/grid.h"
+#include "triangle/text/formats.h"
 
 struct run; /* drivers/mesh/stages.h */
 
@@ -33,5 +34,27 @@ struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers)
 /* Writes the mesh, which has no free numbers, into run->outputs, whoever fails: its caller commits or aborts. Input
  * points are written bit by bit as they were read. Says a line for each file, and one for all parts of a mesh. */
 enum tri_status mesh_files_write(const struct run *run);
+
+/* --- The mesh in a format of another program: one file, or one for each of its parts. */
+
+struct export {
+    const struct tri_format *format;
+    int n_parts; /* 0: it is one file */
+    struct tri_output *output[TRI_MOST_PARTS];
+};
+
+/* Of so many parts where the format has parts, else as a whole. */
+struct export export_of(const char *name, int n_parts);
+
+/* How many files there are, and the name of one, malloc'ed: of "mesh.msh" that itself, or "mesh_1.msh" and so on, as
+ * Gmsh does. NULL: no memory. */
+int export_files(const struct export *export);
+char *export_name(const struct export *export, const char *name, int file);
+
+/* Opens them in the guarded set (drivers/interrupt.h). */
+enum tri_status export_open(struct export *export, const char *name, struct tri_output_set *set,
+                            struct tri_error *error);
+enum tri_status export_write(const struct export *export, const struct tri_grid *grid,
+                             const struct tri_executor *executor, struct tri_error *error);
 
 #endif

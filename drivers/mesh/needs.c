@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "drivers/mesh/self_check.h"
+#include "drivers/mesh/summary.h"
 #include "triangle/base/system.h"
 #include "triangle/size/estimate.h"
 

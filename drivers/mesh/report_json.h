@@ -2,7 +2,7 @@
 #ifndef DRIVERS_MESH_REPORT_JSON_H
 #define DRIVERS_MESH_REPORT_JSON_H
 
-#include "drivers/mesh/rank_report.h"
+#include "drivers/mesh/launch.h"
 #include "drivers/mesh/stages.h"
 #include "sched/schedule/schedule.h"
 #include "triangle/text/output.h"

@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "drivers/mesh/help.h"
 #include "drivers/mesh/plan.h"
-#include "drivers/mesh/self_check.h"
 #include "drivers/mesh/summary.h"
 #include "triangle/base/system.h"
 #include "triangle/refine/census.h"

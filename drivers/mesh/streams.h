@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "drivers/mesh/export.h"
+#include "drivers/mesh/mesh_files.h"
 #include "drivers/mesh/stages.h"
 #include "ptriangle/tiles.h"
 #include "triangle/hdf5/h5_write.h"

@@ -21,4 +21,17 @@ void summary_counts(const struct run *run);
 /* The blocks of -V: shapes, memory, work done; also if quiet. */
 void summary_shapes(const struct run *run);
 
+/* --- -C: the mesh before the judge. */
+
+/* Measured: bytes of memory that it takes at the peak where nobody bounds it, for a triangle and for a subsegment. */
+enum { SELF_CHECK_BYTES = 72, SELF_CHECK_SUB_BYTES = 400 };
+
+/* What it takes whatever its bound, in parts that are not too small. */
+double self_check_least_bytes(const struct tri_mesh *mesh);
+
+/* Checks the mesh with triangle/check/check.h, which reads it part by part, and says two lines, or one per kind of
+ * fault and how many there are. memory: bytes that it may use; where that is less, self_check_least_bytes; 0: no bound.
+ * TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_CANNOT_WRITE. */
+enum tri_status self_check(const struct run *run, double memory);
+
 #endif

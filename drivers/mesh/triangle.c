@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/mesh/arguments.h"
 #include "drivers/mesh/console.h"
-#include "drivers/mesh/help.h"
 #include "drivers/mesh/stages.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;

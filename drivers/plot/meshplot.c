@@ -10,7 +10,7 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/judge/judged_files.h"
-#include "drivers/plot/plot_part.h"
+#include "drivers/plot/plot.h"
 #include "drivers/start.h"
 #include "drivers/words.h"
 #include "triangle/base/system.h"

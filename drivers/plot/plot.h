@@ -10,7 +10,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "drivers/plot/plot.h"
 #include "triangle/base/status.h"
+#include "triangle/cdt/reconstruct.h"
+#include "triangle/check/check.h"
+#include "triangle/mesh/pslg.h"
 
 /* --- colours */
 
@@ -170,5 +174,23 @@ double plot_height(const struct plot_style *style, const struct plot_shading *sh
  * cairo's words. O(n). */
 enum tri_status plot_draw(cairo_t *cr, bool vector, const struct plot_mesh *mesh, const struct plot_shading *shading,
                           const struct plot_style *style, struct tri_error *error);
+
+/* --- What a picture needs of a mesh of any size, gathered in one pass over its triangles: those in a part of the
+ * plane, or how many there are at each pixel. */
+
+/* In a picture that shows each: 2^24. In a build with tests PTRIANGLE_TEST_TRIANGLES of the environment. */
+int32_t plot_most_triangles(void);
+
+/* The box around all points, a little wider, and never flat. */
+enum tri_status plot_part_box(const struct tri_check_source *source, struct plot_box *box, struct tri_error *error);
+
+/* Triangles (with their last attribute) and segments that may show in the window, and their points. TRI_TOO_LARGE: more
+ * triangles than can be drawn. */
+enum tri_status plot_part_take(const struct tri_check_source *source, const struct plot_box *window,
+                               struct tri_pslg *mesh, struct tri_elements *elements, struct tri_error *error);
+
+/* Counts the triangles at each pixel of density->box, and takes segments as above. */
+enum tri_status plot_part_count(const struct tri_check_source *source, struct plot_density *density,
+                                struct tri_pslg *mesh, struct tri_error *error);
 
 #endif

@@ -1,6 +1,6 @@
 /* Points come through a cache of blocks: where numbers are local, as in our meshes, each block is read once or twice.
  * A mesh of up to 16 million points is in it as a whole. */
-#include "drivers/plot/plot_part.h"
+#include "drivers/plot/plot.h"
 
 #include <math.h>
 #include <stdlib.h>

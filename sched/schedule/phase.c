@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "sched/schedule/phase_tasks.h"
-#include "sched/tiles/deal.h"
+#include "sched/schedule/deal.h"
 #include "sched/tunables.h"
 #include "triangle/base/system.h"
 #include "triangle/base/grow.h"

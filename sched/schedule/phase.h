@@ -54,7 +54,7 @@ struct par_asked {
     int32_t n_kept;                    /* vertices that there were before refinement */
 };
 
-/* Bad triangles counted as they leave (sched/tiles/remain.h). */
+/* Bad triangles counted as they leave (sched/tiles/sweep.h). */
 struct par_remain {
     bool is_on;             /* false: nobody counts, and the others are empty */
     struct par_ids listed;  /* given up so far, and not counted yet */

@@ -19,7 +19,6 @@
 #include "sched/schedule/threads.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
-#include "sched/tiles/remain.h"
 #include "sched/tiles/sweep.h"
 #include "sched/tunables.h"
 #include "triangle/base/system.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "sched/schedule/prerefine.h"
-#include "sched/tiles/deal.h"
+#include "sched/schedule/deal.h"
 #include "triangle/base/grow.h"
 #include "triangle/geometry/hilbert.h"
 #include "triangle/refine/census.h"

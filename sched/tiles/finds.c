@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/tiles/deal.h"
+#include "sched/schedule/deal.h"
 #include "sched/tunables.h"
 
 bool par_finds_begin(struct par_finds *finds, int32_t n_rows)

@@ -1,11 +1,14 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/tiles/sweep.h"
 
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "sched/checkpoint/state.h"
-#include "sched/tiles/ahead.h"
 #include "sched/tiles/park.h"
-#include "sched/tiles/remain.h"
 #include "triangle/base/system.h"
+#include "triangle/refine/census.h"
 
 static enum tri_status no_memory(struct tri_error *error)
 {
@@ -154,4 +157,133 @@ enum tri_status par_sweep(struct par_run *run, const struct par_partition *parti
     par_forget_deferred(run->report);
     par_tiles_free(&s.tiles);
     return status;
+}
+
+/* --- A counting sort by column. */
+
+/* The number of the first odd column that reaches beyond x: column 2 i + 1. */
+static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_odd)
+{
+    int32_t low = 0, high = n_odd - 1; /* the last one reaches to infinity */
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (x < par_fence(p, 2 * middle + 1, 0).x_max)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    double a = mesh->xy[v[0]].x, b = mesh->xy[v[1]].x, c = mesh->xy[v[2]].x;
+    double most = a > b ? a : b;
+    return most > c ? most : c;
+}
+
+bool par_ahead_make(struct par_ahead *ahead, const struct par_run *run, const struct par_partition *partition)
+{
+    const struct par_ids *list = &run->worklist;
+    int32_t n_odd = (partition->n_columns - 1) / 2;
+    size_t n = (size_t)list->n + 1;
+    assert(run->key.n == 0);
+    *ahead = (struct par_ahead){malloc(n * sizeof *ahead->item), malloc(n * sizeof *ahead->key),
+                                calloc((size_t)n_odd + 2, sizeof *ahead->start), n_odd};
+    int32_t *column = malloc(n * sizeof *column), *start = ahead->start;
+    bool memory = ahead->item && ahead->key && start && column;
+    for (int32_t i = 0; memory && i < list->n; i++) {
+        column[i] = column_beyond(partition, right_end(run->mesh, list->item[i]), n_odd);
+        start[column[i] + 2]++;
+    }
+    for (int32_t i = 0; memory && i < n_odd; i++)
+        start[i + 2] += start[i + 1];
+    for (int32_t i = 0; memory && i < list->n; i++) {
+        int32_t at = start[column[i] + 1]++;
+        ahead->item[at] = list->item[i];
+        ahead->key[at] = (uint64_t)i;
+    }
+    free(column);
+    return memory;
+}
+
+void par_ahead_free(struct par_ahead *ahead)
+{
+    free(ahead->item);
+    free(ahead->key);
+    free(ahead->start);
+    *ahead = (struct par_ahead){0};
+}
+
+bool par_ahead_give(const struct par_ahead *ahead, struct par_run *run, int32_t odd)
+{
+    int32_t i = odd / 2;
+    if (i >= ahead->n_odd)
+        return true;
+    int32_t first = ahead->start[i];
+    return par_merge_worklist(run, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
+}
+
+/* --- A list of triangles that have been given up, looked through once for each column. */
+
+/* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
+static struct tri_refine_report report_of(const struct par_run *run)
+{
+    struct tri_refine_report report = run->report->total;
+    report.gated = report.fenced = 0;
+    return report;
+}
+
+bool par_remain_begin(struct par_run *run)
+{
+    struct par_ids *list = &run->remain.listed;
+    tri_triangle_id *found = malloc(((size_t)run->mesh->n_triangles + 1) * sizeof *found);
+    const int32_t n = found ? tri_find_hopeless(run->mesh, &run->bounds, found) : 0;
+    list->n = 0;
+    bool memory = found && par_ids_add_all(list, found, n);
+    free(found);
+    memset(run->remain.counted, 0, sizeof run->remain.counted);
+    return memory;
+}
+
+static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, double x)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
+}
+
+/* Those to come stay in front, those to count go behind them, and are counted by one call. */
+void par_remain_count(struct par_run *run, double x)
+{
+    const struct tri_mesh *mesh = run->mesh;
+    const struct tri_refine_report report = report_of(run);
+    struct par_ids *list = &run->remain.listed;
+    int32_t n = par_sort_unique(list->item, list->n), live = 0, kept = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const tri_triangle_id t = list->item[i];
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        list->item[live++] = t;
+        if (!has_corner_left_of(mesh, t, x)) {
+            list->item[live - 1] = list->item[kept];
+            list->item[kept++] = t;
+        }
+    }
+    tri_count_bad_among(mesh, &run->bounds, &report, list->item + kept, live - kept, run->remain.counted);
+    list->n = kept;
+}
+
+void par_remain_settle(struct par_run *run)
+{
+    const struct tri_refine_report report = report_of(run);
+    tri_settle_counts(&report, run->remain.counted, run->report->remain);
+    run->report->remain_known = true;
+}
+
+void par_remain_count_all(struct par_run *run)
+{
+    const struct tri_refine_report report = report_of(run);
+    tri_count_bad(run->mesh, &run->bounds, &report, &run->asked.executor, run->report->remain);
+    run->report->remain_known = true;
 }

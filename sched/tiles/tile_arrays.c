@@ -1,7 +1,12 @@
 /* One table of what a tile is made of. */
 #include "sched/tiles/tile_arrays.h"
 
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "sched/tunables.h"
+#include "triangle/mesh/surface.h"
 
 void par_tile_arrays(const struct tri_tile *tile, int32_t n_attributes, struct par_array array[PAR_TILE_ARRAYS])
 {
@@ -72,4 +77,372 @@ size_t par_tile_unpack(const char *bytes, size_t n, int32_t n_attributes, struct
     }
     par_tile_point_at(tile, array);
     return at;
+}
+
+/* --- Arrays of one tile. */
+
+/* The next array of so many items in the block. */
+static void *array(char **at, int32_t n, size_t item)
+{
+    void *here = *at;
+    *at += (size_t)n * item;
+    return here;
+}
+
+/* Wide numbers first, so that all are aligned. */
+bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
+                           int32_t n_triangles, int32_t n_segments)
+{
+    const size_t a = (size_t)mesh->n_attributes * sizeof *copy->attributes;
+    const size_t v = sizeof *copy->points + a + sizeof(int32_t);
+    const size_t t = sizeof *copy->corners + sizeof(int32_t), s = sizeof *copy->ends + sizeof(int32_t);
+    const size_t size = (size_t)n_vertices * v + (size_t)n_triangles * t + (size_t)n_segments * s;
+    if (!copy->block || size > copy->size) {
+        free(copy->block);
+        copy->size = size + size / 16; /* the next tile is about as large */
+        copy->block = malloc(copy->size + 1);
+    }
+    if (!copy->block)
+        return false;
+    char *at = copy->block;
+    copy->points = array(&at, n_vertices, sizeof *copy->points);
+    copy->attributes = array(&at, n_vertices, a);
+    copy->corners = array(&at, n_triangles, sizeof *copy->corners);
+    copy->ends = array(&at, n_segments, sizeof *copy->ends);
+    copy->point_markers = array(&at, n_vertices, sizeof *copy->point_markers);
+    copy->regions = array(&at, n_triangles, sizeof *copy->regions);
+    copy->segment_markers = array(&at, n_segments, sizeof *copy->segment_markers);
+    return true;
+}
+
+void par_tile_copy_free(struct par_tile_copy *copy)
+{
+    free(copy->block);
+    *copy = (struct par_tile_copy){0};
+}
+
+void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mesh *mesh, tri_vertex_id v, int32_t to)
+{
+    size_t n = (size_t)mesh->n_attributes;
+    tri_mesh_place(mesh, v, copy->points[to]);
+    copy->point_markers[to] = mesh->vertex_markers[v];
+    if (n > 0)
+        memcpy(copy->attributes + (size_t)to * n, mesh->attributes + (size_t)v * n, n * sizeof *copy->attributes);
+}
+
+void par_tile_copy_show(const struct par_tile_copy *copy, struct tri_tile *tile)
+{
+    tile->points = (const double(*)[2])copy->points;
+    tile->point_markers = copy->point_markers;
+    tile->attributes = copy->attributes;
+    tile->corners = (const int64_t(*)[3])copy->corners;
+    tile->regions = copy->regions;
+    tile->ends = (const int64_t(*)[2])copy->ends;
+    tile->segment_markers = copy->segment_markers;
+}
+
+/* --- Triangles start at their corner with the largest number, mostly a vertex of the tile's own. Those that start at
+ * one are its fan, of two triangles on average: they find their places by counting, and are sorted by the next
+ * corner within. The others come before them, since their first corners have lower numbers. */
+
+/* --- final triangles */
+
+struct final {
+    int64_t corner[3];
+    int32_t region, unused;
+};
+
+_Static_assert(sizeof(struct final) == sizeof(struct tri_triangle) &&
+                   offsetof(struct final, region) == offsetof(struct tri_triangle, region),
+               "one takes the place of the other");
+
+/* Straight from where it is: a copy on the stack, written in other pieces than it is read in, would have to be waited
+ * for. */
+static inline int64_t final_corner(const struct tri_triangle *triangle, int k)
+{
+    int64_t corner;
+    memcpy(&corner, (const char *)triangle + offsetof(struct final, corner) + (size_t)k * sizeof corner, sizeof corner);
+    return corner;
+}
+
+static inline void put_corner(struct tri_triangle *triangle, int k, int64_t number)
+{
+    memcpy((char *)triangle + offsetof(struct final, corner) + (size_t)k * sizeof number, &number, sizeof number);
+}
+
+/* Without a branch, which could not be predicted. */
+static inline int64_t choose(bool yes, int64_t a, int64_t b) { return b ^ ((a ^ b) & -(int64_t)yes); }
+
+/* A note: where in its tile the vertex is that the triangle starts at, and, in the lowest bit, whether a corner is one
+ * of the caller's points. TRI_NONE: that vertex is of an earlier tile. */
+int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], int64_t first, int64_t n_input)
+{
+    const int64_t a = number[0], b = number[1], c = number[2];
+    const bool from_b = b > a, from_c = c > choose(from_b, b, a);
+    const int64_t start = choose(from_c, c, choose(from_b, b, a));
+    put_corner(triangle, 0, start);
+    put_corner(triangle, 1, choose(from_c, a, choose(from_b, c, b)));
+    put_corner(triangle, 2, choose(from_c, b, choose(from_b, a, c)));
+    const bool has_input = (a < n_input) | (b < n_input) | (c < n_input);
+    return start >= first ? (int32_t)(2 * (start - first)) + has_input : TRI_NONE;
+}
+
+static int compare_finals(const void *left, const void *right)
+{
+    const struct final *a = left, *b = right;
+    int k = a->corner[0] == b->corner[0];
+    return (a->corner[k] > b->corner[k]) - (a->corner[k] < b->corner[k]);
+}
+
+/* --- the job */
+
+bool par_tile_job_reserve(struct par_tile_job *job, int64_t n)
+{
+    if (job->scratch && n <= job->n_scratch)
+        return true;
+    free(job->scratch);
+    job->scratch = malloc((size_t)(n + n / 16 + 1) * sizeof *job->scratch);
+    job->n_scratch = job->scratch ? n + n / 16 : 0;
+    return job->scratch;
+}
+
+void par_tile_job_free(struct par_tile_job *job)
+{
+    par_tile_copy_free(&job->copy);
+    free(job->scratch);
+    job->scratch = NULL;
+}
+
+/* --- triangles */
+
+/* From a struct final, wherever it lies. */
+static inline void put(const struct par_tile_copy *copy, int32_t at, const void *final)
+{
+    memcpy(copy->corners[at], (const char *)final + offsetof(struct final, corner), sizeof *copy->corners);
+    memcpy(&copy->regions[at], (const char *)final + offsetof(struct final, region), sizeof *copy->regions);
+}
+
+static struct final get(const struct par_tile_copy *copy, int32_t at)
+{
+    struct final final = {.region = copy->regions[at]};
+    memcpy(final.corner, copy->corners[at], sizeof final.corner);
+    return final;
+}
+
+/* Triangles of one fan, or of none. */
+static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n)
+{
+    struct final few[PAR_FEW_IN_FAN], *item = n > PAR_FEW_IN_FAN ? malloc((size_t)n * sizeof *item) : few;
+    if (!item)
+        return false;
+    for (int32_t i = 0; i < n; i++)
+        item[i] = get(copy, first + i);
+    qsort(item, (size_t)n, sizeof *item, compare_finals);
+    for (int32_t i = 0; i < n; i++)
+        put(copy, first + i, &item[i]);
+    if (n > PAR_FEW_IN_FAN)
+        free(item);
+    return true;
+}
+
+/* The numbers that the caller knows. */
+static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
+{
+    for (size_t i = 0; mesh->origin && i < n; i++)
+        number[i] = par_shown(mesh, number[i]);
+}
+
+/* What of a tile's triangles is where: the slot of each is its place in the tile, but for the order within a fan. */
+struct fans {
+    const struct tri_tile *tile;
+    struct tri_triangle *tri; /* of the mesh */
+    const int32_t *triangles, *notes; /* [n_triangles] */
+    int32_t *slot;            /* [n_triangles] in each a triangle */
+    int32_t *end;             /* [n_vertices] of each fan; before its slots are filled, the next free one */
+    int32_t others;           /* triangles of no fan, which come before all of them */
+    bool *has_input;          /* [n_vertices] a corner in the fan is one of the caller's points */
+};
+
+/* What they take of 8 bytes. */
+static int64_t fans_words(const struct tri_tile *tile)
+{
+    return (tile->n_triangles * INT64_C(4) + tile->n_vertices * INT64_C(5)) / 8 + 1;
+}
+
+static int32_t *fan_words(int32_t **at, int32_t n)
+{
+    int32_t *words = *at;
+    *at += n;
+    return words;
+}
+
+/* Where each fan begins. */
+static void count_fans(struct fans *f)
+{
+    const int32_t n = f->tile->n_vertices;
+    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
+    for (int32_t i = 0; i < f->tile->n_triangles; i++) {
+        const int32_t own = f->notes[i] >> 1; /* TRI_NONE stays so */
+        assert(TRI_NONE <= own && own < n);
+        if (own == TRI_NONE) {
+            f->others++;
+            continue;
+        }
+        f->end[own]++;
+        if (f->notes[i] & 1)
+            f->has_input[own] = true;
+    }
+    for (int32_t v = 0, sum = f->others; v < n; v++) {
+        int32_t count = f->end[v];
+        f->end[v] = sum;
+        sum += count;
+    }
+}
+
+/* Once slots are filled. */
+static int32_t begin_of(const struct fans *f, int32_t v) { return v > 0 ? f->end[v - 1] : f->others; }
+
+static void fill_slots(const struct fans *f)
+{
+    int32_t other = 0;
+    for (int32_t i = 0; i < f->tile->n_triangles; i++)
+        f->slot[f->notes[i] != TRI_NONE ? f->end[f->notes[i] >> 1]++ : other++] = f->triangles[i];
+}
+
+/* A fan of up to four, by the second corner, without a branch that depends on it: four are put, and those that are not
+ * of the fan are put again when their turn comes. */
+static inline void put_four(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
+{
+    const struct tri_triangle *t[4];
+    int64_t key[4];
+    for (int k = 0; k < 4; k++) {
+        t[k] = &f->tri[f->slot[first + k]];
+        key[k] = choose(k < n, final_corner(t[k], 1), INT64_MAX);
+    }
+    for (int k = 0; k < 4; k++) {
+        int32_t rank = 0;
+        for (int i = 0; i < 4; i++)
+            rank += i < k ? key[i] <= key[k] : key[i] < key[k];
+        put(copy, first + rank, t[k]);
+    }
+}
+
+static bool put_many(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
+{
+    for (int32_t i = first; i < first + n; i++)
+        put(copy, i, &f->tri[f->slot[i]]);
+    return sort_many(copy, first, n);
+}
+
+/* The fans of vertices first to end - 1. Triangles lie scattered: those that come soon are fetched already. */
+static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t first,
+                     int32_t end)
+{
+    const int32_t n = f->tile->n_triangles;
+    bool memory = true;
+    for (int32_t v = first, begin = begin_of(f, v); memory && v < end; begin = f->end[v++]) {
+        const int32_t count = f->end[v] - begin;
+        for (int k = 0; begin + PAR_HANDED_AHEAD < n && k < 3; k++)
+            __builtin_prefetch(&f->tri[f->slot[begin + PAR_HANDED_AHEAD - k]]);
+        if (count <= 4 && begin + 4 <= n)
+            put_four(f, copy, begin, count);
+        else
+            memory = put_many(f, copy, begin, count);
+        if (f->has_input[v])
+            show_numbers(copy->corners[begin], 3 * (size_t)count, mesh);
+    }
+    return memory;
+}
+
+static void free_triangles(const struct fans *f, int32_t first, int32_t end)
+{
+    for (int32_t i = first; i < end; i++)
+        f->tri[f->slot[i]].v[0] = TRI_NONE;
+}
+
+/* So few at a time that triangles are in the cache still when they are let go. */
+static bool put_all(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh)
+{
+    const int32_t n = f->tile->n_vertices;
+    bool memory = put_many(f, copy, 0, f->others);
+    show_numbers(copy->corners[0], 3 * (size_t)f->others, mesh);
+    free_triangles(f, 0, f->others);
+    for (int32_t first = 0, end; memory && first < n; first = end) {
+        end = n - first > PAR_FANS_AT_ONCE ? first + PAR_FANS_AT_ONCE : n;
+        memory = put_fans(f, copy, mesh, first, end);
+        free_triangles(f, begin_of(f, first), begin_of(f, end));
+    }
+    return memory;
+}
+
+static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const struct par_tile_ids *ids)
+{
+    const struct tri_tile *tile = &job->tile;
+    int32_t *at = (int32_t *)(void *)job->scratch;
+    struct fans fans = {.tile = tile, .tri = mesh->tri, .triangles = ids->triangles, .notes = ids->notes,
+                        .slot = fan_words(&at, tile->n_triangles), .end = fan_words(&at, tile->n_vertices),
+                        .has_input = (bool *)at};
+    count_fans(&fans);
+    fill_slots(&fans);
+    return put_all(&fans, &job->copy, mesh);
+}
+
+/* --- subsegments */
+
+struct numbered_sub {
+    int64_t end[2];
+    int32_t marker, parent;
+};
+
+static int compare_subs(const void *left, const void *right)
+{
+    const struct numbered_sub *a = left, *b = right;
+    if (a->parent != b->parent)
+        return a->parent < b->parent ? -1 : 1;
+    return (a->end[0] > b->end[0]) - (a->end[0] < b->end[0]);
+}
+
+static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
+                      const int32_t *subs)
+{
+    int32_t n = job->tile.n_segments;
+    struct numbered_sub *item = malloc(((size_t)n + 1) * sizeof *item);
+    for (int32_t i = 0; item && i < n; i++) {
+        const struct tri_subsegment *s = &mesh->sub[subs[i]];
+        item[i] = (struct numbered_sub){{number[s->v[0]], number[s->v[1]]}, s->marker, s->parent};
+    }
+    if (item && n > 1)
+        qsort(item, (size_t)n, sizeof *item, compare_subs);
+    for (int32_t i = 0; item && i < n; i++) {
+        for (int k = 0; k < 2; k++)
+            job->copy.ends[i][k ^ mesh->parents[item[i].parent].reversed] = item[i].end[k];
+        job->copy.segment_markers[i] = item[i].marker;
+    }
+    bool memory = item;
+    if (memory)
+        show_numbers((int64_t *)job->copy.ends, 2 * (size_t)n, mesh);
+    free(item);
+    return memory;
+}
+
+/* --- all */
+
+bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
+                   const struct par_tile_ids *ids)
+{
+    const int32_t *vertices = ids->vertices;
+    struct tri_tile *tile = &job->tile;
+    if (!par_tile_job_reserve(job, fans_words(tile)) ||
+        !par_tile_copy_reserve(&job->copy, mesh, tile->n_vertices, tile->n_triangles, tile->n_segments))
+        return false;
+    par_tile_copy_show(&job->copy, tile);
+    tri_surface_set(mesh, vertices, tile->n_vertices);
+    for (int32_t i = 0; i < tile->n_vertices; i++) {
+        if (i + PAR_HANDED_AHEAD < tile->n_vertices) {
+            __builtin_prefetch(&mesh->xy[vertices[i + PAR_HANDED_AHEAD]]);
+            __builtin_prefetch(&mesh->vertex_markers[vertices[i + PAR_HANDED_AHEAD]]);
+        }
+        par_tile_copy_vertex(&job->copy, mesh, vertices[i], i);
+    }
+    return fill_triangles(job, mesh, ids) && fill_subs(job, mesh, number, ids->subs);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/tiles/tile_copy.h"
+#include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 
 static enum tri_status no_memory(struct tri_error *error)

@@ -11,7 +11,7 @@
 
 #include "sched/tiles/finds.h"
 #include "sched/tiles/pipeline.h"
-#include "sched/tiles/tile_fill.h"
+#include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
 #include "triangle/geometry/hilbert.h"

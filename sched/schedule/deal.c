@@ -1,4 +1,4 @@
-#include "sched/tiles/deal.h"
+#include "sched/schedule/deal.h"
 
 #include <assert.h>
 #include <stdatomic.h>

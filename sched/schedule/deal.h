@@ -1,7 +1,7 @@
 /* Things dealt to tiles, by a counting sort in shares: how many of each tile there are in each share of where things
  * are now, then where the next one goes. So shares are tasks, and things of one tile keep their order. */
-#ifndef SCHED_TILES_DEAL_H
-#define SCHED_TILES_DEAL_H
+#ifndef SCHED_SCHEDULE_DEAL_H
+#define SCHED_SCHEDULE_DEAL_H
 
 #include <stdbool.h>
 
