@@ -10,7 +10,7 @@
 #include "sched/schedule/phase.h"
 #include "sched/tiles/tiles.h"
 
-/* The tiles of a state's mesh, none of them handed out yet. */
+/* The tiles of a run's mesh, none of them handed out yet. */
 struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partition *partition);
 
 /* *done: all of the mesh has been handed out. False: blocks leave something over, which further rounds would have to
@@ -31,7 +31,7 @@ struct par_ahead {
     int32_t n_odd;
 };
 
-/* Of the worklist, which no block has had; the state is as before. False: no memory. To be freed in any case. */
+/* Of the worklist, which no block has had; the run is as before. False: no memory. To be freed in any case. */
 bool par_ahead_make(struct par_ahead *ahead, const struct par_run *run, const struct par_partition *partition);
 void par_ahead_free(struct par_ahead *ahead);
 
