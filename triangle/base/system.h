@@ -120,6 +120,9 @@ char *tri_path_resolve(const char *path);
 /* The path of a file that is there, from the root on. */
 char *tri_path_from_root(const char *path);
 
+/* Of the folder's part of a path, with the last '/'; 0: the working folder. */
+size_t tri_path_folder_length(const char *path);
+
 /* The folder itself, or that of a file which is there or will be. */
 void tri_path_folder(const char *path, char folder[TRI_PATH]);
 

@@ -283,8 +283,7 @@ bool tri_path_rename(const char *from, const char *to) { return rename(from, to)
 bool tri_path_link(const char *path, const char *second) { return link(path, second) == 0; }
 char *tri_path_from_root(const char *path) { return realpath(path, NULL); }
 
-/* Length of the directory part, final slash included; 0: the working directory. */
-static size_t directory_length(const char *path)
+size_t tri_path_folder_length(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
@@ -293,7 +292,7 @@ static size_t directory_length(const char *path)
 static bool stat_directory(const char *path, struct stat *status)
 {
     char name[TRI_PATH];
-    const size_t length = directory_length(path);
+    const size_t length = tri_path_folder_length(path);
     if (length + 2 > sizeof name)
         return false;
     memcpy(name, path, length);
@@ -322,7 +321,7 @@ static char *follow_link(const char *path)
         return NULL;
     }
     target[length] = 0;
-    return joined(path, target[0] == '/' ? 0 : directory_length(path), target);
+    return joined(path, target[0] == '/' ? 0 : tri_path_folder_length(path), target);
 }
 
 char *tri_path_resolve(const char *path)
@@ -347,7 +346,7 @@ char *tri_path_resolve(const char *path)
 void tri_path_folder(const char *path, char folder[TRI_PATH])
 {
     struct tri_file_facts facts;
-    const size_t length = directory_length(path);
+    const size_t length = tri_path_folder_length(path);
     if (tri_path_look(path, &facts) && facts.kind == TRI_FOLDER)
         snprintf(folder, TRI_PATH, "%s", path);
     else

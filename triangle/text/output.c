@@ -22,17 +22,10 @@ enum {
 
 void tri_outputs_begin(struct tri_output_set *set) { *set = (struct tri_output_set){0}; }
 
-/* Length of the directory part, final slash included; 0: the working directory. */
-static size_t directory_length(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
 /* directory_of's directory followed by name; malloc'ed. */
 static char *beside(const char *directory_of, const char *name)
 {
-    return tri_name(directory_of, directory_length(directory_of), name);
+    return tri_name(directory_of, tri_path_folder_length(directory_of), name);
 }
 
 static enum tri_status cannot_create(const struct tri_output *output, struct tri_error *error)
@@ -122,8 +115,8 @@ static void remove_left(const char *path)
 
 static bool is_same_directory(const char *a, const char *b)
 {
-    size_t length = directory_length(a);
-    return directory_length(b) == length && memcmp(a, b, length) == 0;
+    size_t length = tri_path_folder_length(a);
+    return tri_path_folder_length(b) == length && memcmp(a, b, length) == 0;
 }
 
 static void tidy_up(const struct tri_output_set *set, const char *path)
@@ -188,7 +181,7 @@ static enum tri_status open_in_place(struct tri_output *output, struct tri_error
 static enum tri_status check_target(const struct tri_output *output, const struct tri_file_facts *old,
                                     struct tri_error *error)
 {
-    const bool has_name = output->path[directory_length(output->path)] != 0;
+    const bool has_name = output->path[tri_path_folder_length(output->path)] != 0;
     if (!has_name || (old && old->kind == TRI_FOLDER)) {
         errno = EISDIR;
         return cannot_create(output, error);
@@ -201,8 +194,9 @@ static struct tri_output_place place_of(const char *path, const struct tri_file_
 {
     char folder[TRI_PATH];
     struct tri_file_facts at;
-    snprintf(folder, sizeof folder, "%.*s.", (int)directory_length(path), path);
-    const bool is_known = old ? old->kind == TRI_REGULAR : tri_path_look(folder, &at);
+    const int length = snprintf(folder, sizeof folder, "%.*s.", (int)tri_path_folder_length(path), path);
+    const bool is_whole = length >= 0 && (size_t)length < sizeof folder;
+    const bool is_known = old ? old->kind == TRI_REGULAR : is_whole && tri_path_look(folder, &at);
     if (!is_known)
         return (struct tri_output_place){0};
     at = old ? *old : at;
@@ -213,7 +207,7 @@ static bool is_same_place(const struct tri_output_place *a, const char *path_a, 
                           const char *path_b)
 {
     return a->known && b->known && a->exists == b->exists && a->device == b->device && a->node == b->node &&
-           (a->exists || strcmp(path_a + directory_length(path_a), path_b + directory_length(path_b)) == 0);
+           (a->exists || strcmp(path_a + tri_path_folder_length(path_a), path_b + tri_path_folder_length(path_b)) == 0);
 }
 
 bool tri_is_same_file(const char *a, const char *b)
@@ -354,7 +348,8 @@ tri_file tri_output_direct(struct tri_output *output)
     return output->no_direct ? output->file : output->direct;
 }
 
-enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error)
+/* All that has been written is on the disk afterwards. Where there is no way to ask for it, nothing happens. */
+static enum tri_status sync_output(struct tri_output *output, struct tri_error *error)
 {
     return tri_output_conclude(output, tri_file_sync(output->file) ? 0 : errno, error);
 }
@@ -380,7 +375,7 @@ static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_erro
         if (tri_stop_is_asked(output->stop))
             return tri_fail_stopped(error);
     }
-    return bytes > 0 ? tri_output_sync(output, error) : TRI_OK;
+    return bytes > 0 ? sync_output(output, error) : TRI_OK;
 }
 
 /* All are sent off before one is waited for: so a journal takes in all of them at once. */
@@ -580,7 +575,7 @@ enum tri_status tri_output_leave(struct tri_output *output, bool on_disk, struct
 {
     enum tri_status status = TRI_OK;
     if (on_disk && output->file != TRI_NO_FILE)
-        status = tri_output_sync(output, error);
+        status = sync_output(output, error);
     const enum tri_status closed = close_file(output, status ? NULL : error);
     return status ? status : closed;
 }
