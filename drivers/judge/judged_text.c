@@ -18,7 +18,7 @@ static enum tri_status open_rows(struct scratch *s, const char *folder, size_t w
 {
     *s = (struct scratch){.file = folder ? tri_scratch_file(folder) : TRI_NO_FILE, .width = width};
     if (folder && s->file == TRI_NO_FILE)
-        return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot make a scratch file there: %s", strerror(errno));
+        return tri_fail_system(error, TRI_CANNOT_WRITE, folder, "cannot make a scratch file there", errno);
     return TRI_OK;
 }
 
@@ -31,7 +31,7 @@ static enum tri_status append_rows(struct scratch *s, const void *rows, int64_t 
     if (s->file == TRI_NO_FILE && size > 0)
         memcpy(s->bytes + at, rows, (size_t)size);
     if (s->file != TRI_NO_FILE && !tri_write_at(s->file, rows, (size_t)size, (uint64_t)at))
-        return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "cannot write a scratch file: %s", strerror(errno));
+        return tri_fail_system(error, TRI_CANNOT_WRITE, "", "cannot write a scratch file", errno);
     s->n += n;
     return TRI_OK;
 }

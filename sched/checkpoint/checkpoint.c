@@ -29,7 +29,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
 {
     char path[PAR_CHECKPOINT_PATH];
     path_of(path, directory, name);
-    return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+    return tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot write", errno);
 }
 
 bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file)
@@ -59,7 +59,7 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
     const char *directory = c->directory;
     const tri_file file = tri_folder_file(c->folder, manifest_name, TRI_FOLDER_READ);
     if (file == TRI_NO_FILE)
-        return tri_fail(error, TRI_BAD_INPUT, directory, 0, "holds no checkpoint: %s", strerror(errno));
+        return tri_fail_system(error, TRI_BAD_INPUT, directory, "holds no checkpoint", errno);
     bool whole = tri_read_again(file, m, sizeof *m, 0) && is_manifest(m);
     (void)tri_file_close(file);
     if (whole)
@@ -141,7 +141,7 @@ static enum tri_status check_names(const struct par_checkpoint *c, struct tri_er
 {
     struct finding finding = {.folder = c->folder};
     if (!tri_folder_list(c->folder, find_foreign, &finding))
-        return tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot be used: %s", strerror(errno));
+        return tri_fail_system(error, TRI_CANNOT_WRITE, c->directory, "cannot be used", errno);
     return finding.name[0] ? tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                                       "holds a file %s, but no checkpoint: choose another folder", finding.name)
                            : TRI_OK;
@@ -183,8 +183,8 @@ static enum tri_status open_folder(struct par_checkpoint *c, bool resume, struct
     if (errno == EPERM)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "belongs to another user: choose another folder");
     if (resume)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds no checkpoint: %s", strerror(errno));
-    return tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot be used: %s", strerror(errno));
+        return tri_fail_system(error, TRI_BAD_INPUT, c->directory, "holds no checkpoint", errno);
+    return tri_fail_system(error, TRI_CANNOT_WRITE, c->directory, "cannot be used", errno);
 }
 
 enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error)
@@ -214,7 +214,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
     bool made = !resume && tri_folder_make(directory);
     if (!resume && !made && errno != EEXIST)
-        return tri_fail(error, TRI_CANNOT_WRITE, directory, 0, "cannot be made: %s", strerror(errno));
+        return tri_fail_system(error, TRI_CANNOT_WRITE, directory, "cannot be made", errno);
     enum tri_status status = open_folder(c, resume, error);
     status = status ? status : check_run(c, resume, of, error);
     if (!status && !resume)

@@ -82,7 +82,7 @@ static enum tri_status no_memory(const struct par_spool *spool, struct tri_error
 
 static enum tri_status fail_writing(const struct par_spool *spool, struct tri_error *error)
 {
-    return tri_fail(error, TRI_CANNOT_WRITE, spool->path, 0, "cannot write: %s", strerror(errno));
+    return tri_fail_system(error, TRI_CANNOT_WRITE, spool->path, "cannot write", errno);
 }
 
 /* The system begins to write what has come lately: whoever waits for a state that is to be kept waits for little of it.

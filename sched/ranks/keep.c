@@ -9,7 +9,6 @@
  * corners. Two triangles with a common edge know of each other, and of the subsegment there, if an end of the edge lies
  * in one of its tiles, since both are in the piece of that. Across other edges nobody looks here: a block that may
  * change one of the two has both ends in its box, and asks the owners of these. */
-#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,7 +153,7 @@ static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *
 
 static enum tri_status cannot_write(const char *path, struct tri_error *error)
 {
-    return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+    return tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot write", errno);
 }
 
 /* Pieces one after the other, then their offsets, then the head. */
@@ -273,7 +272,7 @@ static enum tri_status read_piece_file(struct par_ranks *r, const struct piece_f
     const char *directory = r->run->asked.options->checkpoint->directory;
     const tri_file file = par_checkpoint_piece(path, directory, of->which, of->writer, false);
     if (file == TRI_NO_FILE)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
+        return tri_fail_system(error, TRI_BAD_INPUT, path, "cannot be read", errno);
     int64_t *offset = read_offsets(file, of->first, of->end - of->first, r->of_run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
     for (int32_t tile = first; !status && tile < end; tile++)

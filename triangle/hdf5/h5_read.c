@@ -181,7 +181,7 @@ static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
     struct tri_file_facts facts;
     const tri_file file = tri_file_open(h5->path, TRI_OPEN_LOOK);
     if (file == TRI_NO_FILE)
-        return tri_fail(error, TRI_CANNOT_READ, h5->path, 0, "cannot open: %s", strerror(errno));
+        return tri_fail_system(error, TRI_CANNOT_READ, h5->path, "cannot open", errno);
     const bool regular = tri_file_look(file, &facts) && facts.kind == TRI_REGULAR;
     (void)tri_file_close(file);
     if (!regular)

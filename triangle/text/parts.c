@@ -54,7 +54,8 @@ static void make_one(struct tri_grouping *g, int64_t n)
     g->first[1] = n;
 }
 
-void tri_accumulate(int64_t *first, int n)
+/* From numbers of items in n groups, first[n + 1], to the place of the first in each. */
+static void accumulate(int64_t *first, int n)
 {
     int64_t before = 0;
     for (int k = 0; k <= n; k++) {
@@ -62,6 +63,21 @@ void tri_accumulate(int64_t *first, int n)
         first[k] = before;
         before += own;
     }
+}
+
+/* Room for n items among the extras of a storage; NULL: malloc'ed. NULL and errno: there is none. */
+static void *find_room(const struct tri_storage *storage, int64_t n, size_t bytes)
+{
+    const size_t all = (size_t)n * bytes;
+    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
+}
+
+static void free_room(const struct tri_storage *storage, void *room)
+{
+    if (room && storage)
+        storage->extra_free(storage->user, room);
+    else
+        free(room);
 }
 
 enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(const struct tri_grid *grid, int64_t i),
@@ -78,9 +94,9 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
         make_one(g, n);
         return TRI_OK;
     }
-    tri_accumulate(g->first, g->n);
+    accumulate(g->first, g->n);
     g->storage = grid->storage;
-    g->order = tri_room(g->storage, n, sizeof *g->order);
+    g->order = find_room(g->storage, n, sizeof *g->order);
     if (!g->order)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to group %lld items: %s", (long long)n,
                         strerror(errno));
@@ -92,22 +108,8 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
 
 void tri_grouping_free(struct tri_grouping *g)
 {
-    tri_room_free(g->storage, g->order);
+    free_room(g->storage, g->order);
     g->order = NULL;
-}
-
-void *tri_room(const struct tri_storage *storage, int64_t n, size_t bytes)
-{
-    const size_t all = (size_t)n * bytes;
-    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
-}
-
-void tri_room_free(const struct tri_storage *storage, void *room)
-{
-    if (room && storage)
-        storage->extra_free(storage->user, room);
-    else
-        free(room);
 }
 
 int32_t tri_group_tag(double value)
@@ -418,7 +420,7 @@ static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(con
         if (part > 0)
             first[part - 1]++;
     }
-    tri_accumulate(first, w->parts->n);
+    accumulate(first, w->parts->n);
     memcpy(next, first, sizeof next);
     for (int64_t place = 0; place < n; place++) {
         const int32_t part = part_of(w, tri_grouped(groups, place));
@@ -504,14 +506,14 @@ static enum tri_status get_room(struct work *w, struct tri_error *error)
 {
     const struct tri_grid *g = w->grid;
     struct tri_parts *p = w->parts;
-    w->part = tri_room(p->storage, g->n_triangles, sizeof *w->part);
-    w->user = tri_room(p->storage, g->n_points, sizeof *w->user);
-    w->segment_part = tri_room(p->storage, g->n_segments, sizeof *w->segment_part);
-    p->triangle = tri_room(p->storage, g->n_triangles, sizeof *p->triangle);
-    p->inner = tri_room(p->storage, g->n_points, sizeof *p->inner);
-    p->segment = tri_room(p->storage, g->n_segments, sizeof *p->segment);
+    w->part = find_room(p->storage, g->n_triangles, sizeof *w->part);
+    w->user = find_room(p->storage, g->n_points, sizeof *w->user);
+    w->segment_part = find_room(p->storage, g->n_segments, sizeof *w->segment_part);
+    p->triangle = find_room(p->storage, g->n_triangles, sizeof *p->triangle);
+    p->inner = find_room(p->storage, g->n_points, sizeof *p->inner);
+    p->segment = find_room(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts: %s", strerror(errno));
+        return tri_fail_system(error, TRI_NO_MEMORY, NULL, "no room to cut a mesh into parts", errno);
     for (int64_t i = 0; i < g->n_points; i++) {
         tri_grid_pass(g, i);
         w->user[i] = 0;
@@ -529,9 +531,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
     enum tri_status status = get_room(&w, error);
     if (!status && !(cut_plane(&w) && use_corners(&w) && assign_segments(&w) && make_lists(&w, surfaces, curves)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
-    tri_room_free(parts->storage, w.part);
-    tri_room_free(parts->storage, w.user);
-    tri_room_free(parts->storage, w.segment_part);
+    free_room(parts->storage, w.part);
+    free_room(parts->storage, w.user);
+    free_room(parts->storage, w.segment_part);
     free(w.use);
     free(w.edge);
     return status;
@@ -539,9 +541,9 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
 
 void tri_parts_free(struct tri_parts *parts)
 {
-    tri_room_free(parts->storage, parts->triangle);
-    tri_room_free(parts->storage, parts->inner);
-    tri_room_free(parts->storage, parts->segment);
+    free_room(parts->storage, parts->triangle);
+    free_room(parts->storage, parts->inner);
+    free_room(parts->storage, parts->segment);
     free(parts->shared);
     free(parts->part_list);
     free(parts->first_shared);
