@@ -58,6 +58,24 @@ bool mesh_files_has(const struct run *run, const char *suffix)
     return false;
 }
 
+/* --- names of files in other formats */
+
+/* How many files there are, and the name of one, malloc'ed: of "mesh.msh" that itself, or "mesh_1.msh" and so on, as
+ * Gmsh does. NULL: no memory. */
+static int files_of(const struct export *export) { return export->n_parts > 0 ? export->n_parts : 1; }
+
+static char *name_of(const struct export *export, const char *name, int file)
+{
+    const size_t room = strlen(name) + 16;
+    const int stem = (int)(strlen(name) - strlen(export->format->suffix));
+    char *text = malloc(room);
+    if (text && export->n_parts == 0)
+        snprintf(text, room, "%s", name);
+    else if (text)
+        snprintf(text, room, "%.*s_%d%s", stem, name, file + 1, name + stem);
+    return text;
+}
+
 /* --- all together */
 
 /* One file more in a set on trial. */
@@ -86,8 +104,8 @@ static enum tri_status try_export(struct tri_output_set *set, const struct long_
 {
     const struct export export = export_of(path, o->n_parts);
     enum tri_status status = TRI_OK;
-    for (int i = 0; i < export_files(&export) && !status; i++)
-        status = try_name(set, export_name(&export, path, i), read, error);
+    for (int i = 0; i < files_of(&export) && !status; i++)
+        status = try_name(set, name_of(&export, path, i), read, error);
     return status;
 }
 
@@ -140,7 +158,7 @@ static enum tri_status write_file(const struct run *run, const struct tri_grid *
 static enum tri_status write_export(const struct run *run, const struct tri_grid *grid, const char *path)
 {
     struct export export = export_of(path, run->hooks->options->n_parts);
-    char *first = export_name(&export, path, 0), *last = export_name(&export, path, export_files(&export) - 1);
+    char *first = name_of(&export, path, 0), *last = name_of(&export, path, files_of(&export) - 1);
     if (first && last)
         console_say(&run->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
                     export.n_parts > 1 ? last : "");
@@ -210,26 +228,12 @@ struct export export_of(const char *name, int n_parts)
     return (struct export){.format = format, .n_parts = format->write_parts ? n_parts : 0};
 }
 
-int export_files(const struct export *export) { return export->n_parts > 0 ? export->n_parts : 1; }
-
-char *export_name(const struct export *export, const char *name, int file)
-{
-    const size_t room = strlen(name) + 16;
-    const int stem = (int)(strlen(name) - strlen(export->format->suffix));
-    char *text = malloc(room);
-    if (text && export->n_parts == 0)
-        snprintf(text, room, "%s", name);
-    else if (text)
-        snprintf(text, room, "%.*s_%d%s", stem, name, file + 1, name + stem);
-    return text;
-}
-
 enum tri_status export_open(struct export *export, const char *name, struct tri_output_set *set,
                             struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int i = 0; i < export_files(export) && !status; i++) {
-        char *path = export_name(export, name, i);
+    for (int i = 0; i < files_of(export) && !status; i++) {
+        char *path = name_of(export, name, i);
         status = path ? interrupt_open(set, path, &export->output[i], error)
                       : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         free(path);

@@ -27,14 +27,6 @@ static inline void plot_set_colour(cairo_t *cr, struct plot_colour colour)
     cairo_set_source_rgb(cr, colour.red, colour.green, colour.blue);
 }
 
-/* Sequential scale for t in 0 .. 1, dark violet to light yellow: lightness rises evenly, so that the order is seen also
- * without colour vision or in grey print. */
-struct plot_colour plot_colour_scale(double t);
-
-/* One of any number of colours that are told apart easily as long as there are a dozen; tone in 0 .. 1 goes from its
- * darker to its lighter shade. */
-struct plot_colour plot_colour_category(int category, double tone);
-
 /* --- a mesh, borrowed */
 
 struct plot_mesh {

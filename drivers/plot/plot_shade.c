@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "drivers/plot/plot.h"
 
@@ -18,6 +17,74 @@ enum {
 };
 
 static const double degrees = 57.29577951308232;
+
+/* --- Colours, chosen in Oklch (B. Ottosson, "A perceptual color space for image processing", 2020), where equal steps
+ * of lightness L, chroma C and hue look equally large; then brought to sRGB, less colourful where the screen
+ * cannot. */
+
+static const double pi = 3.14159265358979323846;
+
+static double to_srgb(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+/* Linear light; components may lie outside 0 .. 1. */
+static void oklch_to_linear(double L, double C, double hue, double rgb[3])
+{
+    const double a = C * cos(hue * pi / 180), b = C * sin(hue * pi / 180);
+    const double l = pow(L + 0.3963377774 * a + 0.2158037573 * b, 3);
+    const double m = pow(L - 0.1055613458 * a - 0.0638541728 * b, 3);
+    const double s = pow(L - 0.0894841775 * a - 1.2914855480 * b, 3);
+    rgb[0] = 4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s;
+    rgb[1] = -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s;
+    rgb[2] = -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s;
+}
+
+static bool on_screen(const double rgb[3])
+{
+    for (int k = 0; k < 3; k++) {
+        if (rgb[k] < 0 || rgb[k] > 1)
+            return false;
+    }
+    return true;
+}
+
+static double clamp(double x)
+{
+    return fmin(fmax(x, 0), 1);
+}
+
+static struct plot_colour from_oklch(double L, double C, double hue)
+{
+    double rgb[3];
+    oklch_to_linear(L, C, hue, rgb);
+    for (int tries = 0; tries < 60 && !on_screen(rgb); tries++) {
+        C *= 0.95;
+        oklch_to_linear(L, C, hue, rgb);
+    }
+    return (struct plot_colour){to_srgb(clamp(rgb[0])), to_srgb(clamp(rgb[1])), to_srgb(clamp(rgb[2]))};
+}
+
+/* Sequential scale for t in 0 .. 1, dark violet to light yellow: lightness rises evenly, so that the order is seen also
+ * without colour vision or in grey print. */
+static struct plot_colour scale_colour(double t)
+{
+    t = clamp(t);
+    return from_oklch(0.30 + 0.63 * t, 0.12 + 0.05 * t, 310 - 205 * t);
+}
+
+/* One of any number of colours that are told apart easily as long as there are a dozen; tone in 0 .. 1 goes from its
+ * darker to its lighter shade. Hues by the golden angle: each new one falls into the widest gap
+ * between those before it. */
+static struct plot_colour category_colour(int category, double tone)
+{
+    static const double lightness[3] = {0, -0.17, 0.1};
+    const double hue = fmod(250 + 137.50776405 * category, 360);
+    return from_oklch(0.74 + lightness[category / 7 % 3] + 0.18 * (clamp(tone) - 0.5), 0.115, hue);
+}
+
+/* --- shades */
 
 static enum tri_status begin(struct plot_shading *s, const struct plot_mesh *mesh, int n_shades,
                              struct tri_error *error)
@@ -74,7 +141,7 @@ static void fill_scale(struct plot_shading *s)
 {
     s->legend = PLOT_LEGEND_SCALE;
     for (int i = 0; i < SCALE_SHADES; i++)
-        s->shades[i] = plot_colour_scale((i + 0.5) / SCALE_SHADES);
+        s->shades[i] = scale_colour((i + 0.5) / SCALE_SHADES);
 }
 
 /* --- geometry of a triangle */
@@ -242,7 +309,7 @@ static void set_regions(struct plot_shading *s, const double *known, int32_t n_k
                         int32_t stride, int32_t n)
 {
     for (int i = 0; i < s->n_shades; i++)
-        s->shades[i] = plot_colour_category(i, 0.5);
+        s->shades[i] = category_colour(i, 0.5);
     for (int32_t t = 0; t < n; t++) {
         const double *at = bsearch(value + (size_t)t * (size_t)stride, known, (size_t)n_known, sizeof *known,
                                    compare_reals);
@@ -302,7 +369,7 @@ static int tone_of(int32_t block)
 static void fill_phases(struct plot_shading *s)
 {
     for (int i = 0; i < OUTSIDE; i++)
-        s->shades[i] = plot_colour_category(i / TONES, (i % TONES + 0.5) / TONES);
+        s->shades[i] = category_colour(i / TONES, (i % TONES + 0.5) / TONES);
     s->shades[OUTSIDE] = (struct plot_colour){0.78, 0.78, 0.78};
 }
 
@@ -313,7 +380,7 @@ static void add_phase_keys(struct plot_shading *s)
         for (int tone = 0; tone < TONES; tone++)
             seen = seen || s->count[phase * TONES + tone] > 0;
         if (seen)
-            add_key(s, plot_colour_category(phase, 0.5), "phase ", phase);
+            add_key(s, category_colour(phase, 0.5), "phase ", phase);
     }
     if (s->count[OUTSIDE] > 0) {
         add_key(s, s->shades[OUTSIDE], "", 0);
@@ -339,66 +406,4 @@ enum tri_status plot_shade_block(struct plot_shading *s, const struct plot_mesh 
     add_phase_keys(s);
     (void)snprintf(s->fact, sizeof s->fact, "%lld block%s", (long long)n_blocks, n_blocks == 1 ? "" : "s");
     return TRI_OK;
-}
-
-/* --- Colours, chosen in Oklch (B. Ottosson, "A perceptual color space for image processing", 2020), where equal steps
- * of lightness L, chroma C and hue look equally large; then brought to sRGB, less colourful where the screen
- * cannot. */
-
-static const double pi = 3.14159265358979323846;
-
-static double to_srgb(double linear)
-{
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
-/* Linear light; components may lie outside 0 .. 1. */
-static void oklch_to_linear(double L, double C, double hue, double rgb[3])
-{
-    const double a = C * cos(hue * pi / 180), b = C * sin(hue * pi / 180);
-    const double l = pow(L + 0.3963377774 * a + 0.2158037573 * b, 3);
-    const double m = pow(L - 0.1055613458 * a - 0.0638541728 * b, 3);
-    const double s = pow(L - 0.0894841775 * a - 1.2914855480 * b, 3);
-    rgb[0] = 4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s;
-    rgb[1] = -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s;
-    rgb[2] = -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s;
-}
-
-static bool on_screen(const double rgb[3])
-{
-    for (int k = 0; k < 3; k++) {
-        if (rgb[k] < 0 || rgb[k] > 1)
-            return false;
-    }
-    return true;
-}
-
-static double clamp(double x)
-{
-    return fmin(fmax(x, 0), 1);
-}
-
-static struct plot_colour from_oklch(double L, double C, double hue)
-{
-    double rgb[3];
-    oklch_to_linear(L, C, hue, rgb);
-    for (int tries = 0; tries < 60 && !on_screen(rgb); tries++) {
-        C *= 0.95;
-        oklch_to_linear(L, C, hue, rgb);
-    }
-    return (struct plot_colour){to_srgb(clamp(rgb[0])), to_srgb(clamp(rgb[1])), to_srgb(clamp(rgb[2]))};
-}
-
-struct plot_colour plot_colour_scale(double t)
-{
-    t = clamp(t);
-    return from_oklch(0.30 + 0.63 * t, 0.12 + 0.05 * t, 310 - 205 * t);
-}
-
-/* Hues by the golden angle: each new one falls into the widest gap between those before it. */
-struct plot_colour plot_colour_category(int category, double tone)
-{
-    static const double lightness[3] = {0, -0.17, 0.1};
-    const double hue = fmod(250 + 137.50776405 * category, 360);
-    return from_oklch(0.74 + lightness[category / 7 % 3] + 0.18 * (clamp(tone) - 0.5), 0.115, hue);
 }

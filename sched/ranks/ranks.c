@@ -10,7 +10,6 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "sched/checkpoint/state.h"
 #include "sched/tiles/sweep.h"

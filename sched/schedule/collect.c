@@ -163,7 +163,8 @@ static bool take_back(struct par_phase_run *p)
     return memory;
 }
 
-bool par_has_failed(const struct par_task *task)
+/* Otherwise than for room, or since somebody asks for the end? */
+static bool has_failed(const struct par_task *task)
 {
     return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
 }
@@ -185,7 +186,7 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
     bool memory = take_back(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
-        if (!status && par_has_failed(task)) {
+        if (!status && has_failed(task)) {
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }

@@ -65,9 +65,6 @@ static inline int64_t par_inserted_by(const struct par_task *task)
     return task->report.inserted_free + task->report.inserted_on_segments;
 }
 
-/* Otherwise than for room, or since somebody asks for the end? */
-bool par_has_failed(const struct par_task *task);
-
 /* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
  * one that has failed says. */
 enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error);

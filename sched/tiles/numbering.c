@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/tunables.h"
 #include "sched/schedule/deal.h"
 #include "sched/tunables.h"
 #include "triangle/base/radix.h"

@@ -15,6 +15,158 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
 }
 
+/* --- The triangles of a sweep's worklist that no block can have yet: the work of columns to come.  THEOREM. A
+ * triangle waits for the first odd column whose blocks' right end lies right of all its corners. Until then no
+ * block changes it, and none takes it from the worklist: for a block takes and changes what has all corners in its
+ * fence, and the fences of that step and of those before end no further right. So the triangle may be missing from
+ * the list until its column has its turn, and come into it by its key then. A list costs what is in a few columns. */
+
+struct ahead {
+    int32_t *item;  /* by odd column, those of one in the order of the worklist */
+    uint64_t *key;  /* of each: its place there */
+    int32_t *start; /* [n_odd + 1] */
+    int32_t n_odd;
+};
+
+/* The number of the first odd column that reaches beyond x: column 2 i + 1. */
+static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_odd)
+{
+    int32_t low = 0, high = n_odd - 1; /* the last one reaches to infinity */
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (x < par_fence(p, 2 * middle + 1, 0).x_max)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    double a = mesh->xy[v[0]].x, b = mesh->xy[v[1]].x, c = mesh->xy[v[2]].x;
+    double most = a > b ? a : b;
+    return most > c ? most : c;
+}
+
+/* Of the worklist, which no block has had; the run is as before. A counting sort. False: no memory. To be freed in any
+ * case. */
+static bool list_ahead(struct ahead *ahead, const struct par_run *run, const struct par_partition *partition)
+{
+    const struct par_ids *list = &run->worklist;
+    int32_t n_odd = (partition->n_columns - 1) / 2;
+    size_t n = (size_t)list->n + 1;
+    assert(run->key.n == 0);
+    *ahead = (struct ahead){malloc(n * sizeof *ahead->item), malloc(n * sizeof *ahead->key),
+                                calloc((size_t)n_odd + 2, sizeof *ahead->start), n_odd};
+    int32_t *column = malloc(n * sizeof *column), *start = ahead->start;
+    bool memory = ahead->item && ahead->key && start && column;
+    for (int32_t i = 0; memory && i < list->n; i++) {
+        column[i] = column_beyond(partition, right_end(run->mesh, list->item[i]), n_odd);
+        start[column[i] + 2]++;
+    }
+    for (int32_t i = 0; memory && i < n_odd; i++)
+        start[i + 2] += start[i + 1];
+    for (int32_t i = 0; memory && i < list->n; i++) {
+        int32_t at = start[column[i] + 1]++;
+        ahead->item[at] = list->item[i];
+        ahead->key[at] = (uint64_t)i;
+    }
+    free(column);
+    return memory;
+}
+
+static void free_ahead(struct ahead *ahead)
+{
+    free(ahead->item);
+    free(ahead->key);
+    free(ahead->start);
+    *ahead = (struct ahead){0};
+}
+
+/* Those that wait for an odd column come to the worklist. False: no memory. */
+static bool give_ahead(const struct ahead *ahead, struct par_run *run, int32_t odd)
+{
+    int32_t i = odd / 2;
+    if (i >= ahead->n_odd)
+        return true;
+    int32_t first = ahead->start[i];
+    return par_merge_worklist(run, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
+}
+
+/* --- How many triangles stay below the bounds, and why, of a mesh that leaves while it is refined.  THEOREM. A bad
+ * triangle that stays is on the list: whoever makes a bad triangle looks at it again until it is gone or given up,
+ * and of those that were there before, all that are bad are in the worklist, or on the list from the beginning
+ * since there was nothing to do at them. What is on the list may be gone, or its number another triangle's: each
+ * is judged when it can change no more. */
+
+/* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
+static struct tri_refine_report report_of(const struct par_run *run)
+{
+    struct tri_refine_report report = run->report->total;
+    report.gated = report.fenced = 0;
+    return report;
+}
+
+/* Of a mesh whose worklist has been filled. False: no memory. */
+static bool begin_remain(struct par_run *run)
+{
+    struct par_ids *list = &run->remain.listed;
+    tri_triangle_id *found = malloc(((size_t)run->mesh->n_triangles + 1) * sizeof *found);
+    const int32_t n = found ? tri_find_hopeless(run->mesh, &run->bounds, found) : 0;
+    list->n = 0;
+    bool memory = found && par_ids_add_all(list, found, n);
+    free(found);
+    memset(run->remain.counted, 0, sizeof run->remain.counted);
+    return memory;
+}
+
+static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, double x)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
+}
+
+/* Counts the bad triangles with a corner left of x, of which none will change any more, and those that had one left of
+ * the last x have been counted. Those that are beside them are still there. In the list those to come stay in front. */
+static void count_remain(struct par_run *run, double x)
+{
+    const struct tri_mesh *mesh = run->mesh;
+    const struct tri_refine_report report = report_of(run);
+    struct par_ids *list = &run->remain.listed;
+    int32_t n = par_sort_unique(list->item, list->n), live = 0, kept = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const tri_triangle_id t = list->item[i];
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        list->item[live++] = t;
+        if (!has_corner_left_of(mesh, t, x)) {
+            list->item[live - 1] = list->item[kept];
+            list->item[kept++] = t;
+        }
+    }
+    tri_count_bad_among(mesh, &run->bounds, &report, list->item + kept, live - kept, run->remain.counted);
+    list->n = kept;
+}
+
+/* Tells the report what has been counted. */
+static void settle_remain(struct par_run *run)
+{
+    const struct tri_refine_report report = report_of(run);
+    tri_settle_counts(&report, run->remain.counted, run->report->remain);
+    run->report->remain_known = true;
+}
+
+void par_remain_count_all(struct par_run *run)
+{
+    const struct tri_refine_report report = report_of(run);
+    tri_count_bad(run->mesh, &run->bounds, &report, &run->asked.executor, run->report->remain);
+    run->report->remain_known = true;
+}
+
+/* --- columns in turn */
+
 struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partition *partition)
 {
     return (struct par_tiles){.mesh = run->mesh, .partition = partition, .executor = &run->asked.executor,
@@ -43,7 +195,7 @@ static enum tri_status finish_column(struct par_run *run, struct par_tiles *tile
     *left = is_left_behind(run, end);
     enum tri_status status = *left ? TRI_OK : par_park_expect(run->park, run->mesh, par_tiles_bytes(tiles), error);
     if (!status && !*left && run->remain.is_on)
-        par_remain_count(run, end);
+        count_remain(run, end);
     if (!status && !*left)
         status = par_tiles_column(tiles, column, &run->spare, error);
     run->gone = tiles->n_triangles;
@@ -55,7 +207,7 @@ static enum tri_status finish_column(struct par_run *run, struct par_tiles *tile
 struct sweep {
     struct par_run *run;
     struct par_tiles tiles;
-    struct par_ahead ahead;
+    struct ahead ahead;
     bool left; /* something is left behind */
 };
 
@@ -72,7 +224,7 @@ static enum tri_status refine_column(void *self, struct tri_error *error)
     const struct par_turn turn = {.partition = s->tiles.partition, .only = run->place.phase < 2 ? odd : odd - 1};
     enum tri_status status = TRI_OK;
     if (run->place.next == PAR_COLUMN) {
-        if (!par_ahead_give(&s->ahead, run, odd))
+        if (!give_ahead(&s->ahead, run, odd))
             return no_memory(error);
         par_go(run, PAR_COLUMN_PHASE);
     }
@@ -112,13 +264,13 @@ static enum tri_status end_tiles(struct par_run *run, struct par_tiles *tiles, s
 }
 
 /* The place is the first column, for which the worklist is empty; or as a checkpoint has it. */
-static enum tri_status begin_sweep(struct par_run *run, struct par_tiles *tiles, struct par_ahead *ahead,
+static enum tri_status begin_sweep(struct par_run *run, struct par_tiles *tiles, struct ahead *ahead,
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     run->place.column = 0; /* unless there is a state */
     par_go(run, PAR_COLUMN);
-    if (!par_ahead_make(ahead, run, tiles->partition))
+    if (!list_ahead(ahead, run, tiles->partition))
         status = no_memory(error);
     else if (run->asked.options->checkpoint)
         status = par_state_begin_sweep(run->asked.options->checkpoint, run, tiles, error);
@@ -129,7 +281,7 @@ static enum tri_status begin_sweep(struct par_run *run, struct par_tiles *tiles,
         return status;
     run->place.column = 1;
     run->place.phase = run->worklist.n = 0;
-    return run->remain.is_on && !par_remain_begin(run) ? no_memory(error) : TRI_OK;
+    return run->remain.is_on && !begin_remain(run) ? no_memory(error) : TRI_OK;
 }
 
 enum tri_status par_sweep(struct par_run *run, const struct par_partition *partition, bool *done,
@@ -143,10 +295,10 @@ enum tri_status par_sweep(struct par_run *run, const struct par_partition *parti
     if (!status && !s.left)
         status = end_tiles(run, &s.tiles, error);
     if (!status && run->remain.is_on)
-        par_remain_settle(run);
+        settle_remain(run);
     run->remain.is_on = false;
     run->place.column = 0;
-    par_ahead_free(&s.ahead);
+    free_ahead(&s.ahead);
     if (!status && s.left && run->asked.options->checkpoint)
         status = par_state_give_up_sweep(run->asked.options->checkpoint, run, error);
     *done = !status && !s.left;
@@ -157,133 +309,4 @@ enum tri_status par_sweep(struct par_run *run, const struct par_partition *parti
     par_forget_deferred(run->report);
     par_tiles_free(&s.tiles);
     return status;
-}
-
-/* --- A counting sort by column. */
-
-/* The number of the first odd column that reaches beyond x: column 2 i + 1. */
-static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_odd)
-{
-    int32_t low = 0, high = n_odd - 1; /* the last one reaches to infinity */
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (x < par_fence(p, 2 * middle + 1, 0).x_max)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
-static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
-{
-    const tri_vertex_id *v = mesh->tri[t].v;
-    double a = mesh->xy[v[0]].x, b = mesh->xy[v[1]].x, c = mesh->xy[v[2]].x;
-    double most = a > b ? a : b;
-    return most > c ? most : c;
-}
-
-bool par_ahead_make(struct par_ahead *ahead, const struct par_run *run, const struct par_partition *partition)
-{
-    const struct par_ids *list = &run->worklist;
-    int32_t n_odd = (partition->n_columns - 1) / 2;
-    size_t n = (size_t)list->n + 1;
-    assert(run->key.n == 0);
-    *ahead = (struct par_ahead){malloc(n * sizeof *ahead->item), malloc(n * sizeof *ahead->key),
-                                calloc((size_t)n_odd + 2, sizeof *ahead->start), n_odd};
-    int32_t *column = malloc(n * sizeof *column), *start = ahead->start;
-    bool memory = ahead->item && ahead->key && start && column;
-    for (int32_t i = 0; memory && i < list->n; i++) {
-        column[i] = column_beyond(partition, right_end(run->mesh, list->item[i]), n_odd);
-        start[column[i] + 2]++;
-    }
-    for (int32_t i = 0; memory && i < n_odd; i++)
-        start[i + 2] += start[i + 1];
-    for (int32_t i = 0; memory && i < list->n; i++) {
-        int32_t at = start[column[i] + 1]++;
-        ahead->item[at] = list->item[i];
-        ahead->key[at] = (uint64_t)i;
-    }
-    free(column);
-    return memory;
-}
-
-void par_ahead_free(struct par_ahead *ahead)
-{
-    free(ahead->item);
-    free(ahead->key);
-    free(ahead->start);
-    *ahead = (struct par_ahead){0};
-}
-
-bool par_ahead_give(const struct par_ahead *ahead, struct par_run *run, int32_t odd)
-{
-    int32_t i = odd / 2;
-    if (i >= ahead->n_odd)
-        return true;
-    int32_t first = ahead->start[i];
-    return par_merge_worklist(run, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
-}
-
-/* --- A list of triangles that have been given up, looked through once for each column. */
-
-/* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
-static struct tri_refine_report report_of(const struct par_run *run)
-{
-    struct tri_refine_report report = run->report->total;
-    report.gated = report.fenced = 0;
-    return report;
-}
-
-bool par_remain_begin(struct par_run *run)
-{
-    struct par_ids *list = &run->remain.listed;
-    tri_triangle_id *found = malloc(((size_t)run->mesh->n_triangles + 1) * sizeof *found);
-    const int32_t n = found ? tri_find_hopeless(run->mesh, &run->bounds, found) : 0;
-    list->n = 0;
-    bool memory = found && par_ids_add_all(list, found, n);
-    free(found);
-    memset(run->remain.counted, 0, sizeof run->remain.counted);
-    return memory;
-}
-
-static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, double x)
-{
-    const tri_vertex_id *v = mesh->tri[t].v;
-    return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
-}
-
-/* Those to come stay in front, those to count go behind them, and are counted by one call. */
-void par_remain_count(struct par_run *run, double x)
-{
-    const struct tri_mesh *mesh = run->mesh;
-    const struct tri_refine_report report = report_of(run);
-    struct par_ids *list = &run->remain.listed;
-    int32_t n = par_sort_unique(list->item, list->n), live = 0, kept = 0;
-    for (int32_t i = 0; i < n; i++) {
-        const tri_triangle_id t = list->item[i];
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
-        list->item[live++] = t;
-        if (!has_corner_left_of(mesh, t, x)) {
-            list->item[live - 1] = list->item[kept];
-            list->item[kept++] = t;
-        }
-    }
-    tri_count_bad_among(mesh, &run->bounds, &report, list->item + kept, live - kept, run->remain.counted);
-    list->n = kept;
-}
-
-void par_remain_settle(struct par_run *run)
-{
-    const struct tri_refine_report report = report_of(run);
-    tri_settle_counts(&report, run->remain.counted, run->report->remain);
-    run->report->remain_known = true;
-}
-
-void par_remain_count_all(struct par_run *run)
-{
-    const struct tri_refine_report report = report_of(run);
-    tri_count_bad(run->mesh, &run->bounds, &report, &run->asked.executor, run->report->remain);
-    run->report->remain_known = true;
 }

@@ -4,7 +4,6 @@
  * tile follow on each other, and the tile of each follows from its place: so a tile's ends are found by bisection. */
 #include "sched/tiles/tiles.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -186,7 +185,8 @@ static enum tri_status hand_out_without_tiles(struct par_tiles *tiles, struct tr
     return status;
 }
 
-double par_tiles_expected(const struct par_tiles *tiles)
+/* Triangles to expect, to the order: the same, however the mesh is carried through. */
+static double triangles_expected(const struct par_tiles *tiles)
 {
     return tiles->partition ? tiles->partition->estimate : tiles->mesh->n_triangles;
 }
@@ -195,7 +195,7 @@ enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error
 {
     const struct tri_mesh *mesh = tiles->mesh;
     int32_t n_tiles = tiles->partition ? par_blocks(tiles->partition) : 0;
-    enum tri_status status = par_tiles_begin(tiles, par_tiles_expected(tiles), error);
+    enum tri_status status = par_tiles_begin(tiles, triangles_expected(tiles), error);
     for (int32_t tile = 0; !status && tile < n_tiles; tile++) {
         if (tri_stop_is_asked(mesh->stop))
             return tri_fail_stopped(error);

@@ -76,9 +76,6 @@ void par_tiles_free(struct par_tiles *tiles);
 
 /* --- before and after them, and a mesh in memory as a whole (stream.c) */
 
-/* Triangles to expect, to the order: the same, however the mesh is carried through. */
-double par_tiles_expected(const struct par_tiles *tiles);
-
 /* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
  * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
 enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);

@@ -61,7 +61,8 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind)
         item->state = TRI_CHECK_OK;
 }
 
-void tri_check_unask(struct checker *c, enum tri_check_kind kind)
+/* As if it had not been. */
+static void unask(struct checker *c, enum tri_check_kind kind)
 {
     memset(&c->report->item[kind], 0, sizeof c->report->item[kind]);
 }
@@ -402,12 +403,12 @@ static bool pairs_are_good(struct checker *c)
 {
     bool edges = check_good(c, TRI_CHECK_EDGES);
     if (!edges)
-        tri_check_unask(c, TRI_CHECK_NEIGHBORS);
+        unask(c, TRI_CHECK_NEIGHBORS);
     if (edges && check_good(c, TRI_CHECK_ORIENTATION))
         return true;
-    tri_check_unask(c, TRI_CHECK_LOCAL_DELAUNAY);
-    tri_check_unask(c, TRI_CHECK_ENCROACHMENT);
-    tri_check_unask(c, TRI_CHECK_REGIONS);
+    unask(c, TRI_CHECK_LOCAL_DELAUNAY);
+    unask(c, TRI_CHECK_ENCROACHMENT);
+    unask(c, TRI_CHECK_REGIONS);
     return false;
 }
 

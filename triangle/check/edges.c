@@ -4,7 +4,6 @@
  * direction and name, in one number: other vertex << 33 | comes from the other << 32 | half-edge. What belongs to one
  * edge stands side by side then, in the same order whatever threads put it there, and a search takes O(log n), whatever
  * heap of triangles this may be. */
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 

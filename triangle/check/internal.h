@@ -224,8 +224,6 @@ int tri_check_compare_numbers(const void *left, const void *right); /* of qsort 
 
 /* Notes that the kind has been looked at; it stays good until a fault is reported. */
 void tri_check_begin(struct checker *c, enum tri_check_kind kind);
-/* As if it had not been. */
-void tri_check_unask(struct checker *c, enum tri_check_kind kind);
 /* Counts a fault and keeps the text of the one with the least key, of the first one among equals. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))

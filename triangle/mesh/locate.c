@@ -22,7 +22,10 @@ struct walk {
     int64_t steps; /* that may still be made */
 };
 
-tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q)
+/* One step of a visibility walk to q: the triangle across an edge of t that q lies behind, TRI_NONE where that is the
+ * boundary, t itself where it holds q. In a constrained triangulation such a walk may go in circles: so the edge that
+ * is tried first turns with the number of the step. */
+static tri_triangle_id step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q)
 {
     assert(step >= 0 && tri_is_live(&mesh->tri[t]));
     const tri_vertex_id *v = mesh->tri[t].v;
@@ -41,7 +44,7 @@ tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t,
 static tri_triangle_id walk_to(struct walk *w, struct tri_point q)
 {
     for (; w->steps > 0; w->steps--) {
-        tri_triangle_id next = tri_step_towards(w->mesh, w->at, w->steps, q);
+        tri_triangle_id next = step_towards(w->mesh, w->at, w->steps, q);
         if (next == w->at || next == TRI_NONE)
             return next;
         w->at = next;
@@ -236,7 +239,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
 tri_triangle_id tri_walk_to(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
     for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
-        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        tri_triangle_id next = step_towards(mesh, t, step, q);
         if (next == t || next == TRI_NONE)
             return next;
         t = next;

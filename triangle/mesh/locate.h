@@ -7,11 +7,6 @@
 #include "triangle/base/status.h"
 #include "triangle/mesh/mesh.h"
 
-/* One step of a visibility walk to q: the triangle across an edge of t that q lies behind, TRI_NONE where that is the
- * boundary, t itself where it holds q. In a constrained triangulation such a walk may go in circles: so the edge that
- * is tried first turns with the number of the step. */
-tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q);
-
 /* The triangle that holds q (TRI_NONE outside the hull, which is convex), by a walk from triangle t. */
 tri_triangle_id tri_walk_to(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q);
 

@@ -12,7 +12,6 @@
  * those of all, too; behind them come partitioned ones: surfaces and curves of the part, and for each interface (nodes
  * that this part shares with the same others) a curve without elements, child of the surface on which the file of all
  * has its nodes. Their tags are the same in all parts. */
-#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -88,9 +88,6 @@ enum tri_status tri_output_conclude(struct tri_output *output, int result, struc
  * it (tri_file_direct). It is the output's. */
 tri_file tri_output_direct(struct tri_output *output);
 
-/* All that has been written is on the disk afterwards. Where there is no way to ask for it, nothing happens. */
-enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error);
-
 /* Moves all bytes from a place on by `by`, forwards or, where by < 0, backwards over those before it; for files that
  * have places. The bytes between are then to be written. */
 enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error);

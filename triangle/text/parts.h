@@ -23,13 +23,6 @@ enum tri_status tri_group(struct tri_grouping *grouping, int64_t n,
                           struct tri_error *error);
 void tri_grouping_free(struct tri_grouping *grouping);
 
-/* From numbers of items in n groups, first[n + 1], to the place of the first in each. */
-void tri_accumulate(int64_t *first, int n);
-
-/* Room for n items among the extras of a storage; NULL: malloc'ed. NULL and errno: there is none. */
-void *tri_room(const struct tri_storage *storage, int64_t n, size_t bytes);
-void tri_room_free(const struct tri_storage *storage, void *room);
-
 /* The value as a number by which other programs know a group: 1 .. 2^31 - 1; 0 where it is no such number. */
 int32_t tri_group_tag(double value);
 

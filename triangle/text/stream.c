@@ -79,7 +79,8 @@ double *tri_copy_columns(const struct tri_stream *stream)
     return columns;
 }
 
-enum tri_status tri_tile_grid_begin(struct tri_tile_grid *g, const struct tri_stream *stream, bool markers,
+/* With what holds for all tiles; begins anew if it has begun. TRI_NO_MEMORY. */
+static enum tri_status begin_tile_grid(struct tri_tile_grid *g, const struct tri_stream *stream, bool markers,
                                     struct tri_error *error)
 {
     free(g->columns);
@@ -155,7 +156,7 @@ static enum tri_status begin_files(void *user, const struct tri_stream *stream, 
     const struct tri_text_options *o = &s->options;
     const int64_t markers = o->markers, attributes = stream->n_attributes;
     enum tri_status status = s->rows.columns ? begin_again(s, error) : TRI_OK;
-    status = status ? status : tri_tile_grid_begin(&s->rows, stream, o->markers, error);
+    status = status ? status : begin_tile_grid(&s->rows, stream, o->markers, error);
     s->rows.grid.base = o->base;
     s->rows.grid.figure = o->figure;
     s->table[POINTS] = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
@@ -293,7 +294,7 @@ static enum tri_status begin_store(void *user, const struct tri_stream *stream, 
     struct tri_tile_store *s = user;
     for (int k = 0; k < SHEETS; k++)
         tri_mapped_file_close(&s->sheet[k]);
-    return tri_tile_grid_begin(&s->all, stream, false, error);
+    return begin_tile_grid(&s->all, stream, false, error);
 }
 
 static enum tri_status keep_tile(void *user, const struct tri_tile *tile, struct tri_error *error)

@@ -20,10 +20,6 @@ struct tri_tile_grid {
     double *columns;       /* [regions][grid.n_columns] malloc'ed, to be freed; NULL: it has not begun */
 };
 
-/* With what holds for all tiles; begins anew if it has begun. TRI_NO_MEMORY. */
-enum tri_status tri_tile_grid_begin(struct tri_tile_grid *tile_grid, const struct tri_stream *stream, bool markers,
-                                    struct tri_error *error);
-
 /* A copy of the attributes of triangles in each region, malloc'ed; NULL: no memory. */
 double *tri_copy_columns(const struct tri_stream *stream);
 

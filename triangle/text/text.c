@@ -253,7 +253,8 @@ static enum tri_status check_nul(const struct tri_text *text, struct tri_error *
     return TRI_OK;
 }
 
-enum tri_status tri_text_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
+/* Indexes data[size], which end in a newline, anew. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
+static enum tri_status index_text(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
 {
     free(text->chunks);
     text->n_chunks = (text->size - 1) / text->chunk_bytes + 1;
@@ -277,7 +278,7 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
         return status;
     if (text->size == 0 || text->data[text->size - 1] != '\n')
         text->data[text->size++] = '\n';
-    return tri_text_index(text, executor, error);
+    return index_text(text, executor, error);
 }
 
 void tri_text_free(struct tri_text *text)
@@ -461,7 +462,7 @@ static enum tri_status move_on(struct tri_window *w, struct tri_error *error)
     w->text.data = w->data;
     w->text.size = whole_lines(w);
     if (w->text.size > 0)
-        status = tri_text_index(&w->text, w->executor, error);
+        status = index_text(&w->text, w->executor, error);
     w->cursor = tri_cursor_begin(&w->text);
     return status;
 }

@@ -50,9 +50,6 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
 
 void tri_text_free(struct tri_text *text);
 
-/* Indexes data[size], which end in a newline, anew. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
-enum tri_status tri_text_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error);
-
 /* --- fields of one record */
 
 enum tri_field {
