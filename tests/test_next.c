@@ -23,6 +23,8 @@ struct steps {
     int last;               /* -1: none */
     bool is_torn;           /* a step did not begin where the last one ended */
     int kill_from, kill_to; /* the process ends at this step; -1: at none */
+    int n_before_kill;      /* once it has been made so often */
+    int64_t n_triangles;    /* that the sink has taken */
 };
 
 static const struct steps NO_STEPS = {.last = -1, .kill_from = -1, .kill_to = -1};
@@ -78,23 +80,27 @@ static void note_step(void *user, int from, int to)
     steps->is_torn = steps->is_torn || (steps->last >= 0 && steps->last != from);
     steps->made[from][to] = true;
     steps->last = to;
-    if (from == steps->kill_from && to == steps->kill_to)
+    if (from == steps->kill_from && to == steps->kill_to && steps->n_before_kill-- == 0)
         _exit(0);
 }
 
-static enum tri_status take_nothing(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status count_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
-    (void)user, (void)tile, (void)error;
+    struct steps *steps = user;
+    (void)error;
+    steps->n_triangles += tile->n_triangles;
     return TRI_OK;
 }
 
 static enum tri_status begin_again(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
-    (void)user, (void)stream, (void)error;
+    struct steps *steps = user;
+    (void)stream, (void)error;
+    steps->n_triangles = 0;
     return TRI_OK;
 }
 
-static const struct tri_sink nowhere = {NULL, begin_again, take_nothing, NULL};
+static const struct tri_sink counting = {NULL, begin_again, count_tile, NULL}; /* for the steps of a run */
 
 static bool never(void *user)
 {
@@ -108,6 +114,9 @@ static enum tri_status refine(const struct trial *trial, struct par_options opti
     struct tri_mesh mesh = trials_coarse_mesh(&start);
     struct par_report report;
     struct tri_error error = {0};
+    struct tri_sink sink = counting;
+    sink.user = steps;
+    options.sink = options.sink ? &sink : NULL;
     options.cell_triangles = trial->block;
     options.threads = 1;
     options.went = note_step;
@@ -133,7 +142,7 @@ static struct par_options swept(void)
 {
     struct par_options options = par_defaults();
     options.sweep = true;
-    options.sink = &nowhere;
+    options.sink = &counting;
     options.scratch = ".";
     return options;
 }
@@ -146,36 +155,45 @@ static void run_swept(const struct trial *trial, struct steps *steps)
 
 static const char DIRECTORY[] = "next_state";
 
-static void open_checkpoint(struct par_checkpoint *c, bool resume)
-{
-    assert_int_equal(par_checkpoint_open(c, DIRECTORY, resume, 7, NULL), TRI_OK);
-    c->seconds = resume ? 1e9 : 0; /* a state at each border */
-}
-
-/* A process that keeps states is killed at a step; another one goes on. */
-static void run_killed(const struct trial *trial, struct par_options options, int from, int to, struct steps *steps)
+/* A process that keeps a state at each border is killed at a step, once it has made that so often before. */
+static void kill_at(const struct trial *trial, struct par_options options, struct steps at, bool resume)
 {
     struct par_checkpoint c;
     int how = 1;
-    support_remove_directory(DIRECTORY);
-    options.checkpoint = &c;
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0) {
-        struct steps own = NO_STEPS;
-        own.kill_from = from;
-        own.kill_to = to;
-        open_checkpoint(&c, false);
-        refine(trial, options, &own);
+        assert_int_equal(par_checkpoint_open(&c, DIRECTORY, resume, 7, NULL), TRI_OK);
+        c.seconds = 0;
+        options.checkpoint = &c;
+        refine(trial, options, &at);
         _exit(2); /* it has not come there */
     }
     assert_true(waitpid(child, &how, 0) == child && WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 0);
-    open_checkpoint(&c, true);
+}
+
+/* Another process goes on to the end. */
+static void go_on(const struct trial *trial, struct par_options options, struct steps *steps)
+{
+    struct par_checkpoint c;
+    assert_int_equal(par_checkpoint_open(&c, DIRECTORY, true, 7, NULL), TRI_OK);
+    c.seconds = 1e9;
+    options.checkpoint = &c;
     assert_int_equal(refine(trial, options, steps), TRI_OK);
     assert_int_equal(steps->last, PAR_END);
     assert_null(c.stop); /* which may have been the run's own */
     par_checkpoint_close(&c, true);
+}
+
+static void run_killed(const struct trial *trial, struct par_options options, int from, int to, struct steps *steps)
+{
+    struct steps at = NO_STEPS;
+    at.kill_from = from;
+    at.kill_to = to;
+    support_remove_directory(DIRECTORY);
+    kill_at(trial, options, at, false);
+    go_on(trial, options, steps);
 }
 
 /* --- on ranks */
@@ -191,7 +209,7 @@ static void *be_a_rank(void *user)
     struct member *m = user;
     struct par_options options = par_defaults();
     options.carrier = &m->carrier;
-    options.sink = &nowhere;
+    options.sink = &counting;
     enum tri_status status = refine(m->trial, options, &m->steps);
     assert_int_equal(par_agree(&m->carrier, status, NULL), TRI_OK);
     return NULL;
@@ -267,8 +285,30 @@ static void test_runs_make_the_steps_that_are_listed(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* Sizes first by one call, then a sweep. A run that goes on comes through that call again, on its way to the column
+ * that it was killed in; the columns that are kept stay kept, and are handed out once. */
+static void test_a_sweep_is_killed_again_and_again(void **state)
+{
+    (void)state;
+    static const struct trial trial = {"gear.poly", 36, 15000, 2000, false, false, 1};
+    struct steps at = NO_STEPS, whole = NO_STEPS, last = NO_STEPS;
+    run_swept(&trial, &whole);
+    assert_true(whole.made[PAR_SIZES][PAR_BOUNDS] && whole.made[PAR_COLUMN][PAR_END]);
+    at.kill_from = PAR_COLUMN;
+    at.kill_to = PAR_COLUMN_PHASE;
+    at.n_before_kill = 2;
+    support_remove_directory(DIRECTORY);
+    kill_at(&trial, swept(), at, false);
+    at.n_before_kill = 0;
+    for (int k = 0; k < 2; k++)
+        kill_at(&trial, swept(), at, true);
+    go_on(&trial, swept(), &last);
+    assert_true(last.n_triangles == whole.n_triangles && whole.n_triangles > 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_runs_make_the_steps_that_are_listed)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_runs_make_the_steps_that_are_listed),
+                                       cmocka_unit_test(test_a_sweep_is_killed_again_and_again)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

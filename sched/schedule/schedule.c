@@ -132,11 +132,13 @@ static enum tri_status leave_no_gaps(struct par_run *run, bool numbering, struct
     return status;
 }
 
-/* Between two steps of what cannot be undone: a state may be kept here. */
+/* Between two steps of what cannot be undone: a state may be kept here, unless there is one of a sweep, to which this
+ * run is on its way again. */
 static enum tri_status offer_checkpoint(struct par_run *run, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(run);
-    return checkpoint ? par_state_border(checkpoint, run, NULL, false, error) : TRI_OK;
+    const bool is_kept = checkpoint && !par_checkpoint_has_sweep(checkpoint);
+    return is_kept ? par_state_border(checkpoint, run, NULL, false, error) : TRI_OK;
 }
 
 /* From here on a step is stopped in its midst, too: what has been done since the last state is lost. */
