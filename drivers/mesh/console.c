@@ -8,7 +8,6 @@
 #include "drivers/words.h"
 #include "triangle/base/system.h"
 
-
 void console_open(void)
 {
     tri_standard_open();

@@ -17,7 +17,6 @@
 #include "sched/schedule/phase.h"
 #include "sched/tiles/tiles.h"
 
-
 /* Is a state that begins now the last before the limit of time? It begins before the limit by twice the time that it
  * will take, as the last one took for its triangles. Early states measure the disk, until one takes long enough for
  * that. A run that is resumed measures halfway: a large state right at the beginning could take all of its time. */
@@ -27,9 +26,8 @@ bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, doub
 bool par_state_is_due(const struct par_checkpoint *checkpoint, double now, double triangles);
 
 /* When a run begins, with the mesh as it came. Where there is the state of a mesh as a whole, the mesh, the lists, the
- * cells and the counts become what they were, and the place. The place knows then
- * that a mesh that was kept as a whole is not swept. TRI_BAD_INPUT: it is another run's, or
- * damaged, and nothing has changed. TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
+ * cells and the counts become what they were, and the place, which then tells that this mesh is not swept.
+ * TRI_BAD_INPUT: the state is another run's, or damaged, and nothing has changed. TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
 enum tri_status par_state_begin(struct par_checkpoint *checkpoint, struct par_run *run, struct tri_error *error);
 
 /* A hash of all that the result depends on: the bounds and options that are asked for, and the mesh as it is now. */

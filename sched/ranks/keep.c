@@ -292,7 +292,7 @@ struct writer {
 
 /* The state's file. */
 struct kept {
-    int32_t next, round, phase, step; /* as in struct par_run */
+    int32_t next, round, phase, step; /* as in struct par_position */
     int64_t left_over;
     int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];

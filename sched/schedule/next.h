@@ -13,7 +13,7 @@
  *     PAR_HAND_OUT        PAR_END
  *
  * A run begins at PAR_SIZES if angles are expensive, otherwise at PAR_BOUNDS, or where the state is. par_go (phase.h)
- * makes every step; the test `next` compares this table with what runs do.
+ * makes every step, but for the one to where a state is; the test `next` compares this table with what runs do.
  *
  * A state is kept at all but PAR_SIZES and PAR_END, and at PAR_BOUNDS.. if something has been done before. In it:
  *

@@ -151,7 +151,6 @@ enum tri_status par_refine_rest(struct par_run *run, const struct tri_refine_hoo
                                 enum tri_status (*more)(void *user, struct tri_error *error), void *user,
                                 struct tri_error *error);
 
-
 /* Adds triangles to the worklist, by their keys, which ascend; whose key is there already is there. False: no memory,
  * and the worklist is as before. */
 bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t *key, int32_t n);

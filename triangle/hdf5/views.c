@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };
 
 static const char LINE_TYPES[] = "/VTKHDF/LineTypes";

@@ -174,7 +174,7 @@ bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_i
  *   incidence   the parents that end at each vertex, in order of direction where they are many
  *   limits      the shortest edge that coordinates can carry
  *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
- *   features    how far each vertex is from what is around it, by all of the above (feature_size.h)
+ *   features    how far each vertex is from what is around it, by all of the above
  *
  * RULE (rounding). Distances of 32 to 256 resolutions are features if at most TRI_FEW_BLURRED vertices are so near to
  * another one or to a segment. If more are, lines were computed twice, or points that belong on them: then such
