@@ -13,7 +13,7 @@ from ._errors import InputError
 from ._figure import figure_of
 from ._library import Settings
 from ._mesh import Mesh, finished, made
-from ._settings import Progress, Size, Unsuitable, settings_of
+from ._settings import Progress, Size, Unsuitable, Wanted, settings_of
 from ._signature import explained
 
 if TYPE_CHECKING:
@@ -111,8 +111,8 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     in one ends the work, and so does Ctrl-C.
     """
     who = "mesh()"
-    settings, calls = settings_of(who, min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
-                                  max_new_points, gate, fence, threads, stop, progress)
+    settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
+                                              max_new_points, gate, fence, threads, stop, progress))
     settings.even_odd = polygons is not None or isinstance(holes, str)
     if union and polygons is None:
         raise InputError("%s: union=True without polygons" % who)

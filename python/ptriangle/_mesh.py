@@ -15,7 +15,7 @@ from ._errors import InputError
 from ._figure import figure_of
 from ._library import Demands, Figure, Ints, Settings, VerdictDetail, library
 from ._notes import tell, warn
-from ._settings import Progress, Size, Unsuitable, settings_of
+from ._settings import Progress, Size, Unsuitable, Wanted, settings_of
 from ._signature import explained
 from ._verdict import Verdict
 
@@ -296,8 +296,8 @@ class Mesh:
         Bounds that came with regions count no more; triangle_areas, [m], are new ones for each triangle. order is that
         of this mesh where it is not given.
         """
-        settings, calls = settings_of("refine()", min_angle, max_area, size, unsuitable, conforming, False, protect,
-                                      max_new_points, gate, fence, threads, stop, progress)
+        settings, calls = settings_of("refine()", Wanted(min_angle, max_area, size, unsuitable, conforming, False,
+                                                         protect, max_new_points, gate, fence, threads, stop, progress))
         figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
         finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
         finer._input_points = self._input_points
@@ -338,8 +338,8 @@ class Mesh:
         points, or they would have run away), precision (of the coordinates), deferred (by gate or fence, or not refined
         by these bounds yet).
         """
-        settings, calls = settings_of("bad()", min_angle, max_area, size, unsuitable, conforming, False, protect,
-                                      max_new_points, gate, fence)
+        settings, calls = settings_of("bad()", Wanted(min_angle, max_area, size, unsuitable, conforming, False, protect,
+                                                      max_new_points, gate, fence))
         if len(self._arrays["triangles"]) == 0:
             return {}
         count = (c_int64 * len(_REASONS))()

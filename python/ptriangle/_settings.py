@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 from ctypes import c_double
+from dataclasses import dataclass
 from typing import Any, Callable, Optional, Sequence, Tuple, Union
 
 from . import _library as lib
@@ -82,25 +83,39 @@ def _take_functions(settings: Settings, calls: Calls, unsuitable: Any, gate: Any
     settings.stop = calls.stop(stop)
 
 
-def settings_of(who: str, min_angle: Optional[float], max_area: Optional[float], size: Optional[Size],
-                unsuitable: Optional[Unsuitable], conforming: bool, keep_hull: bool, protect: int,
-                max_new_points: Optional[int], gate: Optional[Callable[[float, float], Any]],
-                fence: Optional[Sequence[float]], threads: Optional[int] = None,
-                stop: Optional[Callable[[], Any]] = None,
-                progress: Optional[Progress] = None) -> Tuple[Settings, Calls]:
-    """The keywords of mesh() and refine(); what they are called with is said in InputErrors in the name of `who`."""
+@dataclass
+class Wanted:
+    """The keywords that mesh(), refine() and bad() share; mesh() explains them."""
+
+    min_angle: Optional[float] = None
+    max_area: Optional[float] = None
+    size: Optional[Size] = None
+    unsuitable: Optional[Unsuitable] = None
+    conforming: bool = False
+    keep_hull: bool = False
+    protect: int = 0
+    max_new_points: Optional[int] = None
+    gate: Optional[Callable[[float, float], Any]] = None
+    fence: Optional[Sequence[float]] = None
+    threads: Optional[int] = None
+    stop: Optional[Callable[[], Any]] = None
+    progress: Optional[Progress] = None
+
+
+def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
+    """The library's settings for a call of `who`, a name that InputErrors begin with."""
     calls = Calls(who)
-    settings = Settings(min_angle=number(who, "min_angle", min_angle or 0),
-                        max_area=number(who, "max_area", max_area or 0), conforming=bool(conforming),
-                        keep_hull=bool(keep_hull), protect=whole(who, "protect", protect),
-                        most_new_points=whole(who, "max_new_points", max_new_points, 64),
-                        threads=whole(who, "threads", threads))
-    if fence is not None:
-        if len(fence) != 4:
-            raise InputError("%s: fence has %d numbers instead of 4" % (who, len(fence)))
-        settings.fence = (c_double * 4)(*(number(who, "fence", value) for value in fence))
-    _take_size(settings, calls, size, unsuitable)
-    _take_functions(settings, calls, unsuitable, gate, stop)
-    if progress:
-        settings.progress = follow(calls, progress)
+    settings = Settings(min_angle=number(who, "min_angle", wanted.min_angle or 0),
+                        max_area=number(who, "max_area", wanted.max_area or 0), conforming=bool(wanted.conforming),
+                        keep_hull=bool(wanted.keep_hull), protect=whole(who, "protect", wanted.protect),
+                        most_new_points=whole(who, "max_new_points", wanted.max_new_points, 64),
+                        threads=whole(who, "threads", wanted.threads))
+    if wanted.fence is not None:
+        if len(wanted.fence) != 4:
+            raise InputError("%s: fence has %d numbers instead of 4" % (who, len(wanted.fence)))
+        settings.fence = (c_double * 4)(*(number(who, "fence", value) for value in wanted.fence))
+    _take_size(settings, calls, wanted.size, wanted.unsuitable)
+    _take_functions(settings, calls, wanted.unsuitable, wanted.gate, wanted.stop)
+    if wanted.progress:
+        settings.progress = follow(calls, wanted.progress)
     return settings, calls
