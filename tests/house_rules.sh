@@ -132,7 +132,7 @@ refuse '#[[:space:]]*include[[:space:]]*"sched/(tiles|checkpoint|ranks)/' 'inclu
 refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/tiles/*.[ch] \
     sched/checkpoint/*.[ch]
 
-# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks
+# The sequential program knows no schedule, nor do the stages that it shares with the parallel one
 # (drivers/mesh/stages.h).
 # shellcheck disable=SC2046 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/mesh/triangle.c \

@@ -98,14 +98,6 @@ struct sharing {
     struct tri_error *error;
 };
 
-/* What is more than numbers is another rank's: never followed here. */
-struct outline {
-    struct tri_pslg pslg;
-    struct tri_elements elements;
-    int32_t base;
-    bool points_in_poly;
-};
-
 static void spread(struct sharing *s, void *bytes, size_t n)
 {
     s->status = par_spread(s->carrier, PAR_MOVE_INPUT, bytes, n, s->status, s->error);
@@ -156,14 +148,14 @@ enum tri_status shared_input(struct par_carrier *carrier, struct run *run, enum 
                              struct tri_error *error)
 {
     struct sharing s = {carrier, status, error};
-    struct outline told = {run->pslg, run->elements, run->base, run->points_in_poly};
+    struct run_input told = run->input; /* what is more than numbers is another rank's: never followed here */
     spread(&s, &told, sizeof told);
     if (s.status)
         return s.status;
-    share_figure(&s, &run->pslg, &told.pslg);
-    share_elements(&s, &run->elements, &told.elements);
-    run->base = told.base;
-    run->points_in_poly = told.points_in_poly;
+    share_figure(&s, &run->input.pslg, &told.pslg);
+    share_elements(&s, &run->input.elements, &told.elements);
+    run->input.base = told.base;
+    run->input.points_in_poly = told.points_in_poly;
     return par_agree(carrier, s.status, error);
 }
 

@@ -38,9 +38,9 @@ static enum plan asked(bool by_switch, bool suppressed)
 static enum plan plan_of(const struct run *run, int kind)
 {
     const struct tri_switches *s = &run->arguments->switches;
-    const bool any = !long_options_exports_alone(run->hooks->options);
+    const bool any = !long_options_exports_alone(run->settings.options);
     switch (kind) {
-    case NODE: return asked(any, s->no_node || (s->no_iteration && !run->points_in_poly));
+    case NODE: return asked(any, s->no_node || (s->no_iteration && !run->input.points_in_poly));
     case ELE: return asked(any, s->no_ele);
     case POLY: return asked(any && tri_switches_show_segments(s), s->no_poly || s->no_iteration);
     case OFF: return asked(any && s->off, false);
@@ -112,7 +112,7 @@ static enum tri_status try_export(struct tri_output_set *set, const struct long_
 static enum tri_status try_all(struct tri_output_set *set, const struct run *run, const struct file_names *read,
                                struct tri_error *error)
 {
-    const struct long_options *o = run->hooks->options;
+    const struct long_options *o = run->settings.options;
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS && !status; k++)
         if (plan_of(run, k) == WRITTEN)
@@ -150,14 +150,14 @@ static enum tri_status write_file(const struct run *run, const struct tri_grid *
     enum tri_status status = interrupt_open(run->outputs, path, &output, run->error);
     free(path);
     if (!status)
-        status = kind->write(output, kind->of_voronoi ? &voronoi : grid, run->hooks->executor, run->error);
+        status = kind->write(output, kind->of_voronoi ? &voronoi : grid, run->settings.executor, run->error);
     return status ? status : tri_write_comment(output, arguments->argc, arguments->argv, run->error);
 }
 
 /* In another program's format, which need not know comments. */
 static enum tri_status write_export(const struct run *run, const struct tri_grid *grid, const char *path)
 {
-    struct export export = export_of(path, run->hooks->options->n_parts);
+    struct export export = export_of(path, run->settings.options->n_parts);
     char *first = name_of(&export, path, 0), *last = name_of(&export, path, files_of(&export) - 1);
     if (first && last)
         console_say(&run->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
@@ -165,7 +165,7 @@ static enum tri_status write_export(const struct run *run, const struct tri_grid
     free(first);
     free(last);
     enum tri_status status = export_open(&export, path, run->outputs, run->error);
-    return status ? status : export_write(&export, grid, run->hooks->executor, run->error);
+    return status ? status : export_write(&export, grid, run->settings.executor, run->error);
 }
 
 static enum tri_status write_own(const struct run *run, const struct tri_grid *grid)
@@ -182,7 +182,7 @@ static enum tri_status write_own(const struct run *run, const struct tri_grid *g
 
 static enum tri_status write_exports(const struct run *run, const struct tri_grid *grid)
 {
-    const struct long_options *o = run->hooks->options;
+    const struct long_options *o = run->settings.options;
     enum tri_status status = TRI_OK;
     for (int i = 0; i < o->n_exports && !status; i++)
         status = write_export(run, grid, o->exports[i]);
@@ -192,9 +192,9 @@ static enum tri_status write_exports(const struct run *run, const struct tri_gri
 struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers)
 {
     const struct tri_switches *s = &run->arguments->switches;
-    struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements);
+    struct tri_grid_options options = tri_switches_grid(s, &run->mesh, &run->input.pslg, &run->input.elements);
     options.is_edge = s->segments ? run->is_edge : NULL;
-    options.base = run->base;
+    options.base = run->input.base;
     options.jettison = options.jettison || (for_solvers && run->unused.n != 0);
     return options;
 }
@@ -213,7 +213,7 @@ static enum tri_status write_from_grid(const struct run *run, bool own, bool exp
 
 enum tri_status mesh_files_write(const struct run *run)
 {
-    const bool exports = run->hooks->options->n_exports > 0;
+    const bool exports = run->settings.options->n_exports > 0;
     if (!exports || run->unused.n == 0)
         return write_from_grid(run, true, exports);
     enum tri_status status = write_from_grid(run, true, false);

@@ -50,12 +50,12 @@ static double triangles_by_area(const struct run *run, double demand)
 static double triangles_of(const struct run *run, double demand)
 {
     const struct tri_quality *quality = &run->options.quality;
-    const struct run_hooks *hooks = run->hooks;
-    double now = run->mesh.n_triangles;
+    double now = run->mesh.n_triangles, sure;
     if (!run->options.refine)
         return now;
-    double by_area = triangles_by_area(run, demand);
-    double triangles = hooks->estimate ? hooks->estimate(hooks->user, &run->mesh, quality) : by_area;
+    double by_area = triangles_by_area(run, demand), triangles = by_area;
+    if (run->settings.threads > 0)
+        triangles = tri_estimate(&run->mesh, quality, run->settings.executor, &sure);
     triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */
     return quality->max_steiner < 0 ? triangles : fmin(triangles, now + 2 * (double)quality->max_steiner);
 }
@@ -87,12 +87,12 @@ static double exports_of(const struct run *run, double vertices, double triangle
     double row = vertices * (28 + 8 * run->mesh.n_attributes) + triangles * (nodes * index + 4);
     double marker = s->no_markers ? 0 : 4;
     double h5 = vertices * (16 + marker + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* the rest deflates */
-    return run->hooks->options->n_exports * row + run->hooks->options->n_streams * h5;
+    return run->settings.options->n_exports * row + run->settings.options->n_streams * h5;
 }
 
 static double disk_of(const struct run *run, double vertices, double triangles)
 {
-    double text = long_options_exports_alone(run->hooks->options) ? 0 : text_of(run, vertices, triangles);
+    double text = long_options_exports_alone(run->settings.options) ? 0 : text_of(run, vertices, triangles);
     return text + exports_of(run, vertices, triangles);
 }
 
@@ -101,7 +101,7 @@ static double bytes_a_triangle(const struct run *run)
 {
     const struct tri_switches *s = &run->arguments->switches;
     bool lists = s->second_order || s->edges || s->voronoi || s->off;
-    return (run->hooks->refine ? SCHEDULE_BYTES : LOOP_BYTES) + 6 * run->mesh.n_attributes + (lists ? 6 : 0) +
+    return (run->settings.threads > 0 ? SCHEDULE_BYTES : LOOP_BYTES) + 6 * run->mesh.n_attributes + (lists ? 6 : 0) +
            (s->second_order ? 12 : 0);
 }
 
@@ -110,14 +110,14 @@ static double bytes_of_check(const struct run *run, double grown)
 {
     if (!run->arguments->switches.check)
         return 0;
-    if (run->hooks->options->memory > 0)
+    if (run->settings.options->memory > 0)
         return grown + self_check_least_bytes(&run->mesh);
     return SELF_CHECK_BYTES * (grown + run->mesh.n_triangles) + SELF_CHECK_SUB_BYTES * (double)run->mesh.n_subs;
 }
 
 double estimate_streams(const struct run *run, double triangles)
 {
-    return run->hooks->options->n_streams * fmin(LEAST_STREAMED + STREAM_BYTES * triangles, MOST_STREAMED);
+    return run->settings.options->n_streams * fmin(LEAST_STREAMED + STREAM_BYTES * triangles, MOST_STREAMED);
 }
 
 /* What is done with a mesh that is finished, one after the other. */
@@ -129,7 +129,7 @@ static double bytes_beside(const struct run *run, double grown)
 /* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
 static double bytes_whole(const struct run *run, double grown, double demand)
 {
-    if (!run->hooks->refine || !run->options.refine)
+    if (run->settings.threads == 0 || !run->options.refine)
         return grown * bytes_a_triangle(run);
     double places = grown + EMPTY_PLACES * fmax(grown - demand, 0);
     double refined = places * bytes_a_triangle(run) + (run->mesh.n_triangles + places) * NUMBERING_BYTES +
@@ -167,14 +167,14 @@ static double seconds_so_far(const struct run *run)
 {
     double sum = 0;
     for (int stage = 0; stage < RUN_STAGES; stage++)
-        sum += run->seconds[stage];
+        sum += run->time.stage[stage];
     return fmin(sum, tri_process_seconds());
 }
 
 static double seconds_of(const struct run *run, double triangles, double disk)
 {
-    double one = seconds_a_triangle(), threads = fmax(run->hooks->threads, 1);
-    double work = run->options.refine ? triangles * one * (run->hooks->refine ? 1 + NUMBERING : 1) : 0;
+    double one = seconds_a_triangle(), threads = fmax(run->settings.threads, 1);
+    double work = run->options.refine ? triangles * one * (run->settings.threads > 0 ? 1 + NUMBERING : 1) : 0;
     double text = disk / TEXT_BYTES * (one / USUAL_SECONDS);
     return seconds_so_far(run) + (work + text) / threads;
 }
@@ -185,7 +185,7 @@ static double seconds_of(const struct run *run, double triangles, double disk)
  * mesh is one column. */
 static double column_of(const struct run *run, double triangles)
 {
-    double (*cell_triangles)(double triangles) = run->hooks->cell_triangles;
+    double (*cell_triangles)(double triangles) = run->settings.cell_triangles;
     return sqrt(triangles * (cell_triangles ? cell_triangles(triangles) : triangles));
 }
 
@@ -194,12 +194,12 @@ static double column_of(const struct run *run, double triangles)
 static bool is_swept(const struct run *run)
 {
     const struct tri_quality *quality = &run->options.quality;
-    return (run->hooks->n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0;
+    return (run->settings.n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0;
 }
 
 bool estimate_can_park(const struct run *run, double held)
 {
-    const bool bounded = run->hooks->options->memory > 0;
+    const bool bounded = run->settings.options->memory > 0;
     return tri_memory_end() != TRI_ENDS_ADDRESS_SPACE || (bounded && held <= tri_memory_left());
 }
 
@@ -212,11 +212,11 @@ static double floor_of(const struct run *run, double held, double work)
 /* Of the rank that has most. */
 static struct needs needs_of_rank(const struct run *run, double grown)
 {
-    const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown), column = column_of(run, grown);
+    const double own = fmin(BUSIEST * grown / run->settings.n_ranks, grown), column = column_of(run, grown);
     const double work = RANK_PIECES + fmin(RANK_COLUMN * column, RANK_WORK * own) + RANK_COARSE * grown;
     struct needs n = {.triangles = grown, .whole = own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
-    n.floor = floor_of(run, n.held, work + PAGES * fmax(run->hooks->threads, 1));
+    n.floor = floor_of(run, n.held, work + PAGES * fmax(run->settings.threads, 1));
     n.away = PARKED_BYTES * own;
     n.checkpoint = n.states = RANK_STATES * grown;
     return n;
@@ -225,10 +225,10 @@ static struct needs needs_of_rank(const struct run *run, double grown)
 /* whole: bytes where it is in memory as a whole. */
 static struct needs needs_of(const struct run *run, double grown, double whole, bool sweeps)
 {
-    if (run->hooks->n_ranks > 0 && sweeps)
+    if (run->settings.n_ranks > 0 && sweeps)
         return needs_of_rank(run, grown);
-    const struct long_options *o = run->hooks->options;
-    const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
+    const struct long_options *o = run->settings.options;
+    const double column = column_of(run, grown), pages = PAGES * fmax(run->settings.threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = whole};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
@@ -245,7 +245,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_quality *quality = &run->options.quality;
-    const double demand = run->options.refine ? tri_size_demand(&run->mesh, quality, run->hooks->executor) : 0;
+    const double demand = run->options.refine ? tri_size_demand(&run->mesh, quality, run->settings.executor) : 0;
     const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
     const bool sweeps = is_swept(run);
     struct estimate e = {.sweeps = sweeps, .vertices = run->mesh.n_vertices + grown / 2};

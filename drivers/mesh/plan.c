@@ -36,20 +36,20 @@ static const double BUFFER_BYTES = 3e7;
 /* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
 static bool is_strict(const struct run *run)
 {
-    return run->hooks->options->memory > 0 || tri_memory_end() != TRI_ENDS_SYSTEM;
+    return run->settings.options->memory > 0 || tri_memory_end() != TRI_ENDS_SYSTEM;
 }
 
 /* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
 static double system_memory_left(const struct run *run)
 {
     const bool counts_all = tri_memory_end() != TRI_ENDS_SYSTEM;
-    const double untouched = counts_all ? tri_memory_of_stacks(run->hooks->threads) + BUFFER_BYTES : 0;
+    const double untouched = counts_all ? tri_memory_of_stacks(run->settings.threads) + BUFFER_BYTES : 0;
     return fmax(tri_memory_left() - untouched, 0);
 }
 
 double plan_memory_left(const struct run *run)
 {
-    double allowed = run->hooks->options->memory, left = system_memory_left(run);
+    double allowed = run->settings.options->memory, left = system_memory_left(run);
     return allowed > 0 ? fmin(left, fmax(allowed - tri_memory_used(NULL), 0)) : left;
 }
 
@@ -80,18 +80,18 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
 /* To write HDF5 of a mesh that nothing refines, beside the half of the peak that the mesh itself takes. */
 static double unrefined_streams(const struct run *run)
 {
-    const double triangles = run->elements.n > 0 ? run->elements.n : 2.0 * run->pslg.n_points;
+    const double triangles = run->input.elements.n > 0 ? run->input.elements.n : 2.0 * run->input.pslg.n_points;
     return run->options.refine ? 0 : estimate_streams(run, triangles);
 }
 
 /* At its peak, what has been read included. */
 static double input_bytes(const struct run *run)
 {
-    const struct tri_pslg *p = &run->pslg;
+    const struct tri_pslg *p = &run->input.pslg;
     const double surface = run->options.refine && p->n_attributes > 0 ? SURFACE_BYTES + 8.0 * p->n_attributes : 0;
-    const double point = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + ATTRIBUTE_BYTES * p->n_attributes +
-                         surface;
-    const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +
+    const double point = (run->input.elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) +
+                         ATTRIBUTE_BYTES * p->n_attributes + surface;
+    const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->input.elements.n +
                         fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
     return PROCESS_BYTES + fmax(made, made / 2 + unrefined_streams(run));
 }
@@ -105,7 +105,7 @@ enum tri_status plan_check_input(const struct run *run)
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
         return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0,
                         "to triangulate the input, %s points and %s segments,%s takes about %s of memory; there are %s",
-                        tri_count_text(run->pslg.n_points).text, tri_count_text(run->pslg.n_segments).text,
+                        tri_count_text(run->input.pslg.n_points).text, tri_count_text(run->input.pslg.n_segments).text,
                         unrefined_streams(run) > 0 ? " and write it as HDF5," : "",
                         tri_size_text(needed).text, tri_size_text(all).text);
     if (needed > all)
@@ -142,14 +142,13 @@ static const char *by_options(const struct long_options *o)
  * swept. */
 static const char *obstacle_of(const struct run *run)
 {
-    const struct run_hooks *hooks = run->hooks;
-    if (!hooks->refine)
+    if (run->settings.threads == 0)
         return "";
     if (!run->options.refine)
         return "no bounds";
     if (run->report.loose > 0)
         return "segments that are no edges of the mesh";
-    const char *by_option = by_options(hooks->options);
+    const char *by_option = by_options(run->settings.options);
     return by_option ? by_option : by_switches(&run->arguments->switches);
 }
 
@@ -182,7 +181,7 @@ static enum tri_status check_number(const struct run *run, const struct estimate
 static void suggest(const struct run *run, double needed, char *text, size_t size)
 {
     *text = 0;
-    if (run->hooks->options->memory > 0 && needed <= system_memory_left(run))
+    if (run->settings.options->memory > 0 && needed <= system_memory_left(run))
         snprintf(text, size, "; --memory %.0fM would do", ceil(1e-6 * (tri_memory_used(NULL) + needed)) + 1);
 }
 
@@ -227,7 +226,7 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
 /* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
 static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left)
 {
-    const char *why = run->hooks->n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
+    const char *why = run->settings.n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
     enum tri_status status = e->sweeps ? TRI_OK : check_number(run, e, why);
     if (status)
         return status;
@@ -274,7 +273,7 @@ static const struct disk_place *too_small(const struct disk_place places[DISK_PL
 static void list_places(struct disk_place places[DISK_PLACES], const struct run *run, const struct needs *n,
                         double left)
 {
-    const struct long_options *limits = run->hooks->options;
+    const struct long_options *limits = run->settings.options;
     const char *first = limits->n_streams > 0                 ? limits->streams[0]
                         : long_options_exports_alone(limits) ? limits->exports[0]
                                                              : run->arguments->output;
@@ -315,7 +314,7 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
 /* A folder is tried before the work, which may take hours until it is needed. */
 static enum tri_status check_scratch(const struct run *run)
 {
-    const char *folder = run->hooks->options->scratch;
+    const char *folder = run->settings.options->scratch;
     if (!tri_path_allows(folder, TRI_TAKES_FILES))
         return tri_fail(run->error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
@@ -343,7 +342,7 @@ static bool fits(const struct run *run, const struct estimate *e, double left)
 static void say_parking(const struct run *run, double bytes)
 {
     console_say(&run->console, "Parking: what does not fit in memory goes to %s, about %s.\n",
-                run->hooks->options->scratch, tri_size_text(bytes).text);
+                run->settings.options->scratch, tri_size_text(bytes).text);
 }
 
 static void say_way(const struct run *run, const struct estimate *e, double left)
@@ -352,12 +351,12 @@ static void say_way(const struct run *run, const struct estimate *e, double left
     char whole[64] = "are too many for a mesh in memory";
     if (n->triangles <= TRI_MAX_TRIANGLES)
         snprintf(whole, sizeof whole, "would take %s of memory", tri_size_text(n->whole).text);
-    if (e->sweeps && run->hooks->n_ranks > 0)
+    if (e->sweeps && run->settings.n_ranks > 0)
         console_say(&run->console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
-                    tri_count_text(n->triangles).text, run->hooks->n_ranks, tri_size_text(n->held).text);
-    else if (run->hooks->n_ranks > 1)
+                    tri_count_text(n->triangles).text, run->settings.n_ranks, tri_size_text(n->held).text);
+    else if (run->settings.n_ranks > 1)
         console_say(&run->console, "Each of %d tasks makes all of the mesh: -S is not shared.\n",
-                    run->hooks->n_ranks);
+                    run->settings.n_ranks);
     else if (e->sweeps)
         console_say(&run->console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
                     tri_count_text(n->triangles).text, whole, tri_size_text(n->held).text);
@@ -369,8 +368,8 @@ static void say_way(const struct run *run, const struct estimate *e, double left
  * needs nobody has estimated. */
 static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
-    const struct run_hooks *hooks = run->hooks;
-    return hooks->refine && hooks->n_ranks == 0 && hooks->options->memory > 0 && run->options.refine &&
+    const struct run_settings *settings = &run->settings;
+    return settings->threads > 0 && settings->n_ranks == 0 && settings->options->memory > 0 && run->options.refine &&
            estimate_can_park(run, e->likely.whole);
 }
 
@@ -385,7 +384,7 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = obstacle_of(run);
-    bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
+    bool stream = run->settings.always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
     *plan = (struct run_plan){.swept = stream && !obstacle, .memory = tri_memory_used(NULL) + left,
                               .triangles = e->likely.triangles};
     plan->filed = !plan->swept && may_lie_in_files(run, e);
@@ -420,7 +419,7 @@ static void print_bytes(const char *what, double needed, double there, const cha
 
 static const char *way_of(const struct run *run, const struct estimate *e)
 {
-    if (run->hooks->n_ranks > 0 && e->sweeps)
+    if (run->settings.n_ranks > 0 && e->sweeps)
         return "shared by all tasks";
     if (run->plan.swept && e->sweeps)
         return "swept, a few columns in memory at a time";
@@ -430,7 +429,7 @@ static const char *way_of(const struct run *run, const struct estimate *e)
 
 void plan_print(const struct run *run, const struct estimate *e)
 {
-    int threads = run->hooks->threads > 1 ? run->hooks->threads : 1;
+    int threads = run->settings.threads > 1 ? run->settings.threads : 1;
     const struct needs *n = &e->likely;
     struct disk_place places[DISK_PLACES];
     const double left = plan_memory_left(run), most = run->plan.swept ? n->held : n->whole;

@@ -10,12 +10,13 @@
 #include "drivers/mesh/joint_files.h"
 #include "drivers/mesh/launch.h"
 #include "drivers/mesh/long_options.h"
-#include "drivers/mesh/needs.h"
+#include "drivers/mesh/plan.h"
 #include "drivers/mesh/progress.h"
 #include "drivers/mesh/report_json.h"
 #include "drivers/mesh/restart.h"
 #include "drivers/mesh/stages.h"
 #include "drivers/mesh/streams.h"
+#include "drivers/mesh/summary.h"
 #include "drivers/start.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule/partition.h"
@@ -26,7 +27,6 @@
 #include "triangle/base/size_text.h"
 #include "triangle/base/system.h"
 #include "triangle/refine/census.h"
-#include "triangle/size/estimate.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 #include "triangle/text/names.h"
@@ -34,25 +34,21 @@
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 
-/* What the hooks share. */
+/* All about this program, from its words to its files; all 0 until then. */
 struct program {
+    struct run run;            /* from files to files; not begun before the words have been taken */
     struct long_options options;
-    int threads;
+    char *scratch;             /* folder for what does not fit in memory, malloc'ed: options.scratch */
     struct progress progress;
     struct restart restart;
-    char *scratch;             /* folder for what does not fit in memory */
+    struct launch launch;
     struct streams streams;
-    struct par_park *park;     /* of the mesh, as long as that lives */
     struct joint_files joint;  /* on several ranks */
+    struct par_park *park;     /* of the mesh, as long as that lives; NULL: it is in memory, or swept */
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
-    bool quiet;                /* errors and warnings alone are said */
     struct par_report schedule;
-    struct launch launch;
-    struct rank_report ranks;
-    struct run *run;           /* the mesh of this run is refined; */
-    struct tri_mesh *mesh;
-    const struct tri_quality *quality;
+    struct rank_report ranks;  /* n_ranks is 0: there is one process */
 };
 
 /* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
@@ -68,7 +64,7 @@ static double for_tests(const char *name)
 #endif
 }
 
-/* --- hooks */
+/* --- refinement */
 
 /* A rank knows of its own part. */
 static void tell_reached(const struct program *p, int64_t triangles)
@@ -88,16 +84,16 @@ static void follow(void *user, const struct par_place *place)
 
 static struct par_options options_of(struct program *p)
 {
-    const struct run *run = p->run;
+    const struct run *run = &p->run;
     const struct tri_switches *s = &run->arguments->switches;
     struct par_options options = par_defaults();
-    options.threads = p->threads;
+    options.threads = p->run.settings.threads;
     options.by_block = p->options.by_block;
     options.cell_triangles = for_tests("PTRIANGLE_TEST_BLOCK");
     options.progress = follow;
     options.progress_user = p;
-    options.figure = &run->pslg;
-    options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
+    options.figure = &run->input.pslg;
+    options.region_column = tri_switches_grid(s, &run->mesh, &run->input.pslg, &run->input.elements).regions;
     options.sweep = run->plan.swept;
     bool bounded = p->options.memory > 0 || (run->plan.swept && !p->launch.carrier);
     if (bounded && run->plan.memory < HUGE_VAL)
@@ -116,28 +112,28 @@ static int64_t handed_out(const struct program *p, int which)
 
 static enum tri_status refine_with(struct program *p, const struct par_options *options)
 {
-    p->n_before = p->mesh->n_vertices;
-    progress_begin(&p->progress, p->mesh->n_triangles, p->run->plan.triangles, p->threads);
-    enum tri_status status = par_refine(p->mesh, p->quality, options, &p->schedule, p->run->error);
+    p->n_before = p->run.mesh.n_vertices;
+    progress_begin(&p->progress, p->run.mesh.n_triangles, p->run.plan.triangles, p->run.settings.threads);
+    enum tri_status status = par_refine(&p->run.mesh, &p->run.options.quality, options, &p->schedule, p->run.error);
     if (status)
         progress_drop(&p->progress);
     else
-        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : p->mesh->n_triangles,
+        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : p->run.mesh.n_triangles,
                      options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
         interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* of all ranks */
     else if (status == TRI_STOPPED && !options->sweep)
-        tell_reached(p, p->mesh->n_triangles);
+        tell_reached(p, p->run.mesh.n_triangles);
     return status;
 }
 
 /* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
  * boundary is a subsegment. */
-static void count_streamed(const struct program *p, const struct tri_counts *before)
+static void count_streamed(struct program *p, const struct tri_counts *before)
 {
-    struct tri_counts *c = &p->run->counts;
-    c->vertices = handed_out(p, 0) - p->run->unused.n;
+    struct tri_counts *c = &p->run.counts;
+    c->vertices = handed_out(p, 0) - p->run.unused.n;
     c->triangles = handed_out(p, 1);
     c->subsegments = handed_out(p, 2);
     c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
@@ -148,7 +144,7 @@ static void count_streamed(const struct program *p, const struct tri_counts *bef
 /* Bytes of tiles that may wait for the disk. */
 static int64_t waiting_bytes(const struct program *p)
 {
-    return (int64_t)fmin(fmax(p->run->plan.memory / 32, 0x1p20), 0x1p26);
+    return (int64_t)fmin(fmax(p->run.plan.memory / 32, 0x1p20), 0x1p26);
 }
 
 /* What others than the first rank cannot know of its files. */
@@ -168,14 +164,14 @@ static enum tri_status join_files(struct program *p, enum tri_status status)
 {
     const bool ends_at_once = !p->options.write_partial && !long_options_state(&p->options);
     p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
-                                    .no_sync = p->options.no_sync, .orphans = p->run->unused,
+                                    .no_sync = p->options.no_sync, .orphans = p->run.unused,
                                     .stop = ends_at_once ? interrupt_stop() : NULL,
-                                    .text_options = {.base = p->run->base, .figure = &p->run->pslg,
-                                                     .markers = !p->run->arguments->switches.no_markers}};
+                                    .text_options = {.base = p->run.input.base, .figure = &p->run.input.pslg,
+                                                     .markers = !p->run.arguments->switches.no_markers}};
     if (!status && p->launch.rank == 0)
         show_streams(p);
     const bool wanted = p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1;
-    return joint_files_open(&p->joint, wanted, status, p->run->error);
+    return joint_files_open(&p->joint, wanted, status, p->run.error);
 }
 
 static enum tri_status refine_into(struct program *p, const struct tri_sink *sink)
@@ -194,14 +190,14 @@ static enum tri_status refine_through_first(struct program *p, const struct tri_
     struct tri_sink queued;
     struct par_relay relay = {.carrier = p->launch.carrier};
     if (to && !par_queue_begin(&queue, to, waiting_bytes(p)))
-        return tri_fail(p->run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+        return tri_fail(p->run.error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
     if (to)
         queued = par_queue_sink(&queue);
     relay.to = to ? &queued : NULL;
     if (p->options.memory > 0)
         relay.room = relay.most_bytes = (size_t)waiting_bytes(p);
     const struct tri_sink relayed = par_relay_sink(&relay);
-    enum tri_status status = par_relay_finish(&relay, refine_into(p, &relayed), p->run->error);
+    enum tri_status status = par_relay_finish(&relay, refine_into(p, &relayed), p->run.error);
     if (to)
         par_queue_free(&queue);
     return status;
@@ -214,15 +210,14 @@ static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink 
     const struct tri_sink joint = joint_files_sink(&p->joint);
     if (!status)
         status = p->joint.together ? refine_into(p, &joint) : refine_through_first(p, to);
-    return joint_files_close(&p->joint, status, p->run->error);
+    return joint_files_close(&p->joint, status, p->run.error);
 }
 
 /* What did not fit in memory, or could not be swept. */
 static void tell_of_parking(const struct program *p)
 {
-    const struct console console = {.program = PROGRAM, .quiet = p->quiet};
     if (p->schedule.parked > 0)
-        console_say(&console, "%s parked in %s: %s.\n",
+        console_say(&p->run.console, "%s parked in %s: %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
                     p->scratch, tri_size_text((double)p->schedule.parked).text);
 }
@@ -230,10 +225,10 @@ static void tell_of_parking(const struct program *p)
 /* Refines, and writes what is finished meanwhile. */
 static enum tri_status sweep(struct program *p)
 {
-    struct run *run = p->run;
+    struct run *run = &p->run;
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
-    enum tri_status status = tri_count_mesh(&before, p->mesh, NULL, p->run->error);
+    enum tri_status status = tri_count_mesh(&before, &run->mesh, NULL, run->error);
     status = status ? status : streams_open(&p->streams, run);
     status = status ? status : streams_open_text(&p->streams, run);
     status = status ? status : streams_open_exports(&p->streams, run);
@@ -255,21 +250,18 @@ static enum tri_status report_ranks(struct program *p, enum tri_status status)
 {
     const bool is_kept = status == TRI_STOPPED && p->options.write_partial;
     enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
-                                                p->run->error);
+                                                p->run.error);
     return shared ? shared : status;
 }
 
-static enum tri_status refine(void *user, struct run *run, struct tri_mesh *mesh, const struct tri_quality *quality,
-                              struct tri_refine_report *report)
+/* As the plan says. */
+static enum tri_status refine_as_planned(struct program *p)
 {
-    struct program *p = user;
+    struct run *run = &p->run;
     enum tri_status status = TRI_OK;
-    p->run = run;
-    p->mesh = mesh;
-    p->quality = quality;
     if (run->plan.swept) {
         status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p);
-        tri_mesh_free(mesh); /* what is left of it is no mesh */
+        tri_mesh_free(&run->mesh); /* what is left of it is no mesh */
     } else if (p->launch.rank == 0) { /* makes the whole, and keeps its checkpoints as one task does */
         struct par_options options = options_of(p);
         options.park = run->plan.filed ? &p->park : NULL;
@@ -278,14 +270,29 @@ static enum tri_status refine(void *user, struct run *run, struct tri_mesh *mesh
         if (!status)
             progress_stage(&p->progress, "writing");
     }
-    *report = p->schedule.total;
     return p->launch.carrier ? report_ranks(p, status) : status;
 }
 
-static enum tri_status make_room(void *user, struct run *run, double bytes)
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
     struct program *p = user;
-    const enum tri_status status = par_park_expect(p->park, &run->mesh, (size_t)bytes, run->error);
+    (void)mesh, (void)quality, (void)error; /* those of the run */
+    enum tri_status status = run_refine_begin(&p->run);
+    if (status)
+        return status;
+    status = refine_as_planned(p);
+    *report = p->schedule.total;
+    return run_refine_end(&p->run, status);
+}
+
+/* --- output */
+
+/* Beside a mesh that was not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
+ * files. */
+static enum tri_status make_room(struct program *p, double bytes)
+{
+    const enum tri_status status = par_park_expect(p->park, &p->run.mesh, (size_t)bytes, p->run.error);
     if (!p->park)
         return status;
     p->schedule.parked = par_park_bytes(p->park);
@@ -296,33 +303,14 @@ static enum tri_status make_room(void *user, struct run *run, double bytes)
     return status;
 }
 
-static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_quality *quality)
-{
-    struct program *p = user;
-    const struct tri_executor executor = par_executor(&p->threads);
-    double sure;
-    return tri_estimate(mesh, quality, &executor, &sure);
-}
-
-static enum tri_status share(void *user, struct run *run, enum tri_status status)
-{
-    const struct program *p = user;
-    return shared_input(p->launch.carrier, run, status, run->error);
-}
-
-static enum tri_status agree(void *user, enum tri_status status, struct tri_error *error)
-{
-    const struct program *p = user;
-    return par_agree(p->launch.carrier, status, error);
-}
-
 /* Of a mesh that is there as a whole. */
-static enum tri_status write_streams(struct program *p, struct run *run)
+static enum tri_status write_streams(struct program *p)
 {
+    const struct run *run = &p->run;
     const struct tri_sink sink = streams_sink(&p->streams);
     if (p->options.n_streams == 0)
         return TRI_OK;
-    enum tri_status status = make_room(p, run, estimate_streams(run, run->mesh.n_triangles));
+    enum tri_status status = make_room(p, estimate_streams(run, run->mesh.n_triangles));
     status = status ? status : streams_open(&p->streams, run);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
     status = status ? status : streams_hand_out(run, n_before, &sink);
@@ -352,8 +340,9 @@ static char *block_row(const void *user, int64_t i, char *at)
 }
 
 /* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
-static enum tri_status write_blocks(const struct program *p, const struct run *run)
+static enum tri_status write_blocks(const struct program *p)
 {
+    const struct run *run = &p->run;
     struct blocks blocks = {&p->schedule, &run->mesh};
     struct tri_output *output;
     enum tri_status status = interrupt_open(run->outputs, p->options.blocks, &output, run->error);
@@ -362,31 +351,94 @@ static enum tri_status write_blocks(const struct program *p, const struct run *r
 }
 
 /* A report tells how many triangles stay below the bounds however the mesh was made. */
-static void count_remaining(struct program *p, const struct run *run)
+static void count_remaining(struct program *p)
 {
+    const struct run *run = &p->run;
     if (!p->refined || p->schedule.remain_known || run->plan.swept)
         return;
     if (run->remain_known)
         memcpy(p->schedule.remain, run->remain, sizeof run->remain);
     else
-        tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor,
+        tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->settings.executor,
                       p->schedule.remain);
     p->schedule.remain_known = true;
 }
 
-static enum tri_status write_further(void *user, struct run *run)
+/* What the options want beside the mesh. */
+static enum tri_status write_further(struct program *p)
 {
-    struct program *p = user;
+    const struct run *run = &p->run;
     char text[96];
-    snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
+    snprintf(text, sizeof text, "done in %.2f s", run->time.total);
     progress_stage(&p->progress, text);
-    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run);
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p);
     if (!status && p->options.blocks)
-        status = write_blocks(p, run);
+        status = write_blocks(p);
     if (status || !p->options.report)
         return status;
-    count_remaining(p, run);
-    return report_write(run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads);
+    count_remaining(p);
+    return report_write(run, p->refined ? &p->schedule : NULL, &p->ranks);
+}
+
+/* -C. The judge keeps to what is left of a bound; pages of a mesh that lies in files take some of that, too. */
+static enum tri_status check(struct program *p)
+{
+    const double OF_FILES = 0.75;
+    const struct run *run = &p->run;
+    enum tri_status status = make_room(p, self_check_least_bytes(&run->mesh));
+    const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
+    return status ? status : self_check(run, p->options.memory > 0 ? fmax(left, 1) : 0);
+}
+
+static enum tri_status write_all(struct program *p)
+{
+    struct run *run = &p->run;
+    run_write_begin(run);
+    enum tri_status status = run->plan.swept ? TRI_OK : make_room(p, run_write_bytes(run));
+    status = status ? status : run_write_mesh(run);
+    status = status ? status : run_tell(run);
+    if (!status && run->arguments->switches.check)
+        status = check(p);
+    status = status ? status : write_further(p);
+    return status ? status : console_flush(run->error);
+}
+
+/* --- the run */
+
+/* One word for all ranks, with the same error. */
+static enum tri_status agree(struct program *p, enum tri_status status)
+{
+    return p->launch.carrier ? par_agree(p->launch.carrier, status, p->run.error) : status;
+}
+
+/* Of several ranks one reads. */
+static enum tri_status read_input(struct program *p)
+{
+    const enum tri_status status = run_read(&p->run);
+    return p->launch.carrier ? shared_input(p->launch.carrier, &p->run, status, p->run.error) : status;
+}
+
+/* Whatever can fail comes before the commit, what is printed included, and what others do. */
+static enum tri_status write_output(struct program *p)
+{
+    if (p->launch.rank > 0)
+        return agree(p, TRI_OK);
+    return run_commit(&p->run, agree(p, write_all(p)));
+}
+
+/* From the named file to the mesh in its files. Whoever fails agrees, at whatever agreement the others are. */
+static int make_mesh(struct program *p)
+{
+    struct run *run = &p->run;
+    enum tri_status status = run_begin(run);
+    status = status ? status : read_input(p);
+    if (!status && p->options.dry_run)
+        status = run_estimate(run);
+    else if (!status)
+        status = run_make(run);
+    if (!status && !p->options.dry_run)
+        status = write_output(p);
+    return run_end(run, status ? agree(p, status) : TRI_OK);
 }
 
 /* --- arguments */
@@ -471,42 +523,43 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
     return TRI_OK;
 }
 
-static struct run_hooks hooks_of(struct program *p)
+/* executor: of these threads, as long as the run lives. */
+static struct run_settings settings_of(const struct program *p, int threads, const struct tri_executor *executor)
 {
     const struct par_carrier *carrier = p->launch.carrier;
     const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
-    return (struct run_hooks){.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
-                              .write = write_further,
-                              .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0,
-                              .written_elsewhere = p->launch.rank > 0, .n_ranks = carrier ? carrier->n_ranks : 0,
-                              .share = carrier ? share : NULL, .agree = carrier ? agree : NULL,
-                              .threads = p->threads, .cell_triangles = par_triangles_in_cell,
-                              .options = &p->options, .user = p};
+    return (struct run_settings){.options = &p->options, .executor = executor, .threads = threads,
+                                 .cell_triangles = par_triangles_in_cell, .n_ranks = carrier ? carrier->n_ranks : 0,
+                                 .written_elsewhere = p->launch.rank > 0,
+                                 .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0};
 }
 
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
-    p->threads = par_threads(long_options_threads(&p->options), true);
-    p->quiet = arguments->switches.quiet;
-    p->progress = progress_start(PROGRAM, p->options.progress, p->quiet);
-    const struct tri_executor executor = par_executor(&p->threads);
+    struct tri_error own = {0};
+    int threads = par_threads(long_options_threads(&p->options), true);
+    const struct tri_executor executor = par_executor(&threads);
+    p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     p->options.scratch = p->scratch = scratch_of(&p->options, arguments);
-    struct run_hooks hooks = hooks_of(p);
-    hooks.executor = &executor;
     if (!p->scratch) {
         tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
-    if (arguments->file)
+    if (arguments->file) {
         progress_stage(&p->progress, "reading and triangulating");
-    int code = run_arguments(arguments, &hooks);
-    if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
-             "  --numbering curve|blocks\n"
-             "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
-             "  --help");
-    return code;
+        p->run = run_new(PROGRAM, arguments, &own);
+        p->run.settings = settings_of(p, threads, &executor);
+        p->run.options.refine_call = refine;
+        p->run.options.refine_user = p;
+        return make_mesh(p);
+    }
+    help_usage(PROGRAM);
+    puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
+         "  --numbering curve|blocks\n"
+         "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
+         "  --help");
+    return EXIT_SUCCESS;
 }
 
 static void free_program(struct program *p)

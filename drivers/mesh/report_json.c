@@ -33,11 +33,11 @@ static json_t *appended(json_t *list, json_t *item)
 /* Quality here ends with the merged mesh; numbering comes after it. */
 static json_t *stages_of(const struct run *run, const struct par_report *schedule)
 {
-    const double *s = run->seconds, number = schedule ? schedule->seconds_number : 0;
+    const double *s = run->time.stage, number = schedule ? schedule->seconds_number : 0;
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay",
                      real(s[RUN_DELAUNAY]), "segments", real(s[RUN_SEGMENTS]), "holes", real(s[RUN_HOLES]), "quality",
                      real(s[RUN_QUALITY] - number), "number", real(number), "write", real(s[RUN_WRITE]), "total",
-                     real(run->total_seconds));
+                     real(run->time.total));
 }
 
 static json_t *command_of(const struct arguments *arguments)
@@ -134,7 +134,7 @@ static struct tri_shapes shapes_of(const struct run *run)
     struct tri_shapes shapes = {.smallest_area = NAN, .largest_area = NAN, .total_area = NAN, .shortest_edge = NAN,
                                 .longest_edge = NAN, .smallest_angle = NAN, .largest_angle = NAN};
     if (!run->plan.swept)
-        tri_measure_shapes(&shapes, &run->mesh, run->hooks->executor);
+        tri_measure_shapes(&shapes, &run->mesh, run->settings.executor);
     return shapes;
 }
 
@@ -196,16 +196,15 @@ static json_t *ranks_of(const struct rank_report *report)
 
 /* --- all of it */
 
-static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
-                         int threads)
+static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks)
 {
     int64_t memory = tri_memory_peak(); /* before the report needs some */
     const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
-    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program,
+    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "program", run->console.program,
                      "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
-                     "threads", threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
+                     "threads", run->settings.threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
                      stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
                      schedule ? schedule_of(schedule) : json_null());
 }
@@ -219,22 +218,21 @@ enum tri_status report_check(struct tri_error *error)
 static enum tri_status write_text(const struct run *run, const char *text)
 {
     struct tri_output *output;
-    if (long_options_report_is_printed(run->hooks->options)) {
+    if (long_options_report_is_printed(run->settings.options)) {
         puts(text);
         return TRI_OK; /* the caller looks whether all that was printed is out */
     }
-    enum tri_status status = interrupt_open(run->outputs, run->hooks->options->report, &output, run->error);
+    enum tri_status status = interrupt_open(run->outputs, run->settings.options->report, &output, run->error);
     status = status ? status : tri_output_write(output, text, strlen(text), run->error);
     return status ? status : tri_output_write(output, "\n", 1, run->error);
 }
 
-enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
-                             int threads)
+enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks)
 {
-    json_t *report = report_of(run, schedule, ranks, threads);
+    json_t *report = report_of(run, schedule, ranks);
     char *text = report ? json_dumps(report, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     enum tri_status status = text ? write_text(run, text)
-                                  : tri_fail(run->error, TRI_NO_MEMORY, run->hooks->options->report, 0,
+                                  : tri_fail(run->error, TRI_NO_MEMORY, run->settings.options->report, 0,
                                              "out of memory for the report");
     free(text);
     json_decref(report);

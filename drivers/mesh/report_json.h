@@ -12,7 +12,6 @@ enum tri_status report_check(struct tri_error *error);
 
 /* Writes it into run->outputs. schedule: NULL, or what refined the mesh; of several ranks that of the first. Takes a
  * pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
-                             int threads);
+enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks);
 
 #endif

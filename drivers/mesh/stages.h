@@ -1,8 +1,7 @@
-/* A run of a mesh generator from the command line, from files to files: what `triangle` and its parallel sister
- * share.
- *
- * The stages and their order are fixed; how the mesh is refined and who runs independent pieces of work is plugged
- * in. */
+/* A run of a mesh generator from the command line, from files to files: the stages that `triangle` and its parallel
+ * sister share. Each program calls them in the order below, with its own steps between: begin, read, then estimate for
+ * a dry run, or make and, after write_begin, write_mesh and tell; then commit. Whatever happens, end comes last.
+ * A stage that fails returns its status, with run->error; a program calls no stage after that but commit and end. */
 #ifndef DRIVERS_MESH_STAGES_H
 #define DRIVERS_MESH_STAGES_H
 
@@ -27,6 +26,27 @@ enum run_stage {
     RUN_STAGES
 };
 
+/* What the program says of the machine and of its tasks; all 0: one core, no schedule. */
+struct run_settings {
+    const struct long_options *options;  /* what the command line says beyond the switches of Triangle; maybe all 0 */
+    const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
+    int threads;            /* of the schedule that refines; 0: there is no schedule, tri_refine refines */
+    /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
+    double (*cell_triangles)(double triangles);
+    int n_ranks;            /* that share the mesh; 0: it is all here */
+    bool written_elsewhere; /* another rank reads and writes all files */
+    bool always_sweep;      /* on ranks, and for tests: also what would fit in memory */
+};
+
+struct run_input {
+    struct tri_names names; /* of the files; empty before run_begin */
+    struct tri_pslg pslg;
+    struct tri_elements elements; /* -r: the triangles; else none */
+    int32_t base;           /* 0 or 1: the first number in the files */
+    bool points_in_poly;    /* there is no .node */
+    int64_t warnings;       /* about lines of the files */
+};
+
 /* How the mesh is made: see drivers/mesh/plan.h. */
 struct run_plan {
     bool swept;    /* files are written meanwhile, and the mesh goes; else it stays a mesh .. */
@@ -35,71 +55,76 @@ struct run_plan {
     double triangles; /* that are expected */
 };
 
+/* In seconds. */
+struct run_time {
+    double begin, mark; /* by tri_seconds: when the run and the stage began */
+    double stage[RUN_STAGES]; /* spent in each; 0: not yet */
+    double total;       /* from the begin to the statistics; 0: not yet */
+};
+
 /* All about a run, as far as it got. */
 struct run {
-    const struct run_hooks *hooks;
+    struct run_settings settings;
     const struct arguments *arguments;
-    struct tri_options options;
-    struct tri_pslg pslg;
-    struct tri_elements elements; /* -r: the triangles */
-    bool *is_edge;                /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
-    int32_t base;                 /* 0 or 1 */
-    bool points_in_poly;
-    struct run_plan plan; /* once refinement begins */
+    struct tri_options options;     /* by the switches; refine_call and refine_user are the program's, which refines
+                                       between run_refine_begin and run_refine_end */
+    struct run_input input;
+    struct run_plan plan;           /* all 0 until refinement begins */
     struct tri_mesh mesh;
+    bool built;                     /* there is a mesh: what stops now leaves one that is valid */
+    bool *is_edge;                  /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
+    int32_t *twin;                  /* [pslg.n_points] first one of the points at a place, where the mesh will be gone;
+                                       else NULL */
+    struct orphans unused;          /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
     struct tri_report report;
-    struct tri_counts counts;
-    int64_t remain[TRI_EXCUSES]; /* triangles that stay below the bounds, */
-    bool remain_known;           /* where they have been counted */
-    double seconds[RUN_STAGES];
-    double total_seconds;
-    const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
+    struct tri_counts counts;       /* of the finished mesh; whoever sweeps fills them, else run_tell */
+    int64_t remain[TRI_EXCUSES];    /* triangles that stay below the bounds, by reason */
+    bool remain_known;              /* they have been counted */
+    struct run_time time;
+    const char *stopped;            /* by what, "SIGTERM", and this is the mesh so far; NULL: by nothing */
     struct console console;
     struct tri_output_set *outputs; /* the guarded set (drivers/interrupt.h) of its files */
     struct tri_error *error;
-
-    /* Of the stages alone: */
-    struct tri_names names; /* of what is read */
-    int64_t input_warnings;
-    double begin, mark; /* when the run and the stage began */
-    int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
-    struct orphans unused; /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
-    bool built;         /* there is a mesh: what stops now leaves one that is valid */
 };
 
-struct run_hooks {
-    const char *program;
-    const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as run->plan says; NULL: tri_refine does. Where run->plan.swept, also writes its files into
-     * run->outputs, and counts it: run->counts. The mesh is gone then. */
-    enum tri_status (*refine)(void *user, struct run *run, struct tri_mesh *mesh, const struct tri_quality *quality,
-                              struct tri_refine_report *report);
-    /* Beside a mesh that is not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
-     * files. NULL: nothing moves. */
-    enum tri_status (*make_room)(void *user, struct run *run, double bytes);
-    /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
-    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_quality *quality);
-    bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
-    bool written_elsewhere;         /* another rank reads and writes all files */
-    int n_ranks;                    /* that share the mesh; 0: it is all here */
-    /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
-     * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
-     * on all, with the same error. NULL: there is one. */
-    enum tri_status (*share)(void *user, struct run *run, enum tri_status status);
-    enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
-    int threads;                    /* to refine with, for estimates */
-    /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
-    double (*cell_triangles)(double triangles);
-    const struct long_options *options; /* what the command line says beyond the switches of Triangle; maybe all 0 */
-    /* Writes what the options want beside the mesh into run->outputs; NULL: nothing. */
-    enum tri_status (*write)(void *user, struct run *run);
-    void *user;
-};
+/* Arguments after arguments_end, with the name of an input. The settings, and who refines, are still to be set. All
+ * pointers are borrowed. */
+struct run run_new(const char *program, const struct arguments *arguments, struct tri_error *error);
 
-/* Carries out what the arguments say, after arguments_end. Returns the exit code: 0; 1 after an error, which has been
- * reported; then no file has been touched; after a stop that of interrupt_code: then no file has been touched either,
- * unless partial meshes are wanted and it says where one is. All files appear together, as the last thing that can
- * fail. */
-int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks);
+/* Starts the clock and the watch for signals, and checks the switches. */
+enum tri_status run_begin(struct run *run);
+
+/* Unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
+enum tri_status run_read(struct run *run);
+
+/* A dry run: says what the true one would need, and where it would be refused. */
+enum tri_status run_estimate(struct run *run);
+
+/* Makes the mesh, refined by options.refine_call. */
+enum tri_status run_make(struct run *run);
+
+/* For a refine_call: before it refines as run->plan says, which begin finds out. Where run->plan.swept, it also writes
+ * the files into run->outputs, and counts: run->counts; the mesh is gone then. After a failure of begin it returns that
+ * status; else what end makes of its own. */
+enum tri_status run_refine_begin(struct run *run);
+enum tri_status run_refine_end(struct run *run, enum tri_status status);
+
+/* Begins to write. Of a mesh that was swept all is written, and write_mesh does nothing. */
+void run_write_begin(struct run *run);
+
+/* Bytes of memory that write_mesh takes beside the mesh. */
+double run_write_bytes(const struct run *run);
+enum tri_status run_write_mesh(struct run *run);
+
+/* Says the statistics. */
+enum tri_status run_tell(struct run *run);
+
+/* After run_write_begin. All files appear together, as the last thing that can fail; after a failure, status, none. */
+enum tri_status run_commit(struct run *run, enum tri_status status);
+
+/* Says how the run failed or was stopped, and frees all. Returns the exit code: 0; 1 after an error: then no file has
+ * been touched; after a stop that of interrupt_code: then no file has been touched either, unless partial meshes are
+ * wanted and it says where one is. */
+int run_end(struct run *run, enum tri_status status);
 
 #endif

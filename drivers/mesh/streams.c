@@ -36,7 +36,7 @@ static enum tri_status open_stream(struct stream *s, const char *name, const str
 
 enum tri_status streams_open(struct streams *streams, const struct run *run)
 {
-    const struct long_options *o = run->hooks->options;
+    const struct long_options *o = run->settings.options;
     enum tri_status status = TRI_OK;
     *streams = (struct streams){.run = run};
     for (int i = 0; !status && i < o->n_streams; i++)
@@ -61,8 +61,8 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
 {
     const struct arguments *a = run->arguments;
     struct tri_text_options *o = &streams->text_options;
-    *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
-                                   .argc = a->argc, .argv = a->argv};
+    *o = (struct tri_text_options){.base = run->input.base, .markers = !a->switches.no_markers,
+                                   .figure = &run->input.pslg, .argc = a->argc, .argv = a->argv};
     enum tri_status status = open_text(&o->node, run, ".node");
     status = status ? status : open_text(&o->ele, run, ".ele");
     status = status ? status : open_text(&o->poly, run, ".poly");
@@ -73,7 +73,7 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
 
 enum tri_status streams_open_exports(struct streams *streams, const struct run *run)
 {
-    const struct long_options *o = run->hooks->options;
+    const struct long_options *o = run->settings.options;
     enum tri_status status = TRI_OK;
     for (int i = 0; !status && i < o->n_exports; i++) {
         streams->export[i] = export_of(o->exports[i], o->n_parts);
@@ -135,7 +135,7 @@ static enum tri_status write_exports(struct streams *streams, struct tri_error *
     const struct run *run = streams->run;
     enum tri_status status = tri_tile_store_grid(streams->store, !run->arguments->switches.no_markers, &grid, error);
     for (int i = 0; !status && i < streams->n_exports; i++)
-        status = export_write(&streams->export[i], &grid, run->hooks->executor, error);
+        status = export_write(&streams->export[i], &grid, run->settings.executor, error);
     return status;
 }
 

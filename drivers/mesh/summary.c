@@ -14,9 +14,9 @@
 static void warn_of_duplicates(const struct run *run)
 {
     const int32_t *twin = run->plan.swept ? run->twin : run->mesh.twin;
-    const double *points = run->pslg.points;
+    const double *points = run->input.pslg.points;
     int64_t n = 0;
-    for (int32_t v = 0; twin && v < run->pslg.n_points; v++)
+    for (int32_t v = 0; twin && v < run->input.pslg.n_points; v++)
         if (twin[v] != v && n++ < CONSOLE_SERIES_LINES)
             console_warn(&run->console, "duplicate vertex at (%.12g, %.12g) ignored.\n", points[2 * (size_t)v],
                          points[2 * (size_t)v + 1]);
@@ -119,7 +119,7 @@ void summary_bounds(struct run *run)
     if (!console->quiet && !run->plan.swept) { /* a pass over all triangles */
         if (quality->conforming)
             say_encroached(run);
-        tri_count_bad(&run->mesh, quality, &run->report.quality, run->hooks->executor, run->remain);
+        tri_count_bad(&run->mesh, quality, &run->report.quality, run->settings.executor, run->remain);
         run->remain_known = true;
     }
     const int64_t n = run->remain_known ? sum_of(run->remain) : -1;
@@ -137,9 +137,9 @@ void summary_bounds(struct run *run)
 static void warn_of_unused(const struct run *run)
 {
     const int64_t n = run->unused.n;
-    if (n > 0 && run->counts.triangles > 0 && !run->arguments->switches.jettison && !run->elements.extra)
+    if (n > 0 && run->counts.triangles > 0 && !run->arguments->switches.jettison && !run->input.elements.extra)
         console_warn(&run->console, "%" PRId64 " point%s in no triangle: %s.\n", n, n == 1 ? " is" : "s are",
-                     long_options_exports_alone(run->hooks->options) ? "left out" : "-j leaves them out");
+                     long_options_exports_alone(run->settings.options) ? "left out" : "-j leaves them out");
 }
 
 void summary_counts(const struct run *run)
@@ -148,13 +148,13 @@ void summary_counts(const struct run *run)
     const struct tri_switches *switches = &run->arguments->switches;
     const struct tri_counts *counts = &run->counts;
     warn_of_unused(run);
-    console_say(console, "\nStatistics:\n\n  Input vertices: %" PRId32 "\n", run->pslg.n_points);
+    console_say(console, "\nStatistics:\n\n  Input vertices: %" PRId32 "\n", run->input.pslg.n_points);
     if (switches->mesh)
-        console_say(console, "  Input triangles: %" PRId32 "\n", run->elements.n);
+        console_say(console, "  Input triangles: %" PRId32 "\n", run->input.elements.n);
     if (switches->segments)
-        console_say(console, "  Input segments: %" PRId32 "\n", run->pslg.n_segments);
+        console_say(console, "  Input segments: %" PRId32 "\n", run->input.pslg.n_segments);
     if (switches->segments && !switches->mesh)
-        console_say(console, "  Input holes: %" PRId32 "\n", run->pslg.n_holes);
+        console_say(console, "  Input holes: %" PRId32 "\n", run->input.pslg.n_holes);
     int64_t nodes_amid = switches->second_order ? counts->edges : 0;
     console_say(console, "\n  Mesh vertices: %" PRId64 "\n", counts->vertices + nodes_amid);
     console_say(console, "  Mesh triangles: %" PRId64 "\n", counts->triangles);
@@ -208,7 +208,7 @@ void summary_shapes(const struct run *run)
 {
     const struct tri_mesh *mesh = &run->mesh;
     struct tri_shapes shapes;
-    tri_measure_shapes(&shapes, mesh, run->hooks->executor);
+    tri_measure_shapes(&shapes, mesh, run->settings.executor);
     printf("Mesh quality statistics:\n\n");
     printf("  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area, shapes.largest_area);
     printf("  Shortest edge: %16.5g   |  Longest edge: %16.5g\n", shapes.shortest_edge, shapes.longest_edge);
@@ -296,11 +296,11 @@ enum tri_status self_check(const struct run *run, double memory)
     const bool conforming = run->arguments->switches.conforming;
     struct tri_check_report report;
     const struct tri_check_options options = {
-        .max_bad = INT64_MAX, .ignore_lost = true, .base = run->base,
+        .max_bad = INT64_MAX, .ignore_lost = true, .base = run->input.base,
         .delaunay = conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED};
     struct tri_check_source source = source_of(&run->mesh);
     source.memory = memory > 0 ? fmax(memory, least_bytes(&source)) : 0;
-    source.scratch = run->hooks->options->scratch;
+    source.scratch = run->settings.options->scratch;
     console_say(&run->console, "Checking the mesh.\n");
     enum tri_status status = tri_check_from(&source, NULL, &options, &report, run->error);
     if (!status)

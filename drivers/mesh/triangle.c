@@ -7,6 +7,7 @@
 #include "drivers/mesh/arguments.h"
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/stages.h"
+#include "drivers/mesh/summary.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 
@@ -30,10 +31,55 @@ static int take_long(const char *word)
     return console_close(&console) ? code : EXIT_FAILURE;
 }
 
-int main(int argc, char **argv)
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
+{
+    struct run *run = user;
+    enum tri_status status = run_refine_begin(run);
+    return status ? status : run_refine_end(run, tri_refine(mesh, quality, report, error));
+}
+
+static enum tri_status write_output(struct run *run)
+{
+    run_write_begin(run);
+    enum tri_status status = run_write_mesh(run);
+    status = status ? status : run_tell(run);
+    if (!status && run->arguments->switches.check)
+        status = self_check(run, 0);
+    status = status ? status : console_flush(run->error);
+    return run_commit(run, status);
+}
+
+/* From the named file to the mesh in its files. */
+static int make_mesh(const struct arguments *arguments)
 {
     static const struct long_options none;
-    const struct run_hooks hooks = {.program = PROGRAM, .options = &none};
+    struct tri_error error = {0};
+    struct run run = run_new(PROGRAM, arguments, &error);
+    run.settings.options = &none;
+    run.options.refine_call = refine;
+    run.options.refine_user = &run;
+    enum tri_status status = run_begin(&run);
+    status = status ? status : run_read(&run);
+    status = status ? status : run_make(&run);
+    status = status ? status : write_output(&run);
+    return run_end(&run, status);
+}
+
+static int carry_out(const struct arguments *arguments)
+{
+    const struct console console = {.program = PROGRAM};
+    if (arguments->file && !arguments->switches.help)
+        return make_mesh(arguments);
+    if (arguments->switches.help)
+        help_full(PROGRAM, "on one core", NULL);
+    else
+        help_usage(PROGRAM);
+    return console_close(&console) ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
     struct arguments arguments = arguments_begin(argc, argv);
     struct tri_error error = {0};
     int code = EXIT_FAILURE;
@@ -46,7 +92,7 @@ int main(int argc, char **argv)
     if (arguments_end(&arguments, &error))
         console_error(&(struct console){.program = PROGRAM}, &error);
     else
-        code = run_arguments(&arguments, &hooks);
+        code = carry_out(&arguments);
     arguments_free(&arguments);
     return code;
 }
