@@ -230,8 +230,6 @@ static enum tri_status sweep(struct program *p)
     const struct tri_sink streams = streams_sink(&p->streams);
     enum tri_status status = tri_count_mesh(&before, &run->mesh, NULL, run->error);
     status = status ? status : streams_open(&p->streams, run);
-    status = status ? status : streams_open_text(&p->streams, run);
-    status = status ? status : streams_open_exports(&p->streams, run);
     if (p->launch.carrier)
         status = refine_on_ranks(p, &streams, status);
     else if (!status)
@@ -254,14 +252,19 @@ static enum tri_status report_ranks(struct program *p, enum tri_status status)
     return shared ? shared : status;
 }
 
-/* As the plan says. */
-static enum tri_status refine_as_planned(struct program *p)
+/* As the plan says. All but user and report is the run's. */
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
+    struct program *p = user;
     struct run *run = &p->run;
-    enum tri_status status = TRI_OK;
+    enum tri_status status = run_refine_begin(run);
+    (void)quality, (void)error;
+    if (status)
+        return status;
     if (run->plan.swept) {
         status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p);
-        tri_mesh_free(&run->mesh); /* what is left of it is no mesh */
+        tri_mesh_free(mesh); /* what is left of it is no mesh */
     } else if (p->launch.rank == 0) { /* makes the whole, and keeps its checkpoints as one task does */
         struct par_options options = options_of(p);
         options.park = run->plan.filed ? &p->park : NULL;
@@ -270,20 +273,8 @@ static enum tri_status refine_as_planned(struct program *p)
         if (!status)
             progress_stage(&p->progress, "writing");
     }
-    return p->launch.carrier ? report_ranks(p, status) : status;
-}
-
-static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
-                              struct tri_refine_report *report, struct tri_error *error)
-{
-    struct program *p = user;
-    (void)mesh, (void)quality, (void)error; /* those of the run */
-    enum tri_status status = run_refine_begin(&p->run);
-    if (status)
-        return status;
-    status = refine_as_planned(p);
     *report = p->schedule.total;
-    return run_refine_end(&p->run, status);
+    return run_refine_end(run, p->launch.carrier ? report_ranks(p, status) : status);
 }
 
 /* --- output */
@@ -432,10 +423,7 @@ static int make_mesh(struct program *p)
     struct run *run = &p->run;
     enum tri_status status = run_begin(run);
     status = status ? status : read_input(p);
-    if (!status && p->options.dry_run)
-        status = run_estimate(run);
-    else if (!status)
-        status = run_make(run);
+    status = status ? status : run_make(run);
     if (!status && !p->options.dry_run)
         status = write_output(p);
     return run_end(run, status ? agree(p, status) : TRI_OK);

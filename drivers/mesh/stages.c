@@ -250,8 +250,9 @@ static void begin_outputs(const struct run *r)
 }
 
 /* What will be told of the input, though its vertices will be gone then. */
-static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
+static enum tri_status keep_twins(struct run *r)
 {
+    const struct tri_mesh *mesh = &r->mesh;
     const int32_t *origin = mesh->origin, n = mesh->n_input;
     if (!mesh->twin)
         return TRI_OK;
@@ -264,8 +265,9 @@ static enum tri_status keep_twins(struct run *r, const struct tri_mesh *mesh)
 }
 
 /* Finds the vertices of no triangle, by the caller's numbers, while the mesh is small. No number of it is free. */
-static enum tri_status find_unused(struct run *r, const struct tri_mesh *mesh)
+static enum tri_status find_unused(struct run *r)
 {
+    const struct tri_mesh *mesh = &r->mesh;
     const int32_t n = mesh->n_vertices;
     int32_t *kept = calloc((size_t)n + 2, sizeof *kept);
     if (!kept)
@@ -292,9 +294,9 @@ enum tri_status run_refine_begin(struct run *r)
     interrupt_reached(r->mesh.n_triangles, " triangles");
     if (r->plan.swept && !r->settings.written_elsewhere)
         begin_outputs(r);
-    status = find_unused(r, &r->mesh);
+    status = find_unused(r);
     if (!status && r->plan.swept)
-        status = keep_twins(r, &r->mesh);
+        status = keep_twins(r);
     return status ? run_refine_end(r, status) : TRI_OK;
 }
 
@@ -491,8 +493,24 @@ enum tri_status run_commit(struct run *r, enum tri_status status)
 
 /* --- all together */
 
+/* Of the mesh as it is before. */
+static enum tri_status make_dry(struct run *r)
+{
+    enum tri_status status = generate(r);
+    if (status)
+        return status;
+    summary_notes(r);
+    const struct estimate estimate = estimate_make(r, true);
+    if (r->options.refine)
+        status = plan_make(&r->plan, r, &estimate);
+    plan_print(r, &estimate);
+    return status;
+}
+
 enum tri_status run_make(struct run *r)
 {
+    if (r->settings.options->dry_run)
+        return make_dry(r);
     const struct file_names read = files_read(r);
     enum tri_status status = r->settings.written_elsewhere ? TRI_OK : mesh_files_check(r, &read);
     status = status ? status : keep_partial(r, generate(r));
@@ -502,19 +520,6 @@ enum tri_status run_make(struct run *r)
     tell_of_quality(r);
     summary_input(r); /* when the vertices have the numbers of the input again */
     return TRI_OK;
-}
-
-enum tri_status run_estimate(struct run *r)
-{
-    enum tri_status status = generate(r);
-    if (status)
-        return status;
-    summary_notes(r);
-    struct estimate estimate = estimate_make(r, true);
-    if (r->options.refine)
-        status = plan_make(&r->plan, r, &estimate);
-    plan_print(r, &estimate);
-    return status;
 }
 
 /* Seconds that ending may take. A batch system kills 30 seconds after it has asked. */

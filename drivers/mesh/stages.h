@@ -1,6 +1,6 @@
 /* A run of a mesh generator from the command line, from files to files: the stages that `triangle` and its parallel
- * sister share. Each program calls them in the order below, with its own steps between: begin, read, then estimate for
- * a dry run, or make and, after write_begin, write_mesh and tell; then commit. Whatever happens, end comes last.
+ * sister share. Each program calls them in the order below, with its own steps between: begin, read and make,
+ * then, after write_begin, write_mesh, tell and commit, unless the run is dry. Whatever happens, end comes last.
  * A stage that fails returns its status, with run->error; a program calls no stage after that but commit and end. */
 #ifndef DRIVERS_MESH_STAGES_H
 #define DRIVERS_MESH_STAGES_H
@@ -97,10 +97,8 @@ enum tri_status run_begin(struct run *run);
 /* Unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
 enum tri_status run_read(struct run *run);
 
-/* A dry run: says what the true one would need, and where it would be refused. */
-enum tri_status run_estimate(struct run *run);
-
-/* Makes the mesh, refined by options.refine_call. */
+/* Makes the mesh, refined by options.refine_call. A dry run leaves it as it is before, and ends here: it says what the
+ * true one would need, and where it would be refused. */
 enum tri_status run_make(struct run *run);
 
 /* For a refine_call: before it refines as run->plan says, which begin finds out. Where run->plan.swept, it also writes

@@ -34,16 +34,6 @@ static enum tri_status open_stream(struct stream *s, const char *name, const str
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-enum tri_status streams_open(struct streams *streams, const struct run *run)
-{
-    const struct long_options *o = run->settings.options;
-    enum tri_status status = TRI_OK;
-    *streams = (struct streams){.run = run};
-    for (int i = 0; !status && i < o->n_streams; i++)
-        status = open_stream(&streams->stream[streams->n++], o->streams[i], run, &streams->sink[streams->n_sinks++]);
-    return status;
-}
-
 /* One of Triangle's files, if it is wanted. */
 static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix)
 {
@@ -57,7 +47,7 @@ static enum tri_status open_text(struct tri_output **output, const struct run *r
     return status;
 }
 
-enum tri_status streams_open_text(struct streams *streams, const struct run *run)
+static enum tri_status open_texts(struct streams *streams, const struct run *run)
 {
     const struct arguments *a = run->arguments;
     struct tri_text_options *o = &streams->text_options;
@@ -71,7 +61,7 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
     return tri_text_stream_new(&streams->text, o, &streams->sink[streams->n_sinks++], run->error);
 }
 
-enum tri_status streams_open_exports(struct streams *streams, const struct run *run)
+static enum tri_status open_exports(struct streams *streams, const struct run *run)
 {
     const struct long_options *o = run->settings.options;
     enum tri_status status = TRI_OK;
@@ -83,6 +73,19 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
     if (status || o->n_exports == 0)
         return status;
     return tri_tile_store_new(&streams->store, o->scratch, &streams->sink[streams->n_sinks++], run->error);
+}
+
+enum tri_status streams_open(struct streams *streams, const struct run *run)
+{
+    const struct long_options *o = run->settings.options;
+    enum tri_status status = TRI_OK;
+    *streams = (struct streams){.run = run};
+    for (int i = 0; !status && i < o->n_streams; i++)
+        status = open_stream(&streams->stream[streams->n++], o->streams[i], run, &streams->sink[streams->n_sinks++]);
+    if (status || !run->plan.swept)
+        return status;
+    status = open_texts(streams, run);
+    return status ? status : open_exports(streams, run);
 }
 
 void streams_close(struct streams *streams)

@@ -36,15 +36,10 @@ struct streams {
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
 static inline char *stream_xdmf(const char *name) { return tri_name(name, tri_name_h5(name), ".xdmf"); }
 
-/* Opens the HDF5 files of the run in run->outputs. To be closed in any case, before the set is committed. */
+/* Opens the HDF5 files of the run in run->outputs; where run->plan.swept, also those of Triangle's files that the run
+ * asks for, and those in formats that are written when all of the mesh is there, which until then lies in files in the
+ * scratch folder. To be closed in any case, before the set is committed. */
 enum tri_status streams_open(struct streams *streams, const struct run *run);
-
-/* And those of Triangle's files that the run asks for. */
-enum tri_status streams_open_text(struct streams *streams, const struct run *run);
-
-/* And those in formats that are written when all of the mesh is there; until then it lies in files in the scratch
- * folder. */
-enum tri_status streams_open_exports(struct streams *streams, const struct run *run);
 void streams_close(struct streams *streams);
 
 /* Hands everything to all of them. */
