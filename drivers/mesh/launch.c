@@ -7,7 +7,6 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/start.h"
-#include "triangle/base/system.h"
 
 static void fall_silent(void)
 {

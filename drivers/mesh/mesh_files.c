@@ -8,8 +8,6 @@
 #include "drivers/interrupt.h"
 #include "drivers/mesh/stages.h"
 #include "drivers/mesh/streams.h"
-#include "triangle/mesh/grid.h"
-#include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 
 enum plan { NOT_ASKED, SUPPRESSED, WRITTEN };

@@ -41,19 +41,12 @@ static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
 /* --- triangles */
 
-/* What area bounds alone ask for, and what there is already. */
-static double triangles_by_area(const struct run *run, double demand)
-{
-    return AREA_FACTOR * demand + run->mesh.n_triangles;
-}
-
 static double triangles_of(const struct run *run, double demand)
 {
     const struct tri_quality *quality = &run->options.quality;
-    double now = run->mesh.n_triangles, sure;
+    double now = run->mesh.n_triangles, by_area = AREA_FACTOR * demand + now, triangles = by_area, sure;
     if (!run->options.refine)
         return now;
-    double by_area = triangles_by_area(run, demand), triangles = by_area;
     if (run->settings.threads > 0)
         triangles = tri_estimate(&run->mesh, quality, run->settings.executor, &sure);
     triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */

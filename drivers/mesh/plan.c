@@ -55,18 +55,13 @@ double plan_memory_left(const struct run *run)
 
 /* --- the input */
 
-static double size_of(const char *name)
-{
-    struct tri_file_facts facts;
-    return tri_path_look(name, &facts) ? (double)facts.size : 0;
-}
-
 /* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
 enum tri_status plan_check_files(const struct run *run, const struct file_names *files)
 {
+    struct tri_file_facts facts;
     double size = 0;
     for (int i = 0; i < files->n; i++)
-        size += size_of(files->name[i]);
+        size += tri_path_look(files->name[i], &facts) ? (double)facts.size : 0;
     if (size < WORTH_A_LOOK && !is_strict(run))
         return TRI_OK;
     const double left = plan_memory_left(run);

@@ -69,7 +69,7 @@ static double for_tests(const char *name)
 /* A rank knows of its own part. */
 static void tell_reached(const struct program *p, int64_t triangles)
 {
-    const bool in_parts = p->launch.carrier && p->launch.carrier->n_ranks > 1;
+    const bool in_parts = p->run.settings.n_ranks > 1;
     interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
 }
 
@@ -558,12 +558,6 @@ static void free_program(struct program *p)
     free(p->ranks.number);
 }
 
-/* One task goes on where several were at work. */
-static bool goes_on_alone(const struct program *p)
-{
-    return !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
-}
-
 /* Once the words have been taken. */
 static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
@@ -581,7 +575,8 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
-    const bool alone = goes_on_alone(p);
+    /* One task goes on where several were at work. */
+    const bool alone = !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
     int64_t room[PAR_ROOM];
     struct par_carrier one = par_carrier_alone(room);
     p->launch.carrier = alone ? &one : p->launch.carrier;

@@ -365,13 +365,11 @@ static void tell_of_quality(struct run *r)
 static int64_t count_bad(const struct run *r)
 {
     enum { SOON_COUNTED = 1 << 22 };
-    int64_t count[TRI_EXCUSES], sum = 0;
+    int64_t count[TRI_EXCUSES];
     if (!r->options.refine || r->plan.swept || r->mesh.n_triangles > SOON_COUNTED)
         return -1;
     tri_count_bad(&r->mesh, &r->options.quality, &r->report.quality, r->settings.executor, count);
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        sum += count[k];
-    return sum;
+    return summary_sum(count);
 }
 
 /* What there is of the mesh, as far as this process knows: on several ranks each has a part. */
@@ -421,19 +419,15 @@ static enum tri_status keep_partial(struct run *r, enum tri_status status)
 
 /* --- output */
 
-/* Lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and 12 a triangle for the
- * nodes amid them; 8 a vertex where those without triangles are left out. */
-static double list_bytes(const struct run *r)
+/* Rows on their way, and lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and
+ * 12 a triangle for the nodes amid them; 8 a vertex where those without triangles are left out. */
+double run_write_bytes(const struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
     const bool leaves_out = mesh_files_grid(r, r->settings.options->n_exports > 0).jettison;
     const bool edges = s->edges || s->voronoi || s->off;
-    return ((s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0)) * (double)r->mesh.n_triangles;
-}
-
-double run_write_bytes(const struct run *r)
-{
-    return fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)r->mesh.n_triangles) + list_bytes(r);
+    const double n = r->mesh.n_triangles, lists = (s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0);
+    return fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * n) + lists * n;
 }
 
 void run_write_begin(struct run *r)

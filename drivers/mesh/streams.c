@@ -1,10 +1,8 @@
 #include "drivers/mesh/streams.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "drivers/interrupt.h"
-#include "triangle/text/names.h"
 
 static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 

@@ -79,7 +79,7 @@ static const char *reason_of(const struct run *run, enum tri_excuse excuse)
     }
 }
 
-static int64_t sum_of(const int64_t count[TRI_EXCUSES])
+int64_t summary_sum(const int64_t count[TRI_EXCUSES])
 {
     int64_t sum = 0;
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -105,7 +105,7 @@ static void say_encroached(const struct run *run)
 {
     int64_t count[TRI_EXCUSES];
     tri_count_encroached(&run->mesh, &run->options.quality, &run->report.quality, count);
-    const int64_t n = sum_of(count);
+    const int64_t n = summary_sum(count);
     if (n > 0)
         console_say(&run->console, "%" PRId64 " subsegment%s a vertex in the diametral circle:", n,
                     n == 1 ? " keeps" : "s keep");
@@ -122,7 +122,7 @@ void summary_bounds(struct run *run)
         tri_count_bad(&run->mesh, quality, &run->report.quality, run->settings.executor, run->remain);
         run->remain_known = true;
     }
-    const int64_t n = run->remain_known ? sum_of(run->remain) : -1;
+    const int64_t n = run->remain_known ? summary_sum(run->remain) : -1;
     if (n == 0)
         console_say(console, "All triangles keep the bounds%s.\n", quality->conforming ? " on angles and sizes" : "");
     else if (n > 0)

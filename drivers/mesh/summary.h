@@ -15,6 +15,9 @@ void summary_notes(const struct run *run);
  * read the line. */
 void summary_bounds(struct run *run);
 
+/* Triangles, of all reasons. */
+int64_t summary_sum(const int64_t count[TRI_EXCUSES]);
+
 /* The block "Statistics:". */
 void summary_counts(const struct run *run);
 
