@@ -14,6 +14,7 @@
 #include "sched/schedule/schedule.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
+#include "sched/tiles/tiles.h"
 #include "sched/schedule/threads.h"
 #include "tile_order.h"
 #include "triangle/mesh/topology.h"
@@ -229,6 +230,7 @@ struct stream {
     struct bytes all, points, corners, ends;
     int64_t n, n_vertices, n_triangles, n_segments;
     int32_t n_attributes, n_begun, n_ended;
+    int32_t n_kept; /* in pieces: vertices that there were before refinement; 0: they are one tile */
 };
 
 static void append(struct bytes *b, const void *bytes, size_t n)
@@ -264,7 +266,7 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *told, s
     (void)error;
     assert_true(s->n_ended == 0 && told->estimate > 0);
     free_stream(s); /* void so far */
-    *s = (struct stream){.n_begun = s->n_begun + 1};
+    *s = (struct stream){.n_begun = s->n_begun + 1, .n_kept = s->n_kept};
     append(&s->all, &told->estimate, sizeof told->estimate);
     s->n_attributes = told->n_attributes;
     append(&s->all, told->regions, (size_t)told->n_regions * (size_t)told->n_columns * sizeof *told->regions);
@@ -277,7 +279,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
     (void)error;
     assert_true(s->n_begun > 0 && s->n_ended == 0 && tile->first_vertex == s->n_vertices &&
                 tile->first_triangle == s->n_triangles && tile->first_segment == s->n_segments);
-    assert_true((s->n++ == 0) == (tile->column == -1));
+    assert_true((s->n++ == 0 || s->n_vertices < s->n_kept) == (tile->column == -1));
     s->n_vertices += tile->n_vertices;
     s->n_triangles += tile->n_triangles;
     s->n_segments += tile->n_segments;
@@ -421,6 +423,19 @@ static void assert_stream_is(const struct stream *stream, const struct tri_mesh 
             assert_int_equal(ends[s][k], mesh->sub[s].v[k]);
 }
 
+static void assert_same_in_pieces(const struct stream *stream, struct tri_mesh *mesh, const struct tri_pslg *pslg)
+{
+    struct stream pieces = {.n_kept = mesh->n_input};
+    const struct tri_sink sink = {&pieces, begin_stream, take_tile, end_stream};
+    struct par_tiles tiles = {.mesh = mesh, .sink = &sink, .figure = pslg, .n_kept = mesh->n_input, .kept_at_once = 7};
+    assert_int_equal(par_tiles_whole(&tiles, NULL), TRI_OK);
+    assert_true(pieces.n_ended == 1 && pieces.n >= (mesh->n_input + 6) / 7 + 2);
+    assert_memory_equal(pieces.points.byte, stream->points.byte, stream->points.n);
+    assert_memory_equal(pieces.corners.byte, stream->corners.byte, stream->corners.n);
+    assert_memory_equal(pieces.ends.byte, stream->ends.byte, stream->ends.n);
+    free_stream(&pieces);
+}
+
 /* In memory, in a stream and in a sweep, for one sequential call, too, and with blocks' own numbers. */
 static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
 {
@@ -435,6 +450,7 @@ static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
             struct tri_mesh mesh = generate_whole_run(&run);
             assert_true((run.report.levels == 0) == (way == SEQUENTIAL));
             assert_stream_is(&run.stream, &mesh, &start.pslg);
+            assert_same_in_pieces(&run.stream, &mesh, &start.pslg);
             if (way == SCHEDULE && run.report.rounds == 1) {
                 struct whole_run swept = {.start = &start, .options = small_blocks(trials[i].block, 3)};
                 swept.options.sweep = true;

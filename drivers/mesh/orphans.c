@@ -5,6 +5,8 @@
 
 static int64_t renamed(const struct orphans *o, int64_t i) { return i < o->n_before ? o->kept[i] : i - o->n; }
 
+bool orphans_have(const struct orphans *o, int64_t i) { return renamed(o, i) == renamed(o, i + 1); }
+
 static const int64_t *rename_all(const struct orphans *o, const int64_t *from, int64_t *to, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -29,8 +31,7 @@ bool orphans_leave_out(const struct orphans *o, const struct tri_tile *all, int3
     tile->first_vertex = renamed(o, all->first_vertex);
     tile->n_vertices = 0;
     for (size_t i = 0; i < v; i++) {
-        const int64_t number = all->first_vertex + (int64_t)i;
-        if (renamed(o, number) == renamed(o, number + 1))
+        if (orphans_have(o, all->first_vertex + (int64_t)i))
             continue;
         const size_t to = (size_t)tile->n_vertices++;
         memcpy(points[to], all->points[i], sizeof *points);

@@ -11,6 +11,9 @@ struct orphans {
     int32_t *kept;       /* [n_before + 1] how many of the points before each are none; malloc'ed */
 };
 
+/* Is this point one? */
+bool orphans_have(const struct orphans *orphans, int64_t point);
+
 /* The tile without them. Its arrays are those of `all`, or lie in *room, which is to be freed in any case. False: no
  * memory. */
 bool orphans_leave_out(const struct orphans *orphans, const struct tri_tile *all, int32_t n_attributes,

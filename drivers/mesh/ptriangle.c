@@ -297,14 +297,15 @@ static enum tri_status make_room(struct program *p, double bytes)
 /* Of a mesh that is there as a whole. */
 static enum tri_status write_streams(struct program *p)
 {
-    const struct run *run = &p->run;
-    const struct tri_sink sink = streams_sink(&p->streams);
+    struct run *run = &p->run;
     if (p->options.n_streams == 0)
         return TRI_OK;
     enum tri_status status = make_room(p, estimate_streams(run, run->mesh.n_triangles));
+    if (!status && !run->unused.kept)
+        status = run_find_unused(run);
     status = status ? status : streams_open(&p->streams, run);
-    int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
-    status = status ? status : streams_hand_out(run, n_before, &sink);
+    const int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
+    status = status ? status : streams_hand_out(&p->streams, &run->mesh, n_before);
     streams_close(&p->streams);
     return status;
 }

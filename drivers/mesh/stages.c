@@ -264,8 +264,7 @@ static enum tri_status keep_twins(struct run *r)
     return TRI_OK;
 }
 
-/* Finds the vertices of no triangle, by the caller's numbers, while the mesh is small. No number of it is free. */
-static enum tri_status find_unused(struct run *r)
+enum tri_status run_find_unused(struct run *r)
 {
     const struct tri_mesh *mesh = &r->mesh;
     const int32_t n = mesh->n_vertices;
@@ -294,7 +293,7 @@ enum tri_status run_refine_begin(struct run *r)
     interrupt_reached(r->mesh.n_triangles, " triangles");
     if (r->plan.swept && !r->settings.written_elsewhere)
         begin_outputs(r);
-    status = find_unused(r);
+    status = run_find_unused(r);
     if (!status && r->plan.swept)
         status = keep_twins(r);
     return status ? run_refine_end(r, status) : TRI_OK;

@@ -101,6 +101,10 @@ enum tri_status run_read(struct run *run);
  * true one would need, and where it would be refused. */
 enum tri_status run_make(struct run *run);
 
+/* Finds the vertices of no triangle in a mesh that has no free numbers: run->unused. run_refine_begin does so while the
+ * mesh is small. TRI_NO_MEMORY. */
+enum tri_status run_find_unused(struct run *run);
+
 /* For a refine_call: before it refines as run->plan says, which begin finds out. Where run->plan.swept, it also writes
  * the files into run->outputs, and counts: run->counts; the mesh is gone then. After a failure of begin it returns that
  * status; else what end makes of its own. */

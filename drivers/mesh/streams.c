@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include "drivers/interrupt.h"
+#include "sched/tiles/tiles.h"
+#include "sched/tunables.h"
 
 static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
@@ -99,7 +101,7 @@ void streams_close(struct streams *streams)
 
 /* --- the sink */
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+static enum tri_status begin_all(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct streams *streams = user;
     enum tri_status status = TRI_OK;
@@ -110,14 +112,13 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     return status;
 }
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct streams *streams = user;
-    const struct run *run = streams->run;
-    struct tri_tile used = *tile; /* what a mesh that is in memory hands out is used */
-    void *room = NULL;
+    struct tri_tile used;
+    void *room;
     enum tri_status status = TRI_OK;
-    if (run->plan.swept && !orphans_leave_out(&run->unused, tile, streams->n_attributes, &used, &room))
+    if (!orphans_leave_out(&streams->run->unused, tile, streams->n_attributes, &used, &room))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a tile");
     for (int i = 0; !status && i < streams->n_sinks; i++) {
         const bool is_text = streams->text && i == streams->n;
@@ -127,6 +128,33 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     streams->taken[0] += tile->n_vertices;
     streams->taken[1] += tile->n_triangles;
     streams->taken[2] += tile->n_segments;
+    return status;
+}
+
+/* Segments of the input that are no edges of the mesh, and whose ends are points, as the last tile. */
+static enum tri_status take_loose(struct streams *streams, struct tri_error *error)
+{
+    const struct run *run = streams->run;
+    const struct tri_pslg *pslg = &run->input.pslg;
+    const size_t most = (size_t)run->report.loose;
+    struct tri_tile tile = {.first_vertex = streams->taken[0], .first_triangle = streams->taken[1],
+                            .first_segment = streams->taken[2]};
+    int64_t(*ends)[2] = malloc(most * sizeof *ends);
+    int32_t *markers = malloc(most * sizeof *markers);
+    for (int32_t k = 0; ends && markers && k < pslg->n_segments; k++) {
+        const int32_t *end = &pslg->segments[2 * (size_t)k];
+        if (run->is_edge[k] || orphans_have(&run->unused, end[0]) || orphans_have(&run->unused, end[1]))
+            continue;
+        ends[tile.n_segments][0] = end[0];
+        ends[tile.n_segments][1] = end[1];
+        markers[tile.n_segments++] = pslg->segment_markers ? pslg->segment_markers[k] : 0;
+    }
+    tile.ends = (const int64_t(*)[2])ends;
+    tile.segment_markers = markers;
+    enum tri_status status = ends && markers ? take_tile(streams, &tile, error)
+                                             : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a tile");
+    free(ends);
+    free(markers);
     return status;
 }
 
@@ -140,138 +168,28 @@ static enum tri_status write_exports(struct streams *streams, struct tri_error *
     return status;
 }
 
-static enum tri_status end(void *user, struct tri_error *error)
+static enum tri_status end_all(void *user, struct tri_error *error)
 {
     struct streams *streams = user;
-    enum tri_status status = TRI_OK;
+    enum tri_status status = streams->run->report.loose > 0 ? take_loose(streams, error) : TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].end ? streams->sink[i].end(streams->sink[i].user, error) : TRI_OK;
     return status || !streams->store ? status : write_exports(streams, error);
 }
 
-struct tri_sink streams_sink(struct streams *streams) { return (struct tri_sink){streams, begin, take, end}; }
+struct tri_sink streams_sink(struct streams *streams)
+{
+    return (struct tri_sink){streams, begin_all, take_tile, end_all};
+}
 
 /* --- a mesh that is in memory */
 
-enum { PIECE = 1 << 16 }; /* items handed out at a time */
-
-/* Items of a grid, on their way to a sink. */
-struct piece {
-    const struct tri_grid *grid;
-    const struct tri_mesh *mesh; /* of the grid */
-    const struct tri_sink *sink;
-    int64_t n_before;            /* points that there were before refinement */
-    double points[PIECE][2];
-    int32_t point_markers[PIECE], regions[PIECE], segment_markers[PIECE];
-    int64_t corners[PIECE][3], ends[PIECE][2];
-    double attributes[];         /* [PIECE][grid->n_attributes] */
-};
-
-static int32_t least(int64_t a, int64_t b) { return (int32_t)(a < b ? a : b); }
-
-static enum tri_status hand_out_points(struct piece *p, int64_t first, int64_t end, struct tri_error *error)
+enum tri_status streams_hand_out(struct streams *streams, struct tri_mesh *mesh, int32_t n_before)
 {
-    const struct tri_grid *g = p->grid;
-    int32_t place = first < p->n_before ? -1 : 0;
-    double *attribute = p->attributes;
-    struct tri_tile tile = {.column = place, .row = place, .first_vertex = first,
-                            .n_vertices = least(end - first, PIECE), .points = (const double(*)[2])p->points,
-                            .point_markers = p->point_markers, .attributes = p->attributes};
-    for (int32_t i = 0; i < tile.n_vertices; i++) {
-        struct tri_grid_point point;
-        g->point(g->user, first + i, &point);
-        memcpy(p->points[i], point.at, sizeof point.at);
-        p->point_markers[i] = point.marker;
-        for (int32_t k = 0; k < g->n_attributes; k++)
-            *attribute++ = g->attribute(g->user, first + i, k);
-    }
-    return p->sink->take(p->sink->user, &tile, error);
-}
-
-static enum tri_status hand_out_triangles(struct piece *p, int64_t first, struct tri_error *error)
-{
-    const struct tri_grid *g = p->grid;
-    struct tri_tile tile = {.first_vertex = g->n_points, .first_triangle = first,
-                            .n_triangles = least(g->n_triangles - first, PIECE),
-                            .corners = (const int64_t(*)[3])p->corners, .regions = p->regions};
-    for (int32_t i = 0; i < tile.n_triangles; i++) {
-        int64_t nodes[6];
-        g->triangle(g->user, first + i, nodes);
-        memcpy(p->corners[i], nodes, sizeof p->corners[i]);
-        p->regions[i] = p->mesh->tri[first + i].region;
-    }
-    return p->sink->take(p->sink->user, &tile, error);
-}
-
-static enum tri_status hand_out_segments(struct piece *p, int64_t first, struct tri_error *error)
-{
-    const struct tri_grid *g = p->grid;
-    struct tri_tile tile = {.first_vertex = g->n_points, .first_triangle = g->n_triangles, .first_segment = first,
-                            .n_segments = least(g->n_segments - first, PIECE),
-                            .ends = (const int64_t(*)[2])p->ends, .segment_markers = p->segment_markers};
-    for (int32_t i = 0; i < tile.n_segments; i++) {
-        struct tri_grid_edge segment;
-        g->segment(g->user, first + i, &segment);
-        memcpy(p->ends[i], segment.ends, sizeof segment.ends);
-        p->segment_markers[i] = segment.marker;
-    }
-    return p->sink->take(p->sink->user, &tile, error);
-}
-
-static enum tri_status hand_out_all(struct piece *p, struct tri_error *error)
-{
-    const struct tri_grid *g = p->grid;
-    enum tri_status status = TRI_OK;
-    for (int64_t i = 0; !status && i < p->n_before; i += PIECE)
-        status = hand_out_points(p, i, p->n_before, error);
-    for (int64_t i = p->n_before; !status && i < g->n_points; i += PIECE)
-        status = hand_out_points(p, i, g->n_points, error);
-    for (int64_t i = 0; !status && i < g->n_triangles; i += PIECE)
-        status = hand_out_triangles(p, i, error);
-    for (int64_t i = 0; !status && i < g->n_segments; i += PIECE)
-        status = hand_out_segments(p, i, error);
-    return status ? status : p->sink->end(p->sink->user, error);
-}
-
-/* Attributes of the triangles in each region; NULL: no memory. */
-static double *columns_of(const struct tri_mesh *mesh, int32_t n_columns)
-{
-    double *columns = malloc(((size_t)mesh->n_regions * (size_t)n_columns + 1) * sizeof *columns);
-    for (int32_t r = 0; columns && r < mesh->n_regions; r++)
-        for (int32_t k = 0; k < n_columns; k++)
-            columns[(size_t)r * (size_t)n_columns + (size_t)k] = tri_region_attributes(mesh, r)[k];
-    return columns;
-}
-
-static enum tri_status hand_out(struct piece *p, const double *columns, struct tri_error *error)
-{
-    struct tri_stream stream = {.n_attributes = p->grid->n_attributes, .n_columns = p->grid->n_columns,
-                                .n_regions = p->mesh->n_regions, .regions = columns,
-                                .estimate = (double)p->grid->n_triangles, .n_ranks = 1};
-    enum tri_status status = p->sink->begin(p->sink->user, &stream, error);
-    return status ? status : hand_out_all(p, error);
-}
-
-enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink)
-{
-    const struct tri_grid_options options = mesh_files_grid(run, true);
-    struct tri_grid grid;
-    enum tri_status status = tri_grid_make(&grid, &options, run->error);
-    if (status)
-        return status;
-    struct piece *piece = malloc(sizeof *piece + PIECE * (size_t)grid.n_attributes * sizeof *piece->attributes);
-    double *columns = columns_of(&run->mesh, grid.n_columns);
-    if (piece && columns) {
-        piece->grid = &grid;
-        piece->mesh = &run->mesh;
-        piece->sink = sink;
-        piece->n_before = n_before - (run->mesh.n_vertices - grid.n_points); /* with -j: none of these is new */
-        status = hand_out(piece, columns, run->error);
-    } else {
-        status = tri_fail(run->error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
-    }
-    free(piece);
-    free(columns);
-    tri_grid_free(&grid);
-    return status;
+    const struct run *run = streams->run;
+    const struct tri_sink sink = streams_sink(streams);
+    const struct tri_grid_options shown = mesh_files_grid(run, true);
+    struct par_tiles tiles = {.mesh = mesh, .sink = &sink, .figure = shown.pslg, .n_kept = n_before,
+                              .kept_at_once = PAR_ITEMS_AT_ONCE, .region_column = shown.regions && !shown.elements};
+    return par_tiles_whole(&tiles, run->error);
 }

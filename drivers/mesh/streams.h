@@ -45,7 +45,8 @@ void streams_close(struct streams *streams);
 /* Hands everything to all of them. */
 struct tri_sink streams_sink(struct streams *streams);
 
-/* Hands a mesh that is in memory to a sink: n_before vertices were there before refinement. */
-enum tri_status streams_hand_out(const struct run *run, int32_t n_before, const struct tri_sink *sink);
+/* Hands the mesh of the run, which is finished and in memory, to streams_sink. run->unused has been counted; n_before
+ * vertices were there before refinement. */
+enum tri_status streams_hand_out(struct streams *streams, struct tri_mesh *mesh, int32_t n_before);
 
 #endif

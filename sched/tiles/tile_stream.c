@@ -17,8 +17,8 @@ static enum tri_status no_memory(struct tri_error *error)
 
 /* --- what comes first */
 
-/* Who stands where in the caller's order; NULL: no memory. */
-static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
+/* The vertices in the caller's order, where that is not the mesh's. malloc'ed; NULL: no memory. */
+static tri_vertex_id *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
 {
     tri_vertex_id *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
     for (tri_vertex_id v = 0; vertex && v < n_kept; v++)
@@ -26,29 +26,41 @@ static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
     return vertex;
 }
 
-static bool copy_kept(const struct par_tiles *tiles, struct par_tile_copy *copy)
+/* vertex: the caller's order; NULL: that of the mesh. False: no memory. */
+static bool copy_kept(const struct par_tiles *tiles, const tri_vertex_id *vertex, const struct tri_tile *tile,
+                      struct par_tile_copy *copy)
 {
     const struct tri_mesh *mesh = tiles->mesh;
-    tri_vertex_id *vertex = caller_order(mesh, tiles->n_kept);
-    bool memory = par_tile_copy_reserve(copy, mesh, tiles->n_kept, 0, 0) && vertex;
-    for (int32_t i = 0; memory && i < tiles->n_kept; i++) {
-        par_tile_copy_vertex(copy, mesh, vertex[i], i);
-        if (tiles->figure && i < mesh->n_input)
-            memcpy(copy->points[i], &tiles->figure->points[2 * (size_t)i], sizeof copy->points[i]);
+    if (!par_tile_copy_reserve(copy, mesh, tile->n_vertices, 0, 0))
+        return false;
+    for (int32_t i = 0; i < tile->n_vertices; i++) {
+        const int32_t number = (int32_t)tile->first_vertex + i;
+        par_tile_copy_vertex(copy, mesh, vertex ? vertex[number] : number, i);
+        if (tiles->figure && number < mesh->n_input)
+            memcpy(copy->points[i], &tiles->figure->points[2 * (size_t)number], sizeof copy->points[i]);
     }
-    free(vertex);
-    return memory;
+    return true;
 }
 
+/* One tile, or several if kept_at_once asks for them. */
 static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
 {
+    const int32_t n = tiles->n_kept, most = tiles->kept_at_once > 0 ? tiles->kept_at_once : n;
     struct par_tile_copy copy = {0};
-    struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = tiles->n_kept};
-    bool memory = copy_kept(tiles, &copy);
-    par_tile_copy_show(&copy, &tile);
-    enum tri_status status = memory ? tiles->sink->take(tiles->sink->user, &tile, error) : no_memory(error);
-    tiles->n_vertices = tiles->n_kept;
+    struct tri_tile tile = {.column = -1, .row = -1};
+    tri_vertex_id *vertex = tiles->mesh->origin ? caller_order(tiles->mesh, n) : NULL;
+    enum tri_status status = tiles->mesh->origin && !vertex ? no_memory(error) : TRI_OK;
+    do {
+        tile.n_vertices = n - tile.first_vertex > most ? most : n - (int32_t)tile.first_vertex;
+        if (!status && !copy_kept(tiles, vertex, &tile, &copy))
+            status = no_memory(error);
+        par_tile_copy_show(&copy, &tile);
+        status = status ? status : tiles->sink->take(tiles->sink->user, &tile, error);
+        tile.first_vertex += tile.n_vertices;
+    } while (!status && tile.first_vertex < n);
+    tiles->n_vertices = n;
     par_tile_copy_free(&copy);
+    free(vertex);
     return status;
 }
 

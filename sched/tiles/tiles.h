@@ -26,6 +26,7 @@ struct par_tiles {
     const struct tri_sink *sink;
     const struct tri_pslg *figure; /* the input: its points are handed out bit by bit; NULL: the mesh's points are */
     int32_t n_kept;               /* vertices that there were before refinement */
+    int32_t kept_at_once;         /* so many of these are a tile; 0: all are one */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
     bool kept_elsewhere;          /* the vertices that keep their numbers are handed out by another rank */
     int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
@@ -74,7 +75,7 @@ void par_column_free(struct par_column *column);
 
 void par_tiles_free(struct par_tiles *tiles);
 
-/* --- before and after them, and a mesh in memory as a whole (stream.c) */
+/* --- before and after them, and a mesh in memory as a whole (tile_stream.c) */
 
 /* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
  * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */

@@ -178,6 +178,13 @@ if "$bin/ptriangle" -pq30a0.002Q two.poly --output x.h5 2>.err; then
     program 0 -pq30a0.002Q two.poly --output v.vtkhdf
     check "the same .vtkhdf" cmp x.h5 v.vtkhdf
     check "trianglecheck reads it" "$bin/trianglecheck" --quiet v.vtkhdf
+    # the segments 2 4 and 4 5 are no edges, and no triangle uses point 5
+    printf '5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 .5 2\n' >loose.node
+    printf '2 3 0\n1 1 2 3\n2 1 3 4\n' >loose.ele
+    printf '0 2 0 1\n3 1\n1 1 3 5\n2 2 4 6\n3 4 5 7\n0\n' >loose.poly
+    program 0 -rp loose --output loose.h5
+    check "2 4 is copied" sh -c '"$1" loose.h5 | grep -q "subsegments 6$"' sh "$bin/trianglecheck"
+    rm loose.*
 fi
 unset PTRIANGLE_TEST_BLOCK
 
