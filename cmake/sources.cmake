@@ -209,6 +209,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/long_options.c
     drivers/mesh/orphans.c
     drivers/mesh/progress.c
+    drivers/mesh/schedule_needs.c
     drivers/mesh/streams.c
     drivers/mesh/restart.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)

@@ -41,8 +41,6 @@
 
 /* --- memory */
 
-/* Bytes a triangle at the peak, where all stay in memory and are numbered. Measured. */
-#define PAR_BYTES_IN_MEMORY 74.0
 /* Share of the triangles that one mesh may have up to which an estimate does not ask for more than it has. Guess. */
 #define PAR_SURELY_ONE_MESH 0.8
 /* Of a bound on memory, what grows between two growths of the arrays: a share, and bytes at least, since a library that
@@ -54,6 +52,34 @@
 /* Bytes by which a file of a parked array grows, and nanoseconds between two looks at the memory in use. Guess. */
 #define PAR_PARK_GROWTH (1 << 18)
 #define PAR_LOOK_NANOSECONDS 1000000
+
+/* --- what a run takes, by which others plan; all of it measured */
+
+/* Share of the triangles which angles ask for that blocks get places for and leave empty. */
+#define PAR_EMPTY_PLACES 0.25
+/* Bytes of a sweep: for each root of (triangles * triangles in a cell), all that it has in memory; those of the mesh on
+ * disk, with room to grow; what numbers and hands out columns; the two states of a checkpoint. And, for each triangle
+ * to come, the coarse mesh and the lists of blocks. */
+#define PAR_SWEEP_HELD 260.0
+#define PAR_SWEEP_AWAY 290.0
+#define PAR_SWEEP_WORK 140.0
+#define PAR_SWEEP_STATES 520.0
+#define PAR_SWEEP_COARSE 1.3
+/* Bytes for each triangle: of a parked mesh in memory, and on disk; of the two states of a mesh that stays as a whole;
+ * of the tiles in a checkpoint. */
+#define PAR_PARKED_WORK 6.0
+#define PAR_PARKED_BYTES 90.0
+#define PAR_WHOLE_STATES 120.0
+#define PAR_TILES_BYTES 26.0
+/* The busiest rank has so many times the average. Bytes for each of its triangles: all that it has in memory; what
+ * numbers and hands them out at most. What that takes for each root as above; and, for each triangle of all ranks, the
+ * coarse mesh, and the two states of a checkpoint. */
+#define PAR_RANK_BUSIEST 1.15
+#define PAR_RANK_BYTES 62.0
+#define PAR_RANK_WORK 20.0
+#define PAR_RANK_COLUMN 45.0
+#define PAR_RANK_COARSE 0.1
+#define PAR_RANK_STATES 32.0
 
 /* --- tiles */
 

@@ -11,9 +11,6 @@ struct run; /* drivers/mesh/stages.h */
 
 enum { MESH_FILES_MOST_NAMES = 4 };
 
-/* Bytes of memory for rows on their way to a file: a triangle, and at the most. */
-enum { MESH_FILES_ROW_BYTES = 64, MESH_FILES_BYTES = 20 << 20 };
-
 /* Names of files, borrowed. */
 struct file_names {
     int n;

@@ -31,6 +31,19 @@ struct estimate {
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */
 struct estimate estimate_make(const struct run *run, bool with_seconds);
 
+/* Finds what a schedule needs for a mesh that grows by so many triangles: all of *needs except triangles and files.
+ * demand: how many of them areas ask for; < 0: needs->whole has been found already. For run_settings. */
+void schedule_needs(const struct run *run, bool sweeps, double grown, double demand, struct needs *needs);
+
+/* Bytes for a triangle of the mesh, and of what stands beside it when it is refined, or when it is written. */
+double estimate_bytes_each(const struct run *run);
+
+/* Bytes of what is done with a mesh that is finished, and has grown by so many triangles. */
+double estimate_bytes_beside(const struct run *run, double grown);
+
+/* Bytes for a triangle of the lists of edges that the output takes. */
+double estimate_edge_lists(const struct run *run);
+
 /* Bytes of memory that handing out a mesh of so many triangles takes beside it, to the HDF5 files of the run. */
 double estimate_streams(const struct run *run, double triangles);
 

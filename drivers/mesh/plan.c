@@ -23,12 +23,9 @@ static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONF
  * Up to such a share of what a mesh holds it surely fits in one: blocks have room that they do not use. */
 static const double AREAS_DECIDE = 1.3, SURELY_ONE_MESH = 0.8;
 
-/* Measured: bytes at the peak of triangulating, of the process, a point, an attribute of one, the surface of attributes
- * at one, a segment, and of a mesh that is rebuilt, a point and a triangle; of text on its way into files, a point and
- * at the most; and the share of all that is sure. */
-static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 200, ATTRIBUTE_BYTES = 20, SURFACE_BYTES = 110,
-                    SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100, ELEMENT_BYTES = 48, TEXT_BYTES = 60,
-                    MOST_TEXT = 6e6, SURE_SHARE = 0.7;
+/* Measured: bytes of the process; of text on its way into files while the input is triangulated, a point and at most;
+ * and the share of the bytes of triangulating that is sure. */
+static const double PROCESS_BYTES = 1.2e7, TEXT_BYTES = 60, MOST_TEXT = 6e6, SURE_SHARE = 0.7;
 
 /* Measured: what is allocated to write files, touched or not. */
 static const double BUFFER_BYTES = 3e7;
@@ -82,12 +79,9 @@ static double unrefined_streams(const struct run *run)
 /* At its peak, what has been read included. */
 static double input_bytes(const struct run *run)
 {
-    const struct tri_pslg *p = &run->input.pslg;
-    const double surface = run->options.refine && p->n_attributes > 0 ? SURFACE_BYTES + 8.0 * p->n_attributes : 0;
-    const double point = (run->input.elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) +
-                         ATTRIBUTE_BYTES * p->n_attributes + surface;
-    const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->input.elements.n +
-                        fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
+    const struct run_input *input = &run->input;
+    const double made = tri_generate_bytes(&input->pslg, &input->elements, run->options.refine) +
+                        fmin(TEXT_BYTES * input->pslg.n_points, MOST_TEXT);
     return PROCESS_BYTES + fmax(made, made / 2 + unrefined_streams(run));
 }
 

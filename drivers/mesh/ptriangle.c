@@ -518,7 +518,7 @@ static struct run_settings settings_of(const struct program *p, int threads, con
     const struct par_carrier *carrier = p->launch.carrier;
     const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     return (struct run_settings){.options = &p->options, .executor = executor, .threads = threads,
-                                 .cell_triangles = par_triangles_in_cell, .n_ranks = carrier ? carrier->n_ranks : 0,
+                                 .schedule_needs = schedule_needs, .n_ranks = carrier ? carrier->n_ranks : 0,
                                  .written_elsewhere = p->launch.rank > 0,
                                  .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0};
 }

@@ -418,15 +418,12 @@ static enum tri_status keep_partial(struct run *r, enum tri_status status)
 
 /* --- output */
 
-/* Rows on their way, and lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and
- * 12 a triangle for the nodes amid them; 8 a vertex where those without triangles are left out. */
+/* Rows on their way, and lists beside the mesh: of edges, and of vertices if those without triangles are left out. */
 double run_write_bytes(const struct run *r)
 {
-    const struct tri_switches *s = &r->arguments->switches;
     const bool leaves_out = mesh_files_grid(r, r->settings.options->n_exports > 0).jettison;
-    const bool edges = s->edges || s->voronoi || s->off;
-    const double n = r->mesh.n_triangles, lists = (s->second_order ? 18 : edges ? 6 : 0) + (leaves_out ? 4 : 0);
-    return fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * n) + lists * n;
+    const double n = r->mesh.n_triangles, lists = estimate_edge_lists(r) + (leaves_out ? 0.5 * TRI_USED_BYTES : 0);
+    return fmin(TRI_ROWS_BYTES, TRI_ROW_BYTES * n) + lists * n;
 }
 
 void run_write_begin(struct run *r)

@@ -26,13 +26,15 @@ enum run_stage {
     RUN_STAGES
 };
 
+struct needs; /* drivers/mesh/needs.h */
+
 /* What the program says of the machine and of its tasks; all 0: one core, no schedule. */
 struct run_settings {
     const struct long_options *options;  /* what the command line says beyond the switches of Triangle; maybe all 0 */
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
     int threads;            /* of the schedule that refines; 0: there is no schedule, tri_refine refines */
-    /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
-    double (*cell_triangles)(double triangles);
+    /* What the schedule needs (drivers/mesh/needs.h); NULL: there is none. */
+    void (*schedule_needs)(const struct run *run, bool sweeps, double grown, double demand, struct needs *needs);
     int n_ranks;            /* that share the mesh; 0: it is all here */
     bool written_elsewhere; /* another rank reads and writes all files */
     bool always_sweep;      /* on ranks, and for tests: also what would fit in memory */

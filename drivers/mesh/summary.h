@@ -26,9 +26,6 @@ void summary_shapes(const struct run *run);
 
 /* --- -C: the mesh before the judge. */
 
-/* Measured: bytes of memory that it takes at the peak where nobody bounds it, for a triangle and for a subsegment. */
-enum { SELF_CHECK_BYTES = 72, SELF_CHECK_SUB_BYTES = 400 };
-
 /* What it takes whatever its bound, in parts that are not too small. */
 double self_check_least_bytes(const struct tri_mesh *mesh);
 

@@ -102,11 +102,12 @@ static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, si
 static enum tri_status number_mesh(struct par_run *run, struct tri_error *error)
 {
     const struct timed *timed = run->asked.executor.self; /* what it does in shares is told as numbering */
-    double began = tri_seconds();
+    struct tri_mesh *mesh = run->mesh;
+    const double began = tri_seconds(), bytes = par_number_bytes(mesh->n_triangles, mesh->n_vertices, mesh->n_subs);
     par_tell(run, PAR_NUMBERING);
-    enum tri_status status = par_park_expect(run->park, run->mesh, par_number_bytes(run->mesh), error);
-    status = status ? status : par_number(run->mesh, &run->cells, run->asked.n_kept, &timed->executor, error);
-    assert(status || (run->mesh->n_vertices >= run->asked.n_kept && tri_mesh_is_sound(run->mesh)));
+    enum tri_status status = par_park_expect(run->park, mesh, (size_t)bytes, error);
+    status = status ? status : par_number(mesh, &run->cells, run->asked.n_kept, &timed->executor, error);
+    assert(status || (mesh->n_vertices >= run->asked.n_kept && tri_mesh_is_sound(mesh)));
     run->report->seconds_number += tri_seconds() - began;
     return status;
 }
@@ -191,7 +192,7 @@ static bool is_too_much(const struct par_run *run, double triangles)
     const struct par_options *options = run->asked.options;
     return options->sink && !options->carrier &&
            (options->sweep || triangles > PAR_SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
-            (options->memory > 0 && triangles * PAR_BYTES_IN_MEMORY > (double)options->memory));
+            (options->memory > 0 && triangles * par_whole_bytes_each() > (double)options->memory));
 }
 
 /* What a sweep that cannot go on has to be undone with. */
@@ -250,7 +251,7 @@ static enum tri_status fail_without_scratch(const struct par_run *run, double tr
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
-                    tri_size_text(PAR_BYTES_IN_MEMORY * triangles).text,
+                    tri_size_text(par_whole_bytes_each() * triangles).text,
                     tri_size_text((double)run->asked.options->memory).text);
 }
 

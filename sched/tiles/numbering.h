@@ -18,15 +18,21 @@
  * first tri_mesh.incidence.n_vertices), or more; none of them is free.
  *
  * Meshes whose first n_kept vertices and whose parents agree, and which have the same vertices, triangles and
- * subsegments beyond these under any numbers, become the same, byte for byte. O(n); beside the mesh about 20 bytes a
- * triangle and 4 a vertex while it runs. TRI_NO_MEMORY: nothing has changed. */
+ * subsegments beyond these under any numbers, become the same, byte for byte. O(n). TRI_NO_MEMORY: nothing
+ * has changed. */
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,
                            const struct tri_executor *executor, struct tri_error *error);
 
-/* What par_number takes beside the mesh, to the order. */
-static inline size_t par_number_bytes(const struct tri_mesh *mesh)
+/* Bytes that par_number takes beside a mesh of so many: two numbers of each triangle and vertex, one of each
+ * subsegment, a copy of all subsegments, and of half of the triangles. */
+static inline double par_number_bytes(double triangles, double vertices, double subs)
 {
-    return 28 * (size_t)mesh->n_triangles + 8 * (size_t)mesh->n_vertices + 28 * (size_t)mesh->n_subs;
+    const double number = sizeof(int32_t);
+    return (2 * number + sizeof(struct tri_triangle) / 2.0) * triangles + 2 * number * vertices +
+           (number + sizeof(struct tri_subsegment)) * subs;
 }
+
+/* Bytes of a mesh that stays in memory and is numbered, for a triangle. */
+static inline double par_whole_bytes_each(void) { return tri_mesh_bytes_each(0) + par_number_bytes(1, 0.5, 0); }
 
 #endif

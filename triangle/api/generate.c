@@ -119,6 +119,14 @@ static void turn_subs(struct tri_mesh *mesh)
         mesh->parents[p].reversed = false;
 }
 
+double tri_generate_bytes(const struct tri_pslg *pslg, const struct tri_elements *elements, bool refine)
+{
+    static const double POINT = 200, ATTRIBUTE = 20, SURFACE = 110, SEGMENT = 135, REBUILT_POINT = 100, ELEMENT = 48;
+    const double surface = refine && pslg->n_attributes > 0 ? SURFACE + 8.0 * pslg->n_attributes : 0;
+    const double point = (elements->n > 0 ? REBUILT_POINT : POINT) + ATTRIBUTE * pslg->n_attributes + surface;
+    return point * pslg->n_points + SEGMENT * pslg->n_segments + ELEMENT * elements->n;
+}
+
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error)
 {

@@ -54,6 +54,9 @@ struct tri_options {
     void *stage_user;
 };
 
+/* Bytes of memory at the peak of tri_generate before it refines, the input included. Measured. */
+double tri_generate_bytes(const struct tri_pslg *pslg, const struct tri_elements *elements, bool refine);
+
 struct tri_report {
     int32_t duplicates; /* points that have a twin of lower index; 0 with elements */
     struct tri_carve_report carve;

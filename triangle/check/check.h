@@ -82,6 +82,9 @@ struct tri_check_source {
 /* The share of its bound that a trial reckons with. */
 #define TRI_CHECK_SHARE 0.75
 
+/* Bytes that it takes at the peak without a bound, for a triangle and for a subsegment. Measured. */
+enum { TRI_CHECK_BYTES = 72, TRI_CHECK_SUB_BYTES = 400 };
+
 /* That share of the bytes that it takes whatever its bound: a byte for each vertex, up to 370 for each subsegment, and
  * the input (NULL: none). Where no subsegments are listed the mesh is thought to have no holes; a trial that finds out
  * otherwise, and that its bound will not do, ends with TRI_NO_MEMORY and says so. */

@@ -22,6 +22,13 @@ struct tri_h5_options {
 
 struct tri_h5_writer;
 
+/* Bytes of memory that a writer takes while it is given a mesh of so many triangles. Measured. */
+static inline double tri_h5_writer_bytes(double triangles)
+{
+    const double least = 2e7 + 40 * triangles, most = 6e7;
+    return least < most ? least : most;
+}
+
 /* Is there HDF5 in this build? */
 bool tri_h5_is_there(void);
 

@@ -204,6 +204,14 @@ void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
 /* Bytes in use of the arrays that grow with refinement. */
 size_t tri_mesh_bytes_used(const struct tri_mesh *mesh);
 
+/* Bytes of these arrays for a triangle, to the order: two triangles have one vertex. An attribute takes 8 bytes, and
+ * half of that again when vertices are moved. */
+static inline double tri_mesh_bytes_each(int32_t n_attributes)
+{
+    const double vertex = sizeof(struct tri_point) + 2 * sizeof(int32_t) + sizeof(double) + 12.0 * n_attributes;
+    return sizeof(struct tri_triangle) + vertex / 2;
+}
+
 /* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has
  * another such mesh's, in memory from malloc, and nothing else. Swap: two meshes change theirs, and the counts of them.
  * Drop: there are none any more, nor points of the input. TRI_NO_MEMORY: the mesh is as before, *copy has nothing. */

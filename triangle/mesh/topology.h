@@ -39,8 +39,10 @@ struct tri_edge_list {
     const struct tri_mesh *mesh; /* whose extras these are; NULL: there are none */
 };
 
-/* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more, where the mesh is. The list lives no longer
- * than the mesh. TRI_NO_MEMORY. */
+/* Bytes of a list for a triangle: two triangles have three edges. */
+enum { TRI_EDGE_LIST_BYTES = 6, TRI_EDGE_NUMBERS_BYTES = 12 };
+
+/* Lists the edges. O(triangles). The list lies where the mesh does, and lives no longer. TRI_NO_MEMORY. */
 enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_mesh *mesh, bool with_numbers,
                                    struct tri_error *error);
 void tri_edge_list_free(struct tri_edge_list *list);
@@ -74,7 +76,9 @@ struct tri_used {
     const struct tri_mesh *mesh; /* whose extras these are; NULL: there are none */
 };
 
-/* O(vertices + triangles); 8 bytes a vertex, where the mesh is. Lives no longer than the mesh. TRI_NO_MEMORY. */
+enum { TRI_USED_BYTES = 8 }; /* for a vertex */
+
+/* O(vertices + triangles). The lists lie where the mesh does, and live no longer. TRI_NO_MEMORY. */
 enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error);
 void tri_used_free(struct tri_used *used);
 

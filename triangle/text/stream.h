@@ -51,7 +51,8 @@ void tri_text_stream_free(struct tri_text_stream *stream);
  *
  * The files have no names: nothing is left of them, however the process ends. They take 20 bytes a point, and 8 for
  * each attribute, 28 a triangle and 20 a segment; and 8 a triangle while those of several regions are grouped; and 10 a
- * triangle, 12 a point and 12 a segment where a mesh is cut into parts. */
+ * triangle, 12 a point and 12 a segment where a mesh is cut into parts. Altogether, for a triangle, and for parts: */
+enum { TRI_TILE_STORE_BYTES = 46, TRI_TILE_STORE_PART_BYTES = 17 };
 
 struct tri_tile_store;
 

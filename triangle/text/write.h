@@ -27,6 +27,9 @@ enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see tr
  * behind the text. */
 typedef char *tri_row_call(const void *user, int64_t i, char *at);
 
+/* Bytes of memory for the rows of a mesh on their way into a file: for a triangle, and at most. */
+enum { TRI_ROW_BYTES = 64, TRI_ROWS_BYTES = 20 << 20 };
+
 /* Writes rows first .. first + n - 1, whose texts have at most max_row_bytes. The bytes written do not depend on the
  * executor. Memory: about 0.1 MB, with an executor 17 MB. */
 enum tri_status tri_write_table(struct tri_output *output, int64_t first, int64_t n, size_t max_row_bytes,
