@@ -89,14 +89,22 @@ static void *array(char **at, int32_t n, size_t item)
     return here;
 }
 
-/* Wide numbers first, so that all are aligned. */
-bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
-                           int32_t n_triangles, int32_t n_segments)
+static void point_at_copy(struct tri_tile *tile, const struct par_tile_copy *copy)
 {
-    const size_t a = (size_t)mesh->n_attributes * sizeof *copy->attributes;
-    const size_t v = sizeof *copy->points + a + sizeof(int32_t);
-    const size_t t = sizeof *copy->corners + sizeof(int32_t), s = sizeof *copy->ends + sizeof(int32_t);
-    const size_t size = (size_t)n_vertices * v + (size_t)n_triangles * t + (size_t)n_segments * s;
+    tile->points = (const double(*)[2])copy->points;
+    tile->point_markers = copy->point_markers;
+    tile->attributes = copy->attributes;
+    tile->corners = (const int64_t(*)[3])copy->corners;
+    tile->regions = copy->regions;
+    tile->ends = (const int64_t(*)[2])copy->ends;
+    tile->segment_markers = copy->segment_markers;
+}
+
+/* Wide numbers first, so that all are aligned. */
+bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, struct tri_tile *tile)
+{
+    const int32_t v = tile->n_vertices, t = tile->n_triangles, s = tile->n_segments;
+    const size_t size = par_tile_bytes(tile, mesh->n_attributes);
     if (!copy->block || size > copy->size) {
         free(copy->block);
         copy->size = size + size / 16; /* the next tile is about as large */
@@ -105,13 +113,14 @@ bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *me
     if (!copy->block)
         return false;
     char *at = copy->block;
-    copy->points = array(&at, n_vertices, sizeof *copy->points);
-    copy->attributes = array(&at, n_vertices, a);
-    copy->corners = array(&at, n_triangles, sizeof *copy->corners);
-    copy->ends = array(&at, n_segments, sizeof *copy->ends);
-    copy->point_markers = array(&at, n_vertices, sizeof *copy->point_markers);
-    copy->regions = array(&at, n_triangles, sizeof *copy->regions);
-    copy->segment_markers = array(&at, n_segments, sizeof *copy->segment_markers);
+    copy->points = array(&at, v, sizeof *copy->points);
+    copy->attributes = array(&at, v, (size_t)mesh->n_attributes * sizeof *copy->attributes);
+    copy->corners = array(&at, t, sizeof *copy->corners);
+    copy->ends = array(&at, s, sizeof *copy->ends);
+    copy->point_markers = array(&at, v, sizeof *copy->point_markers);
+    copy->regions = array(&at, t, sizeof *copy->regions);
+    copy->segment_markers = array(&at, s, sizeof *copy->segment_markers);
+    point_at_copy(tile, copy);
     return true;
 }
 
@@ -128,17 +137,6 @@ void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mes
     copy->point_markers[to] = mesh->vertex_markers[v];
     if (n > 0)
         memcpy(copy->attributes + (size_t)to * n, mesh->attributes + (size_t)v * n, n * sizeof *copy->attributes);
-}
-
-void par_tile_copy_show(const struct par_tile_copy *copy, struct tri_tile *tile)
-{
-    tile->points = (const double(*)[2])copy->points;
-    tile->point_markers = copy->point_markers;
-    tile->attributes = copy->attributes;
-    tile->corners = (const int64_t(*)[3])copy->corners;
-    tile->regions = copy->regions;
-    tile->ends = (const int64_t(*)[2])copy->ends;
-    tile->segment_markers = copy->segment_markers;
 }
 
 /* --- Triangles start at their corner with the largest number, mostly a vertex of the tile's own. Those that start at
@@ -432,10 +430,8 @@ bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const 
 {
     const int32_t *vertices = ids->vertices;
     struct tri_tile *tile = &job->tile;
-    if (!par_tile_job_reserve(job, fans_words(tile)) ||
-        !par_tile_copy_reserve(&job->copy, mesh, tile->n_vertices, tile->n_triangles, tile->n_segments))
+    if (!par_tile_job_reserve(job, fans_words(tile)) || !par_tile_copy_reserve(&job->copy, mesh, tile))
         return false;
-    par_tile_copy_show(&job->copy, tile);
     tri_surface_set(mesh, vertices, tile->n_vertices);
     for (int32_t i = 0; i < tile->n_vertices; i++) {
         if (i + PAR_HANDED_AHEAD < tile->n_vertices) {

@@ -44,9 +44,9 @@ struct par_tile_copy {
     size_t size;
 };
 
-/* Room for so many; what was there goes. The first time all is 0. To be freed in any case. False: no memory. */
-bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
-                           int32_t n_triangles, int32_t n_segments);
+/* Room for as much as the tile has, which is pointed at it; what was there goes. The first time all is 0. To be freed
+ * in any case. False: no memory. */
+bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, struct tri_tile *tile);
 void par_tile_copy_free(struct par_tile_copy *copy);
 
 /* The `to`-th vertex of the tile is this one of the mesh. */
@@ -58,9 +58,6 @@ static inline int64_t par_shown(const struct tri_mesh *mesh, int64_t number)
 {
     return mesh->origin && number < mesh->n_input ? mesh->origin[number] : number;
 }
-
-/* Points a tile at the copies. */
-void par_tile_copy_show(const struct par_tile_copy *copy, struct tri_tile *tile);
 
 /* --- What is handed out of one tile: its vertices, triangles and subsegments in the order of their numbers. */
 

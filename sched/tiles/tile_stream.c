@@ -15,9 +15,58 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the tiles of the mesh");
 }
 
+/* --- pieces of the mesh */
+
+/* vertex: that of each number, as far as the caller's order is not that of the mesh; else NULL. */
+static void copy_items(const struct par_tiles *tiles, const tri_vertex_id *vertex, const struct tri_tile *tile,
+                       const struct par_tile_copy *copy)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    for (int32_t i = 0; i < tile->n_vertices; i++) {
+        const int32_t number = (int32_t)tile->first_vertex + i;
+        par_tile_copy_vertex(copy, mesh, vertex ? vertex[number] : number, i);
+        if (tiles->figure && number < mesh->n_input)
+            memcpy(copy->points[i], &tiles->figure->points[2 * (size_t)number], sizeof copy->points[i]);
+    }
+    for (int32_t i = 0; i < tile->n_triangles; i++) {
+        const struct tri_triangle *t = &mesh->tri[tile->first_triangle + i];
+        copy->regions[i] = t->region;
+        for (int k = 0; k < 3; k++)
+            copy->corners[i][k] = par_shown(mesh, t->v[k]);
+    }
+    for (int32_t i = 0; i < tile->n_segments; i++) {
+        const struct tri_subsegment *s = &mesh->sub[tile->first_segment + i];
+        copy->segment_markers[i] = s->marker;
+        for (int k = 0; k < 2; k++)
+            copy->ends[i][k ^ mesh->parents[s->parent].reversed] = par_shown(mesh, s->v[k]);
+    }
+}
+
+/* Hands out what follows, as much as the tile says. vertex: see above. */
+static enum tri_status hand_out_items(struct par_tiles *tiles, const tri_vertex_id *vertex, struct tri_tile tile,
+                                      struct tri_error *error)
+{
+    struct par_tile_copy copy = {0};
+    enum tri_status status = TRI_OK;
+    tile.first_vertex = tiles->n_vertices;
+    tile.first_triangle = tiles->n_triangles;
+    tile.first_segment = tiles->n_segments;
+    if (par_tile_copy_reserve(&copy, tiles->mesh, &tile)) {
+        copy_items(tiles, vertex, &tile, &copy);
+        status = tiles->sink->take(tiles->sink->user, &tile, error);
+    } else {
+        status = no_memory(error);
+    }
+    par_tile_copy_free(&copy);
+    tiles->n_vertices += tile.n_vertices;
+    tiles->n_triangles += tile.n_triangles;
+    tiles->n_segments += tile.n_segments;
+    return status;
+}
+
 /* --- what comes first */
 
-/* The vertices in the caller's order, where that is not the mesh's. malloc'ed; NULL: no memory. */
+/* The vertices in the caller's order. malloc'ed; NULL: no memory. */
 static tri_vertex_id *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
 {
     tri_vertex_id *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
@@ -26,40 +75,18 @@ static tri_vertex_id *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
     return vertex;
 }
 
-/* vertex: the caller's order; NULL: that of the mesh. False: no memory. */
-static bool copy_kept(const struct par_tiles *tiles, const tri_vertex_id *vertex, const struct tri_tile *tile,
-                      struct par_tile_copy *copy)
-{
-    const struct tri_mesh *mesh = tiles->mesh;
-    if (!par_tile_copy_reserve(copy, mesh, tile->n_vertices, 0, 0))
-        return false;
-    for (int32_t i = 0; i < tile->n_vertices; i++) {
-        const int32_t number = (int32_t)tile->first_vertex + i;
-        par_tile_copy_vertex(copy, mesh, vertex ? vertex[number] : number, i);
-        if (tiles->figure && number < mesh->n_input)
-            memcpy(copy->points[i], &tiles->figure->points[2 * (size_t)number], sizeof copy->points[i]);
-    }
-    return true;
-}
-
 /* One tile, or several if kept_at_once asks for them. */
 static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
 {
     const int32_t n = tiles->n_kept, most = tiles->kept_at_once > 0 ? tiles->kept_at_once : n;
-    struct par_tile_copy copy = {0};
-    struct tri_tile tile = {.column = -1, .row = -1};
     tri_vertex_id *vertex = tiles->mesh->origin ? caller_order(tiles->mesh, n) : NULL;
     enum tri_status status = tiles->mesh->origin && !vertex ? no_memory(error) : TRI_OK;
+    tiles->n_vertices = 0;
     do {
-        tile.n_vertices = n - tile.first_vertex > most ? most : n - (int32_t)tile.first_vertex;
-        if (!status && !copy_kept(tiles, vertex, &tile, &copy))
-            status = no_memory(error);
-        par_tile_copy_show(&copy, &tile);
-        status = status ? status : tiles->sink->take(tiles->sink->user, &tile, error);
-        tile.first_vertex += tile.n_vertices;
-    } while (!status && tile.first_vertex < n);
-    tiles->n_vertices = n;
-    par_tile_copy_free(&copy);
+        const int32_t left = n - (int32_t)tiles->n_vertices;
+        const struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = left < most ? left : most};
+        status = status ? status : hand_out_items(tiles, vertex, tile, error);
+    } while (!status && tiles->n_vertices < n);
     free(vertex);
     return status;
 }
@@ -129,50 +156,17 @@ static int32_t end_of(const struct par_tiles *tiles, int32_t tile, int32_t low, 
     return low;
 }
 
-static void copy_items(const struct tri_mesh *mesh, const struct tri_tile *tile, const struct par_tile_copy *copy)
-{
-    for (int32_t i = 0; i < tile->n_vertices; i++)
-        par_tile_copy_vertex(copy, mesh, (int32_t)tile->first_vertex + i, i);
-    for (int32_t i = 0; i < tile->n_triangles; i++) {
-        const struct tri_triangle *t = &mesh->tri[tile->first_triangle + i];
-        copy->regions[i] = t->region;
-        for (int k = 0; k < 3; k++)
-            copy->corners[i][k] = par_shown(mesh, t->v[k]);
-    }
-    for (int32_t i = 0; i < tile->n_segments; i++) {
-        const struct tri_subsegment *s = &mesh->sub[tile->first_segment + i];
-        copy->segment_markers[i] = s->marker;
-        for (int k = 0; k < 2; k++)
-            copy->ends[i][k ^ mesh->parents[s->parent].reversed] = par_shown(mesh, s->v[k]);
-    }
-}
-
 /* Hands out what follows, up to these numbers. */
 static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, tri_vertex_id vertex,
                                       tri_triangle_id triangle, tri_sub_id sub, struct tri_error *error)
 {
-    int32_t n_rows = tiles->partition ? tiles->partition->n_rows : 1;
-    struct par_tile_copy copy = {0};
-    struct tri_tile tile = {.column = tile_id / n_rows, .row = tile_id % n_rows, .first_vertex = tiles->n_vertices,
-                            .first_triangle = tiles->n_triangles, .first_segment = tiles->n_segments,
-                            .n_vertices = vertex - (int32_t)tiles->n_vertices,
-                            .n_triangles = triangle - (int32_t)tiles->n_triangles,
-                            .n_segments = sub - (int32_t)tiles->n_segments};
-    if (tile.n_vertices + tile.n_triangles + tile.n_segments == 0)
-        return TRI_OK;
-    enum tri_status status = TRI_OK;
-    if (par_tile_copy_reserve(&copy, tiles->mesh, tile.n_vertices, tile.n_triangles, tile.n_segments)) {
-        copy_items(tiles->mesh, &tile, &copy);
-        par_tile_copy_show(&copy, &tile);
-        status = tiles->sink->take(tiles->sink->user, &tile, error);
-    } else {
-        status = no_memory(error);
-    }
-    par_tile_copy_free(&copy);
-    tiles->n_vertices = vertex;
-    tiles->n_triangles = triangle;
-    tiles->n_segments = sub;
-    return status;
+    const int32_t n_rows = tiles->partition ? tiles->partition->n_rows : 1;
+    const struct tri_tile tile = {.column = tile_id / n_rows, .row = tile_id % n_rows,
+                                  .n_vertices = vertex - (int32_t)tiles->n_vertices,
+                                  .n_triangles = triangle - (int32_t)tiles->n_triangles,
+                                  .n_segments = sub - (int32_t)tiles->n_segments};
+    const bool is_empty = tile.n_vertices + tile.n_triangles + tile.n_segments == 0;
+    return is_empty ? TRI_OK : hand_out_items(tiles, NULL, tile, error);
 }
 
 static int32_t next_end(int64_t first, int32_t n)
