@@ -226,16 +226,21 @@ struct export export_of(const char *name, int n_parts)
     return (struct export){.format = format, .n_parts = format->write_parts ? n_parts : 0};
 }
 
+enum tri_status mesh_files_open(struct tri_output_set *set, char *name, struct tri_output **output,
+                                struct tri_error *error)
+{
+    enum tri_status status = name ? interrupt_open(set, name, output, error)
+                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    free(name);
+    return status;
+}
+
 enum tri_status export_open(struct export *export, const char *name, struct tri_output_set *set,
                             struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int i = 0; i < files_of(export) && !status; i++) {
-        char *path = name_of(export, name, i);
-        status = path ? interrupt_open(set, path, &export->output[i], error)
-                      : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        free(path);
-    }
+    for (int i = 0; i < files_of(export) && !status; i++)
+        status = mesh_files_open(set, name_of(export, name, i), &export->output[i], error);
     return status;
 }
 

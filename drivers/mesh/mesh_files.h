@@ -43,7 +43,11 @@ struct export {
 /* Of so many parts where the format has parts, else as a whole. */
 struct export export_of(const char *name, int n_parts);
 
-/* Opens them in the guarded set (drivers/interrupt.h). */
+/* Opens a file in the guarded set (drivers/interrupt.h). name: malloc'ed, and freed here; NULL: no memory. */
+enum tri_status mesh_files_open(struct tri_output_set *set, char *name, struct tri_output **output,
+                                struct tri_error *error);
+
+/* Opens them in the guarded set. */
 enum tri_status export_open(struct export *export, const char *name, struct tri_output_set *set,
                             struct tri_error *error);
 enum tri_status export_write(const struct export *export, const struct tri_grid *grid,

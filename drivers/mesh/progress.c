@@ -110,7 +110,7 @@ static bool is_news(const struct progress *p, double time, const struct par_plac
            time - p->told >= PROGRESS_LOG_SECONDS;
 }
 
-static void clear_line(struct progress *p)
+void progress_drop(struct progress *p)
 {
     if (p->mode == PROGRESS_LINE && p->width > 0)
         fprintf(stderr, "\r%*s\r", p->width, "");
@@ -120,7 +120,7 @@ static void clear_line(struct progress *p)
 /* The sweep has been given up: its triangles are gone. */
 static void begin_again(struct progress *p)
 {
-    clear_line(p);
+    progress_drop(p);
     if (p->mode != PROGRESS_SILENT)
         fprintf(stderr, "%s: the mesh cannot be swept: refining begins again, with the mesh as a whole\n", p->program);
     p->triangles = p->first;
@@ -162,10 +162,8 @@ void progress_step(void *user, const struct par_place *place)
 void progress_end(struct progress *p, int64_t triangles, double numbering)
 {
     double time = tri_seconds() - numbering;
-    clear_line(p);
+    progress_drop(p);
     if (p->mode == PROGRESS_LOG)
         fprintf(stderr, "%s: refined to %" PRId64 " triangles in %.2f s, %s/s\n", p->program, triangles,
                 time - p->began, tri_count_text(rate(p, time, triangles)).text);
 }
-
-void progress_drop(struct progress *p) { clear_line(p); }

@@ -25,12 +25,8 @@ static enum tri_status open_stream(struct stream *s, const char *name, const str
     s->options = (struct tri_h5_options){.program = program, .name = without_folder(name),
                                          .markers = !run->arguments->switches.no_markers,
                                          .n_orphans = run->unused.n};
-    char *xdmf = stream_xdmf(name);
-    if (!xdmf)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, name, &s->options.file, error);
-    status = status ? status : interrupt_open(set, xdmf, &s->options.xdmf, error);
-    free(xdmf);
+    status = status ? status : mesh_files_open(set, stream_xdmf(name), &s->options.xdmf, error);
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
@@ -39,12 +35,7 @@ static enum tri_status open_text(struct tri_output **output, const struct run *r
 {
     if (!mesh_files_has(run, suffix))
         return TRI_OK;
-    char *path = tri_joined(run->arguments->output, suffix);
-    if (!path)
-        return tri_fail(run->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    enum tri_status status = interrupt_open(run->outputs, path, output, run->error);
-    free(path);
-    return status;
+    return mesh_files_open(run->outputs, tri_joined(run->arguments->output, suffix), output, run->error);
 }
 
 static enum tri_status open_texts(struct streams *streams, const struct run *run)
