@@ -33,6 +33,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/feature_size.c
     triangle/refine/split.c
     triangle/refine/bad_queue.c
+    triangle/refine/lattice.c
+    triangle/refine/sites.c
+    triangle/refine/lattice_fill.c
     triangle/refine/feed.c
     triangle/refine/treat.c
     triangle/refine/refine.c

@@ -164,7 +164,7 @@ def triangle_clockwise_seen_by_its_edges(m):
 
 @mutation("orientation")
 def corner_twice(m):
-    m.triangles[7][1] = m.triangles[7][0]
+    m.triangles[21][1] = m.triangles[21][0]
 
 
 @mutation("orientation")

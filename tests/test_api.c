@@ -63,7 +63,7 @@ static void assert_sound(const struct tri_mesh *mesh, const struct tri_figure *i
     assert_int_equal(tri_check_figure(&made, input, &demands, &verdict, NULL), TRI_OK);
     if (verdict.n_faults != 0)
         fail_msg("%s", verdict.text);
-    assert_true(verdict.smallest_angle >= 30 && verdict.n_small == 0);
+    assert_true(verdict.smallest_angle >= 30 - 1e-10 && verdict.n_small == 0);
 }
 
 static const double *place(struct tri_reals xy, int64_t v) { return xy.at + v * xy.stride; }
@@ -260,6 +260,54 @@ static void test_even_odd(void **state)
     tri_mesh_delete(wanted);
 }
 
+/* A third fewer triangles, unless angles are expensive, or the figure is a mesh. */
+static void test_placement(void **state)
+{
+    (void)state;
+    struct tri_figure figure = plate();
+    static const double angles[] = {0, 20, 30, 30.5, 33};
+    figure.regions = tri_reals_of(NULL, 0, 0); /* or the coarse mesh has bounds, and vertices, of its own */
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+        struct tri_settings settings = fine();
+        settings.min_angle = angles[i];
+        settings.max_area = 0.001;
+        struct tri_mesh *lattice = mesh_of(&figure, &settings), *coarse = mesh_of(&figure, NULL);
+        settings.placement = TRI_PLACEMENT_CLASSIC;
+        struct tri_mesh *classic = mesh_of(&figure, &settings);
+        const double n = (double)tri_mesh_triangles(lattice).n, of = (double)tri_mesh_triangles(classic).n;
+        assert_true(angles[i] <= 30 ? n > 0.6 * of && n < 0.8 * of : same_meshes(lattice, classic));
+        if (angles[i] == 30) {
+            assert_sound(lattice, &figure, 0.001);
+            assert_sound(classic, &figure, 0.001);
+        }
+        settings.placement = TRI_PLACEMENT_LATTICE;
+        assert_int_equal(tri_mesh_refine(coarse, &settings, NULL), TRI_OK);
+        const double further = (double)tri_mesh_triangles(coarse).n;
+        assert_true(angles[i] > 30 || fabs(further - n) < 0.05 * n);
+        tri_mesh_delete(lattice);
+        tri_mesh_delete(coarse);
+        tri_mesh_delete(classic);
+    }
+}
+
+static void test_placement_in_a_mesh_that_is_given(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_figure given = tri_no_figure();
+    struct tri_mesh *coarse = mesh_of(&figure, &settings);
+    tri_mesh_figure(coarse, &given);
+    settings.max_area = 0.001;
+    struct tri_mesh *lattice = mesh_of(&given, &settings);
+    settings.placement = TRI_PLACEMENT_CLASSIC;
+    struct tri_mesh *classic = mesh_of(&given, &settings);
+    assert_true(same_meshes(lattice, classic));
+    tri_mesh_delete(lattice);
+    tri_mesh_delete(classic);
+    tri_mesh_delete(coarse);
+}
+
 /* --- callbacks */
 
 static double length_at(void *user, const double at[2])
@@ -310,6 +358,7 @@ static void test_edge_lengths_without_meaning(void **state)
     struct tri_figure figure = plate();
     struct tri_settings settings = tri_no_settings();
     settings.min_angle = 30;
+    settings.placement = TRI_PLACEMENT_CLASSIC; /* as with any edge_length */
     struct tri_mesh *plain = mesh_of(&figure, &settings);
     settings.edge_length = same_everywhere;
     settings.most_new_points = 10000;
@@ -779,8 +828,8 @@ static void test_settings_without_meaning(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
-    struct tri_settings settings[6];
-    for (int i = 0; i < 6; i++)
+    struct tri_settings settings[8];
+    for (int i = 0; i < 8; i++)
         settings[i] = fine();
     settings[0].min_angle = NAN;
     settings[1].min_angle = -1;
@@ -788,7 +837,9 @@ static void test_settings_without_meaning(void **state)
     settings[3].max_area = -1;
     settings[4].protect = 3;
     settings[5].size = 1;
-    for (int i = 0; i < 6; i++)
+    settings[6].placement = (enum tri_placement)2;
+    settings[7].placement = (enum tri_placement)-1;
+    for (int i = 0; i < 8; i++)
         assert_refused(&figure, &settings[i]);
 }
 
@@ -985,6 +1036,8 @@ int main(void)
         cmocka_unit_test(test_a_mesh_as_figure),
         cmocka_unit_test(test_any_unit),
         cmocka_unit_test(test_even_odd),
+        cmocka_unit_test(test_placement),
+        cmocka_unit_test(test_placement_in_a_mesh_that_is_given),
         cmocka_unit_test(test_edge_length),
         cmocka_unit_test(test_edge_lengths_without_meaning),
         cmocka_unit_test(test_lengths_that_are_too_small),

@@ -75,6 +75,7 @@ struct run {
     struct par_checkpoint *checkpoint;
     int threads;
     double max_area;
+    bool lattice;
     struct tri_error error;
     int64_t given_up;
 };
@@ -85,6 +86,7 @@ static enum tri_status refine(struct run *r, int32_t points)
     struct tri_options coarse = support_quality(0, 0), fine = support_quality(20, r->max_area);
     struct tri_report made;
     coarse.refine = false;
+    fine.quality.lattice = r->lattice;
     struct tri_mesh mesh = support_generate(&pslg, &coarse, &made);
     struct tri_sink sink = {&r->taker, begin, take, end};
     struct par_options options = par_defaults();
@@ -225,6 +227,10 @@ static void test_other_runs_are_refused(void **state)
     assert_int_equal(refine(&r, POINTS + 1), TRI_BAD_INPUT);
     r = run_of(&c);
     r.max_area = 1.0001 * AREA;
+    assert_int_equal(refine(&r, POINTS), TRI_BAD_INPUT);
+    assert_non_null(strstr(r.error.text, "of another run"));
+    r = run_of(&c);
+    r.lattice = true;
     assert_int_equal(refine(&r, POINTS), TRI_BAD_INPUT);
     assert_non_null(strstr(r.error.text, "of another run"));
     par_checkpoint_close(&c, true);

@@ -55,6 +55,10 @@ static void test_both_forms(void **state)
     assert_true(t.switches.even_odd);
     assert_int_equal(TAKE_ALONE(&t, "--holes=points"), TRI_OK);
     assert_false(t.switches.even_odd);
+    assert_int_equal(TAKE(&t, "--placement", "classic"), TRI_OK);
+    assert_true(t.switches.classic);
+    assert_int_equal(TAKE_ALONE(&t, "--placement=lattice"), TRI_OK);
+    assert_false(t.switches.classic);
     assert_int_equal(TAKE(&t, "--numbering", "blocks"), TRI_OK);
     assert_true(t.options.by_block);
     assert_int_equal(TAKE_ALONE(&t, "--numbering=curve"), TRI_OK);
@@ -133,7 +137,8 @@ static void test_refused(void **state)
         {"--holes", "none"},      {"--holes", NULL},        {"--holes=", NULL},       {"--hole", "auto"},
         {"--output", "/"},        {"--output", "a/"},       {"--output", "."},        {"--output", "a/.."},
         {"--output=.h5", NULL},   {"--output=.H5", NULL},   {"--thread", "2"},        {"--threadss", "2"},
-        {"--", "letter"},         {"--=1", NULL},
+        {"--", "letter"},         {"--=1", NULL},           {"--placement", "Classic"}, {"--placement=", NULL},
+        {"--placement", NULL},    {"--placements", "classic"},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct taken t = nothing(), before = nothing();

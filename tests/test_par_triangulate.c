@@ -68,6 +68,7 @@ static void test_it_is_the_schedule(void **state)
     assert_int_equal(tri_generate(&mesh, &pslg, &how, &report, NULL), TRI_OK);
     how.quality.min_angle = 20;
     how.quality.max_area = 0.00001;
+    how.quality.lattice = true;
     struct par_options options = par_defaults();
     struct par_report schedule;
     assert_int_equal(par_refine(&mesh, &how.quality, &options, &schedule, NULL), TRI_OK);

@@ -73,9 +73,9 @@ static void test_goes_on(void **state)
     compare(NULL, &options);
 }
 
-static enum tri_status not_now(void *user, struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
-    (void)user, (void)mesh, (void)error;
+    (void)user, (void)mesh, (void)points, (void)error;
     return TRI_NO_ROOM;
 }
 

@@ -515,9 +515,10 @@ static void test_disjoint_fences_commute(void **state)
     }
 }
 
-static enum tri_status grant_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status grant_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
     int *left = user;
+    assert_int_equal(points, 1);
     if (--*left < 0)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "the view is full");
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 10, error);
@@ -549,9 +550,9 @@ static void test_more_room_is_asked_and_may_fail(void **state)
     }
 }
 
-static enum tri_status not_now(void *user, struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
-    (void)user, (void)mesh, (void)error;
+    (void)user, (void)mesh, (void)points, (void)error;
     return TRI_NO_ROOM;
 }
 

@@ -93,7 +93,7 @@ static bool use_room(struct table *table, struct par_view *view, const struct tr
     for (int32_t i = 0; i < n && enough; i++) {
         bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->triangle_capacity - mesh->n_triangles < 2 ||
                     mesh->sub_capacity - mesh->n_subs < 1;
-        enum tri_status status = need ? par_view_more_room(view, mesh, NULL) : TRI_OK;
+        enum tri_status status = need ? par_view_more_room(view, mesh, 1, NULL) : TRI_OK;
         assert_true(status == TRI_OK || status == TRI_NO_ROOM);
         enough = status == TRI_OK;
         if (!enough)

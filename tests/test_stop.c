@@ -226,7 +226,7 @@ static void test_triangulate_stops(void **state)
         struct triangulate_options options = {.stop = says_yes, .stop_user = &trigger, .threads = 1};
         in.pointlist = corners;
         in.numberofpoints = 4;
-        status = triangulate_with("Qq30a0.0001", &in, &out, NULL, &options);
+        status = triangulate_with("Qq33a0.0001", &in, &out, NULL, &options);
         assert_true(status == TRIANGULATE_OK || status == TRIANGULATE_STOPPED);
         assert_int_equal(out.pointlist != NULL, status == TRIANGULATE_OK);
         stopped += status == TRIANGULATE_STOPPED;

@@ -186,11 +186,15 @@ static void test_options(void **state)
     assert_true(o.use_segments && o.keep_hull && o.ignore_holes && o.spread_regions && o.refine);
     assert_true(o.quality.min_angle == 28.6 && o.quality.max_area == 0.5 && o.quality.region_areas);
     assert_true(o.quality.conforming && o.quality.protect == 1 && o.quality.max_steiner == 7);
+    assert_true(o.quality.lattice);
+    s.classic = true;
+    assert_false(tri_switches_options(&s).quality.lattice);
     s = parsed("A"); /* regions belong to segments */
     assert_false(tri_switches_options(&s).spread_regions);
     s = parsed("rpAa");
     assert_false(tri_switches_options(&s).spread_regions);
     assert_true(tri_switches_options(&s).quality.region_areas); /* those of the triangles */
+    assert_false(tri_switches_options(&s).quality.lattice);     /* whose vertices are where they are */
     s = parsed("q180");
     assert_true(tri_switches_options(&s).refine && tri_switches_options(&s).quality.min_angle == 0);
     static const char *const refining[] = {"q", "q0", "a", "a1", "u", "D"};

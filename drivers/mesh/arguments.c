@@ -129,6 +129,10 @@ static const char *const paragraphs[] = {
     "          A bound above 38 is treated as 38, with -D above 36 as 36\n"
     "  -a0.5   no triangle larger than 0.5. The number has no exponent: -a1e-3 means -a1 -e\n"
     "  -a      areas are bounded by the regions of the .poly file or, with -r, by the .area file\n"
+    "  --placement lattice|classic\n"
+    "          lattice (the default): if an area bound alone sets the size and the angle bound is at most 30\n"
+    "          degrees, new vertices lie in a hexagonal lattice, which takes a third fewer triangles. classic\n"
+    "          leaves the lattice out. Above 30 degrees, and with -r, both make the same mesh\n"
     "  -u      a test of the caller's own; without effect on the command line\n"
     "  -Y      do not put vertices on the boundary; -YY: nor on any segment\n"
     "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",

@@ -545,7 +545,8 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     }
     help_usage(PROGRAM);
     puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
-         "  --numbering curve|blocks\n"
+         "  --numbering curve|blocks"
+         "  --placement lattice|classic\n"
          "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
          "  --help");
     return EXIT_SUCCESS;

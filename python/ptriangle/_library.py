@@ -66,7 +66,8 @@ class Settings(Sized):
                 ("stop", Stop), ("stop_user", c_void_p),
                 ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool),
                 ("even_odd", c_bool),
-                ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p)]
+                ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p),
+                ("placement", c_int)]
 
 
 class Demands(Sized):

@@ -71,7 +71,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
          max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
          fence: Optional[Sequence[float]] = None, order: int = 1, keep_unused: bool = False,
          threads: Optional[int] = None, stop: Optional[Callable[[], Any]] = None,
-         progress: Optional[Progress] = None) -> Mesh:
+         progress: Optional[Progress] = None, placement: str = "lattice") -> Mesh:
     """A triangle mesh of a plane figure.
 
     What is given, anything that numpy makes an array of (arrays of the right type are not copied):
@@ -99,6 +99,9 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     protect: 1: no points on the boundary; 2: nor on any segment.
     max_new_points: then refinement ends.
     gate: function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max: changes stay within.
+    placement: "lattice": if max_area, a number as size, or areas of regions alone set the size, and min_angle is at
+        most 30, new points lie in a hexagonal lattice: a third fewer triangles. "classic": no lattice; edges have no
+        common directions. Above 30 degrees, with functions of size, and with triangles= both make the same mesh.
     order: 2: points amid the edges, too.
     keep_unused: points that no triangle uses (duplicates, points outside) stay. Otherwise they are dropped;
         Mesh.input_points holds the new number of each point.
@@ -112,7 +115,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     """
     who = "mesh()"
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
-                                              max_new_points, gate, fence, threads, stop, progress))
+                                              max_new_points, gate, fence, threads, stop, progress, placement))
     settings.even_odd = polygons is not None or isinstance(holes, str)
     if union and polygons is None:
         raise InputError("%s: union=True without polygons" % who)

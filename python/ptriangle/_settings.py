@@ -16,6 +16,7 @@ Size = Union[float, Callable[[float, float], float], SizeFunction]
 Place = Tuple[float, float]
 Unsuitable = Callable[[Place, Place, Place, float], Any]
 Progress = Union[bool, Callable[[float, int], Any]]
+PLACEMENTS = ("lattice", "classic")  # enum tri_placement
 
 
 def number(who: str, name: str, given: Any) -> float:
@@ -100,6 +101,13 @@ class Wanted:
     threads: Optional[int] = None
     stop: Optional[Callable[[], Any]] = None
     progress: Optional[Progress] = None
+    placement: str = "lattice"
+
+
+def _placement(who: str, given: Any) -> int:
+    if given not in PLACEMENTS:
+        raise InputError('%s: placement: %r is neither "lattice" nor "classic"' % (who, given))
+    return PLACEMENTS.index(given)
 
 
 def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
@@ -109,7 +117,8 @@ def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
                         max_area=number(who, "max_area", wanted.max_area or 0), conforming=bool(wanted.conforming),
                         keep_hull=bool(wanted.keep_hull), protect=whole(who, "protect", wanted.protect),
                         most_new_points=whole(who, "max_new_points", wanted.max_new_points, 64),
-                        threads=whole(who, "threads", wanted.threads))
+                        threads=whole(who, "threads", wanted.threads),
+                        placement=_placement(who, wanted.placement))
     if wanted.fence is not None:
         if len(wanted.fence) != 4:
             raise InputError("%s: fence has %d numbers instead of 4" % (who, len(wanted.fence)))

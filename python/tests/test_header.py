@@ -2,7 +2,7 @@
 import re
 from pathlib import Path
 
-from ptriangle import _errors, _mesh
+from ptriangle import _errors, _mesh, _settings
 
 HEADER = Path(__file__).resolve().parents[2] / "include" / "ptriangle" / "tri.h"
 
@@ -14,8 +14,9 @@ def constants(enum):
     return [re.sub(r" = 0$", "", constant) if k == 0 else constant for k, constant in enumerate(found)]
 
 
-def test_names_of_counts_and_reasons():
+def test_names_of_counts_reasons_and_placements():
     assert constants("tri_count") == ["TRI_COUNT_" + name.upper() for name in _mesh._COUNTS]
+    assert constants("tri_placement") == ["TRI_PLACEMENT_" + name.upper() for name in _settings.PLACEMENTS]
     assert constants("tri_reason") == ["TRI_REASON_" + name.upper() for name in _mesh._REASONS] + ["TRI_REASONS"]
 
 

@@ -108,6 +108,20 @@ def test_size():
     assert same.check(min_angle=30)
 
 
+def test_placement():
+    def mesh(angle, placement, **wanted):
+        m = plate(min_angle=angle, placement=placement, **wanted)
+        assert m.check(min_angle=angle, max_area=wanted.get("max_area"))
+        return m
+
+    for wanted in dict(max_area=1e-3), dict(size=0.05):
+        lattice, classic = mesh(30, "lattice", **wanted), mesh(30, "classic", **wanted)
+        assert 0.6 * len(classic.triangles) < len(lattice.triangles) < 0.8 * len(classic.triangles)
+        assert np.array_equal(plate(min_angle=30, **wanted).points, lattice.points)
+    for angle, wanted in (33, dict(max_area=1e-3)), (30, dict(size=lambda x, y: 0.05)), (30, {}):
+        assert np.array_equal(mesh(angle, "lattice", **wanted).points, mesh(angle, "classic", **wanted).points)
+
+
 def test_unsuitable_and_gate():
     m = plate(unsuitable=lambda a, b, c, area: area > 0.1)
     assert areas(m).max() <= 0.1

@@ -17,7 +17,8 @@
 static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
-    const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q)};
+    const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q),
+                              q->lattice};
     return tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
 }
 

@@ -230,6 +230,8 @@ static enum tri_status extend_room(struct par_phase_run *p, struct par_task *tas
     int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, &p->run->bounds);
     if (p->run->asked.options->tight_room > 0)
         more = p->run->asked.options->tight_room;
+    if (more < 2 * task->view.points)
+        more = 2 * task->view.points;
     p->run->report->pauses += task->progress == PAR_FULL;
     return par_room_extend(&task->view.room, &p->run->spare, p->run->mesh, more, error);
 }

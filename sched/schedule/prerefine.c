@@ -85,6 +85,7 @@ struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double c
     struct tri_quality coarse = *quality;
     coarse.area_scale = tri_area_scale(quality) * (cell / PAR_COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
+    coarse.lattice = tri_wants_lattice(quality);
     return coarse;
 }
 

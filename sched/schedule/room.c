@@ -70,10 +70,21 @@ static void end_range(struct par_view *view, enum par_kind kind)
     range->next = *counts.used;
 }
 
-enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
+/* Has the room items of each kind for so many points? Of subsegments it has one. */
+static bool has_room(const struct par_room *room, int32_t points)
+{
+    return par_room_left(room, PAR_VERTICES) >= points && par_room_left(room, PAR_TRIANGLES) / 2 >= points;
+}
+
+enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
     struct par_view *view = user;
     assert(mesh == &view->mesh);
+    for (enum par_kind kind = PAR_VERTICES; points > 1 && kind < PAR_KINDS; kind++)
+        end_range(view, kind);
+    view->points = points > 1 && !has_room(&view->room, points) ? points : 0;
+    if (view->points > 0)
+        return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         const struct counts counts = counts_of(mesh, kind);
         assert(*counts.used <= *counts.capacity);
@@ -107,11 +118,11 @@ static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
     return par_ranges_reserve(to, to->n + 1) && par_ranges_reserve(spare, spare->n + spare->dealt + 1);
 }
 
-/* Items of a range that insertions can take: none where not even one fits. */
+/* Items of a range that insertions can take. */
 static int32_t usable(struct par_range range, enum par_kind kind)
 {
-    int32_t n = range.end - range.next;
-    return n >= one_insertion[kind] ? n : 0;
+    const int32_t n = range.end - range.next;
+    return n - n % one_insertion[kind];
 }
 
 static void deal_range(struct par_ranges *to, struct par_ranges *spare, struct par_range range)

@@ -41,13 +41,14 @@ struct par_view {
     struct tri_mesh mesh; /* the shared arrays, which are not its own; counts and capacities: those of the room's
                              current ranges, while the block runs */
     struct par_room room;
+    int32_t points; /* for which there was no room the last time; 0: there has been */
 };
 
 /* Where the block begins, or goes on: the shared arrays may have moved since. */
 void par_view_begin(struct par_view *view, const struct tri_mesh *shared);
 
 /* A tri_more_room: user is the struct par_view. */
-enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
+enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error);
 
 /* Where the block ends, or pauses: its room learns how far it has been used. */
 void par_view_end(struct par_view *view);

@@ -530,6 +530,7 @@ static enum tri_status refine_sizes_first(struct par_run *run, const struct tri_
 {
     struct tri_quality easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
+    easy.lattice = tri_wants_lattice(quality); /* what the angles would not leave standing is not built */
     enum tri_status status = refine_to(run, &easy, error);
     if (status || !par_is_of_sizes(run->place.next)) /* a state of ranks was further */
         return status;

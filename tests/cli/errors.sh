@@ -21,6 +21,14 @@ for word in --min-angle --min-angle=30 --versions --p; do
     run 1 $word -p letter
     complains "^triangle: --[a-z=0-9-]*: no such option"
 done
+for words in "--placement hexagons" --placement=hexagons --placement= "--placement Classic"; do
+    # shellcheck disable=SC2086 # one word or two
+    run 1 -pq30 letter $words
+    complains '^triangle: --placement: "[A-Za-z]*" is neither lattice nor classic$'
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+done
+run 1 -pq30 letter --placement
+complains '^triangle: --placement needs a value$'
 wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
 # a file of another kind: what is read instead
 printf '{"type": "Polygon"}' >letter.json

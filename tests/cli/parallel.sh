@@ -95,6 +95,12 @@ for number in 61 -1 nan x; do
     program 1 letter --min-angle "$number"
     complains 'min-angle: .*from 0 to 60'
 done
+for words in "--placement hexagons" --placement=; do
+    # shellcheck disable=SC2086 # one word or two
+    program 1 -pq30 letter $words
+    complains '^ptriangle: --placement: "[a-z]*" is neither lattice nor classic$'
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+done
 program 1 --output= letter
 complains 'output: the name is empty'
 for base in / ./ . .. ./.. .h5; do
@@ -157,8 +163,31 @@ assert 0.9 * inserted < counted <= inserted
 assert report["mesh"]["vertices"] == 57 + inserted
 assert report["mesh"]["smallest_angle"] >= 30 and report["mesh"]["mean_area_over_bound"] < 1
 assert report["bounds"] == {"min_angle": 30, "max_area": 0.001}
+assert report["placement"] == "lattice" and report["mesh"]["mean_area_over_bound"] > 0.8
 '
 fi
+
+# --- placement: as with triangle, see switches.sh; here also by many blocks
+for words in "-pq30a0.01" "-pq30a0.01 --placement lattice"; do
+    # shellcheck disable=SC2086
+    PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
+    judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.01
+    check "a third fewer triangles" sh -c 'n=$(head -n 1 letter.1.ele | cut -d " " -f 1); [ $n -gt 7000 ] && [ $n -lt 8500 ]'
+    check "the report says so" grep -q '"placement": "lattice"' report.json
+done
+PTRIANGLE_TEST_BLOCK=60 program 0 -pq30a0.01 letter --placement=classic --report report.json
+counts 5755 10968
+check "the report says so" grep -q '"placement": "classic"' report.json
+program 0 -pq20a0.1 letter --placement=classic
+counts 611 1074
+for words in -pq33a0.01 -pq30; do # no lattice: angles are expensive, or there is no bound on areas
+    PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
+    check "the report says so" grep -q '"placement": "classic"' report.json
+    cp letter.1.ele one.ele
+    PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --placement classic
+    check "one mesh" alike one.ele letter.1.ele
+done
+fresh letter.poly
 program 0 -pQ --report report.json letter
 check "nothing was refined" grep -qx ' "schedule": null' report.json
 

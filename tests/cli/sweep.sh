@@ -189,8 +189,11 @@ if [ -e state/state-0 ]; then
     ls >.before
     program 1 -Qpq30a0.002 other --output out.h5 --resume state
     complains '^state: is the checkpoint of another run: of another input, or with other switches$'
-    program 1 -Qpq30a0.0006 letter --output out.h5 --resume state
-    complains '^state: is the checkpoint of another run'
+    for words in -Qpq30a0.0006 "-Qpq30a0.002 --placement classic"; do
+        # shellcheck disable=SC2086 # one word or more
+        program 1 $words letter --output out.h5 --resume state
+        complains '^state: is the checkpoint of another run'
+    done
     program 1 -Qpq30a0.002 letter --output out.h5 --checkpoint state
     complains '^state: holds the checkpoint of a run already$'
     for words in "" --dry-run; do

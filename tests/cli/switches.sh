@@ -80,6 +80,28 @@ run 0 -pq61 letter
 matches "^Warning:  an angle bound of 61"
 judge letter.1 --poly letter.poly --max-bad 1000000
 
+# --- placement: classic makes the meshes that there were before the lattice, which takes a third fewer triangles
+fresh letter.poly section.poly
+run 0 -pq20a0.1 --placement classic letter
+counts 611 1074
+run 0 --placement=lattice -pq30a0.01 letter --placement classic
+counts 5759 10984
+run 0 --placement=classic -pq30a0.01D letter
+counts 5777 10948
+run 0 --placement=classic -pqa section
+counts 560 1018
+for words in "" "--placement lattice"; do
+    # shellcheck disable=SC2086 # none or two
+    run 0 -pq30a0.01 letter $words
+    judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.01
+    check "a third fewer triangles" sh -c 'n=$(head -n 1 letter.1.ele | cut -d " " -f 1); [ $n -gt 7000 ] && [ $n -lt 8500 ]'
+done
+run 0 -pq33a0.01 letter
+records letter.1.ele >.expected
+run 0 -pq33a0.01 --placement classic letter
+records letter.1.ele >.found
+check "one mesh above 30 degrees" cmp .expected .found
+
 # --- regions
 fresh section.poly
 run 0 -pqaA section

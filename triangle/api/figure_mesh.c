@@ -30,6 +30,8 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: max_area is %g", settings->max_area);
     if (settings->protect < 0 || settings->protect > 2)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: protect is %d", settings->protect);
+    if (settings->placement != TRI_PLACEMENT_LATTICE && settings->placement != TRI_PLACEMENT_CLASSIC)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: placement is %d", (int)settings->placement);
     for (int k = 0; settings->fence && k < 4; k++)
         if (isnan(settings->fence[k]))
             return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: fence is not a number");
@@ -73,6 +75,7 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.min_angle = s->min_angle;
     how.max_area = s->max_area;
     how.region_areas = m->has_areas;
+    how.lattice = s->placement == TRI_PLACEMENT_LATTICE && !m->has_triangles;
     how.conforming = s->conforming;
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
@@ -174,7 +177,8 @@ static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figu
 {
     const struct tri_pslg *pslg = &figure->pslg;
     const struct tri_elements *elements = &figure->elements;
-    if (elements->n > 0) {
+    m->has_triangles = elements->n > 0;
+    if (m->has_triangles) {
         m->has_attributes = elements->n_attributes > 0;
         for (int32_t t = 0; elements->areas && t < elements->n && !m->has_areas; t++)
             m->has_areas = elements->areas[t] > 0;

@@ -9,7 +9,8 @@ struct tri_api_mesh {
     struct tri_mesh mesh; /* first: what callers point to. No free numbers, points in the order of the caller */
     struct tri_report report;
     struct tri_settings refined; /* bounds of the last refinement, if it ended; all 0 if none has */
-    bool has_areas;       /* bounds of sizes came with the figure .. */
+    bool has_triangles;   /* the figure was a mesh .. */
+    bool has_areas;       /* .. bounds of sizes came with it .. */
     bool has_attributes;  /* .. and attributes of triangles or regions did */
     double *places;       /* [n_vertices][2] in the caller's coordinates; NULL: they are mesh.xy */
     double *attributes;   /* [n_triangles][as many as tri_region_attributes has]; NULL where there are none */

@@ -30,6 +30,7 @@ struct tri_switches {
     bool regions;        /* A */
     bool keep_hull;      /* c */
     bool even_odd;       /* --holes auto: no letter */
+    bool classic;        /* --placement classic: no letter; false: new points lie in a lattice where they can */
     bool conforming;     /* D */
     bool jettison;       /* j */
     bool edges, voronoi, neighbors, off; /* e v n g */

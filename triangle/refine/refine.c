@@ -43,16 +43,11 @@ static bool work_off(struct tri_refiner *r)
     }
 }
 
-static tri_triangle_id listed(const struct tri_refiner *r, int32_t i)
-{
-    return r->hooks->worklist ? r->hooks->worklist[i] : i;
-}
-
 /* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
 static bool queue_chunk(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < TRI_WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
-        tri_triangle_id triangle = listed(r, r->next_listed);
+        tri_triangle_id triangle = tri_listed(r, r->next_listed);
         if ((r->quality->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
             return false;
     }
@@ -72,6 +67,11 @@ static bool refine_worklist(struct tri_refiner *r)
         assert(!r->in_hand && r->n_encroached == 0);
         r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
         r->next_listed = 0;
+        r->step = FILLING;
+    }
+    if (r->step == FILLING) {
+        if (!tri_fill_lattice(r))
+            return false;
         r->step = FIRST_PASS;
     }
     while (r->step == FIRST_PASS) {
@@ -87,7 +87,7 @@ static bool refine_worklist(struct tri_refiner *r)
     if (!work_off(r))
         return false;
     while (tri_has_sizes(r->quality) && r->next_listed < r->n_worklist)
-        if (!tri_feed_triangle(r, listed(r, r->next_listed++), true) || !work_off(r))
+        if (!tri_feed_triangle(r, tri_listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
 }
@@ -99,7 +99,7 @@ static void begin_stages(struct tri_refiner *r)
 {
     bool easy = !r->hooks->fence && !r->hooks->worklist && tri_sizes_come_first(r->mesh, r->quality, NULL);
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality), r->quality->conforming);
+    r->criterion.bounds = tri_bounds_of(r->quality, easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality));
 }
 
 /* Resumable, as refine_worklist. */
@@ -109,7 +109,7 @@ static bool refine_in_stages(struct tri_refiner *r)
         if (!refine_worklist(r))
             return false;
         r->step = NOT_BEGUN;
-        r->criterion.bounds = tri_bounds_for(tri_worked_angle(r->quality), r->quality->conforming);
+        r->criterion.bounds = tri_bounds_of(r->quality, tri_worked_angle(r->quality));
     }
     return true;
 }
@@ -145,6 +145,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->hooks = hooks;
     r->criterion = tri_criterion_for(mesh, quality);
     r->report = report;
+    r->lattice = tri_wants_lattice(quality);
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = hooks->fence;
@@ -170,6 +171,7 @@ void tri_refiner_free(struct tri_refiner *r)
 {
     if (!r)
         return;
+    tri_fill_free(r);
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
     free(r->encroached);

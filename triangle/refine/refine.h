@@ -24,9 +24,11 @@ typedef bool tri_gate(void *user, const double p[2]);
  * before the call ends. */
 typedef void tri_deferred(void *user, tri_triangle_id triangle);
 
-/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
- * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
-typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
+/* Makes room for so many points in a mesh that is a view of shared arrays: moves its counts and capacities to an unused
+ * range that has room for one, and sees to it that calls for one point each will find room for the others. A point
+ * takes a vertex, two triangles and a subsegment at most; of many, only the first may take a subsegment. TRI_NO_ROOM:
+ * not now. */
+typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error);
 
 /* Callbacks of a caller that holds only part of a mesh (TRI_BEYOND). changed: these triangles have just been made.
  * beyond: the call returns TRI_NO_ROOM, since what lies behind an edge has to be known, and edge[] are its ends. */

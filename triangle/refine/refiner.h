@@ -10,7 +10,10 @@
 
 enum tri_bound_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
-enum tri_step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
+enum tri_step { NOT_BEGUN, FILLING, FIRST_PASS, SECOND_PASS };
+
+struct tri_fill;
+struct tri_lattice;
 
 struct tri_refiner {
     struct tri_mesh *mesh;
@@ -22,6 +25,8 @@ struct tri_refiner {
     int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
+    bool lattice;     /* points lie in a lattice where they can */
+    struct tri_fill *fill; /* cells of the lattice at work (lattice_fill.c); NULL: none */
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
     enum tri_step step;
     int limit;        /* buckets from here on wait for the second pass */
@@ -42,6 +47,12 @@ static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, co
     enum tri_badness badness = tri_judge(&r->criterion, t, shape);
     bool counts = !r->hooks->urgent || r->hooks->urgent(r->hooks->urgent_user, r->mesh->xy, t->v);
     return counts ? badness : TRI_GOOD;
+}
+
+/* Triangle i of the worklist. */
+static inline tri_triangle_id tri_listed(const struct tri_refiner *r, int32_t i)
+{
+    return r->hooks->worklist ? r->hooks->worklist[i] : i;
 }
 
 /* How the treatment of a bad triangle ended. */
@@ -70,7 +81,28 @@ bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
 bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
 bool tri_feed_walls(struct tri_refiner *r);
 
+/* --- lattice_fill.c */
+
+/* Makes cells of the lattice in the triangles of the worklist that are too large. Resumable: false means that something
+ * failed, or that there was no room. */
+bool tri_fill_lattice(struct tri_refiner *r);
+void tri_fill_free(struct tri_refiner *r);
+
 /* --- treat.c */
+
+/* Makes room for so many points. */
+enum tri_status tri_make_room(struct tri_refiner *r, int32_t points);
+
+/* Adds a vertex, for which there is room. on: as tri_mesh.on. */
+tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker);
+
+/* The same is tried again when there is more of the mesh beyond edge ab. Returns FAILED. */
+enum tri_outcome tri_wait_for(struct tri_refiner *r, tri_vertex_id a, tri_vertex_id b);
+
+/* Inserts p, a lattice point in a triangle, or splits a subsegment that it encroaches (AGAIN). REFUSED: something is
+ * too near to it, or the fence. */
+enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p,
+                                       const struct tri_lattice *lattice);
 
 /* Treats one bad triangle until it is gone, given up or deferred. FAILED: it is as it was. */
 enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry);

@@ -16,6 +16,7 @@
 #include <assert.h>
 
 #include "triangle/geometry/predicates.h"
+#include "triangle/refine/lattice.h"
 #include "triangle/refine/petal.h"
 #include "triangle/refine/place.h"
 #include "triangle/refine/split.h"
@@ -29,25 +30,27 @@ static const double EQUILATERAL = 2.3094010767585030580;
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
-static enum tri_status find_room(struct tri_refiner *r)
+static enum tri_status find_room(struct tri_refiner *r, int32_t points)
 {
     struct tri_mesh *m = r->mesh;
     if (r->hooks->more_room)
-        return r->error.status = r->hooks->more_room(r->hooks->more_room_user, m, &r->error);
-    enum tri_status status = tri_mesh_reserve_vertices(m, 1, &r->error);
-    status = status ? status : tri_mesh_reserve_triangles(m, 2, &r->error);
+        return r->error.status = r->hooks->more_room(r->hooks->more_room_user, m, points, &r->error);
+    enum tri_status status = tri_mesh_reserve_vertices(m, points, &r->error);
+    status = status ? status : tri_mesh_reserve_triangles(m, 2 * points, &r->error);
     return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
 }
 
-static inline enum tri_status make_room(struct tri_refiner *r)
+static inline enum tri_status make_room(struct tri_refiner *r, int32_t points)
 {
     const struct tri_mesh *m = r->mesh;
-    bool has_room = m->vertex_capacity > m->n_vertices && m->triangle_capacity - m->n_triangles >= 2 &&
-                    m->sub_capacity > m->n_subs;
-    return has_room ? TRI_OK : find_room(r);
+    bool has_room = m->vertex_capacity - m->n_vertices >= points &&
+                    m->triangle_capacity - m->n_triangles >= 2 * points && m->sub_capacity > m->n_subs;
+    return has_room ? TRI_OK : find_room(r, points);
 }
 
-static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
+enum tri_status tri_make_room(struct tri_refiner *r, int32_t points) { return make_room(r, points); }
+
+tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
     struct tri_mesh *m = r->mesh;
     assert(m->n_vertices < m->vertex_capacity && tri_is_in_range(p));
@@ -65,17 +68,18 @@ static void tell_changes(const struct tri_refiner *r)
         r->hooks->part->changed(r->hooks->part->user, r->cavity.tri, r->cavity.n_edges);
 }
 
-/* Inserts p, whose cavity has been found, for the sake of a triangle. */
+/* Inserts p, whose cavity has been found, for the sake of a triangle; the features around are no larger than `most`. */
 static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
-                                const struct tri_shape *shape)
+                                const struct tri_shape *shape, double most)
 {
     assert(p.x == r->cavity.p.x && p.y == r->cavity.p.y && r->cavity.n_edges == r->cavity.n_tri + 2);
-    if (make_room(r))
+    if (make_room(r, 1))
         return FAILED;
-    tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
+    tri_vertex_id v = tri_add_vertex(r, p, TRI_VERTEX_FREE, 0);
     const tri_vertex_id *corner = r->mesh->tri[triangle].v;
-    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
-                                             corner[tri_prev[shape->shortest]], p, r->sized);
+    const double feature = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                              corner[tri_prev[shape->shortest]], p, r->sized);
+    r->mesh->feature[v] = tri_lesser(feature, most);
     bool room = tri_fill_and_feed(r, v);
     tell_changes(r);
     r->report->inserted_free++;
@@ -97,6 +101,12 @@ static enum tri_outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id
     r->hooks->part->beyond(r->hooks->part->user, edge);
     r->error.status = TRI_NO_ROOM;
     return FAILED;
+}
+
+enum tri_outcome tri_wait_for(struct tri_refiner *r, tri_vertex_id a, tri_vertex_id b)
+{
+    const tri_vertex_id edge[2] = {a, b};
+    return wait_for_more(r, edge);
 }
 
 static enum tri_outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
@@ -195,11 +205,11 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
         return wait_for_more(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
-    if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
+    if (found == TRI_SEARCH_NO_MEMORY || make_room(r, 1))
         return FAILED;
     bool boundary = tri_is_boundary(&old);
     assert(r->cavity.n_edges > n_left || boundary);
-    tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
+    tri_vertex_id v = tri_add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
@@ -312,29 +322,72 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
     }
 }
 
+/* The cavity of the lattice point for a triangle, *p; sets *most as insert_free has it. REFUSED: there is none. */
+static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
+                                        struct tri_point *p, double *most)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    const double area2 = tri_area2_bound(&r->criterion.asked, t->region) / tri_area_scale(r->quality);
+    if (!r->lattice || !(area2 < HUGE_VAL))
+        return REFUSED;
+    const struct tri_lattice lattice = tri_lattice_for(area2);
+    if (!tri_lattice_point(&lattice, r->mesh->xy, t->v, shape, p))
+        return REFUSED;
+    const enum tri_outcome outcome = find_cavity(r, triangle, *p);
+    if (outcome == DONE && !tri_lattice_is_clear(&r->cavity, &lattice))
+        return REFUSED;
+    *most = lattice.feature;
+    return outcome;
+}
+
+/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has
+ * it. */
+static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
+                                        const struct tri_shape *shape, double most)
+{
+    assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
+    tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
+    if (s == TRI_NONE)
+        return insert_free(r, p, triangle, shape, most);
+    if (tri_is_flat(r->mesh, shape))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    const enum tri_outcome outcome = split(r, s, triangle);
+    return outcome == DONE ? AGAIN : outcome;
+}
+
 /* The best or the usual point, or the split of a subsegment that it encroaches. */
 static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                                 enum tri_badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[triangle];
     struct tri_point p;
-    enum tri_outcome outcome = REFUSED;
-    if (badness == TRI_BAD_ANGLE && !r->sized && !r->hooks->urgent)
+    double most = HUGE_VAL;
+    enum tri_outcome outcome = find_in_lattice(r, triangle, shape, &p, &most);
+    if (outcome == REFUSED && badness == TRI_BAD_ANGLE && !r->sized && !r->hooks->urgent)
         outcome = find_best(r, triangle, shape, &p);
     if (outcome == REFUSED) {
         p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
         outcome = find_cavity(r, triangle, p);
     }
-    if (outcome != DONE)
-        return outcome;
-    assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
-    tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
-    if (s == TRI_NONE)
-        return insert_free(r, p, triangle, shape);
-    if (tri_is_flat(r->mesh, shape))
-        return refuse(r, TRI_EXCUSE_PRECISION);
-    outcome = split(r, s, triangle);
-    return outcome == DONE ? AGAIN : outcome;
+    return outcome == DONE ? insert_or_split(r, p, triangle, shape, most) : outcome;
+}
+
+enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p,
+                                       const struct tri_lattice *lattice)
+{
+    const struct tri_shape shape = tri_shape_of(r->mesh->xy, r->mesh->tri[triangle].v);
+    if (r->hooks->fence && !tri_fence_holds(r->hooks->fence, p))
+        return REFUSED;
+    r->sized = true;
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
+    case TRI_SEARCH_FOUND: break;
+    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
+    case TRI_SEARCH_NO_MEMORY: return FAILED;
+    default: return REFUSED;
+    }
+    if (!tri_lattice_is_clear(&r->cavity, lattice))
+        return REFUSED;
+    return insert_or_split(r, p, triangle, &shape, lattice->feature);
 }
 
 /* For sizes, where the usual point is refused: see place.c. */
@@ -350,7 +403,7 @@ static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id tr
     if (tri_is_walled_in(&r->criterion.asked, triangle, shape))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     outcome = find_cavity(r, triangle, p);
-    return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
+    return outcome == DONE ? insert_free(r, p, triangle, shape, HUGE_VAL) : outcome;
 }
 
 static bool at_limit(struct tri_refiner *r)

@@ -93,7 +93,8 @@ static double wished_in(const struct estimator *e, const struct tri_point p[3])
 /* Triangles that sizes ask for in a piece of a triangle of this region. */
 static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3])
 {
-    double work = tri_area_of(p[0], p[1], p[2]) * 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->asked, region));
+    const double mean = tri_mean_over_bound(e->asked.quality);
+    double work = tri_area_of(p[0], p[1], p[2]) * 2 / (mean * tri_area2_bound(&e->asked, region));
     if (tri_asks_caller(e->asked.quality))
         work = fmax(work, wished_in(e, p));
     return work < MOST_WORK ? work : MOST_WORK;
@@ -179,11 +180,12 @@ static void sum_share(void *context, size_t share)
 {
     struct works *w = context;
     struct tri_range range = tri_share(share, w->n);
+    const double mean = tri_mean_over_bound(w->e->asked.quality);
     double sum = 0, urgent = 0;
     for (int32_t i = range.first; i < range.last; i++) {
         const double work = work_at(w, i);
         sum += w->step * work;
-        urgent += TRI_MEAN_OVER_BOUND * work > 1 ? w->step * work : 0;
+        urgent += mean * work > 1 ? w->step * work : 0;
     }
     w->sum[share] = sum;
     w->urgent[share] = urgent;
@@ -280,7 +282,7 @@ double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
     e.large *= ROUGH;
     e.at_least = true;
     sum_of(asked_works(&e), executor, &urgent);
-    return TRI_MEAN_OVER_BOUND / TRI_MOST_OVER_BOUND * urgent;
+    return tri_mean_over_bound(&known) / tri_most_over_bound(&known) * urgent;
 }
 
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_quality *quality,

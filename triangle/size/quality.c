@@ -15,6 +15,22 @@ double tri_worked_angle(const struct tri_quality *quality)
     return fmin(quality->min_angle, quality->conforming ? TRI_CONFORMING_ANGLE : TRI_USUAL_ANGLE);
 }
 
+bool tri_wants_lattice(const struct tri_quality *quality)
+{
+    return quality->lattice && tri_has_sizes(quality) && !tri_asks_caller(quality) &&
+           tri_worked_angle(quality) <= TRI_LATTICE_ANGLE;
+}
+
+double tri_mean_over_bound(const struct tri_quality *quality)
+{
+    return tri_wants_lattice(quality) ? TRI_LATTICE_MEAN : TRI_MEAN_OVER_BOUND;
+}
+
+double tri_most_over_bound(const struct tri_quality *quality)
+{
+    return tri_wants_lattice(quality) ? 1 : TRI_MOST_OVER_BOUND;
+}
+
 bool tri_note_lowered_angle(const struct tri_quality *quality, char note[TRI_ANGLE_NOTE])
 {
     const double worked = tri_worked_angle(quality);
@@ -39,6 +55,14 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
     /* The off-centre that sees its edge under exactly the angle bound lies at 0.5 of this (Üngör 2004); 0.2% nearer,
      * rounding cannot make the new triangle bad. */
     bounds.off_centre = TRI_OFF_CENTRE * sqrt((1 + cosine) / (1 - cosine));
+    return bounds;
+}
+
+struct tri_bounds tri_bounds_of(const struct tri_quality *quality, double min_angle)
+{
+    struct tri_bounds bounds = tri_bounds_for(min_angle, quality->conforming);
+    if (tri_wants_lattice(quality))
+        bounds.sin2 *= 1 - TRI_LATTICE_ROUNDING;
     return bounds;
 }
 
@@ -148,8 +172,7 @@ double tri_asked_length(const struct tri_asked *asked, const struct tri_point tr
 
 struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    return (struct tri_criterion){tri_asked_of(mesh, quality),
-                                  tri_bounds_for(quality->min_angle, quality->conforming)};
+    return (struct tri_criterion){tri_asked_of(mesh, quality), tri_bounds_of(quality, quality->min_angle)};
 }
 
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)

@@ -29,6 +29,7 @@ struct tri_quality {
     void *unsuitable_user;
     double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
                               about triangles of 1 / area_scale of the area; 0: as they are */
+    bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h) */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
@@ -42,6 +43,13 @@ static inline bool tri_asks_caller(const struct tri_quality *quality)
 {
     return quality->edge_length || quality->unsuitable;
 }
+
+/* Are new points put into a lattice? The bound on angles must leave it standing: above 30 degrees it does not. */
+bool tri_wants_lattice(const struct tri_quality *quality);
+
+/* Of the areas in a mesh over the bound on areas: the mean, and a share that no mesh has. */
+double tri_mean_over_bound(const struct tri_quality *quality);
+double tri_most_over_bound(const struct tri_quality *quality);
 
 /* A larger bound on angles is treated as this one. */
 double tri_worked_angle(const struct tri_quality *quality);
@@ -73,6 +81,10 @@ struct tri_bounds {
 /* min_angle in degrees; above 60 as 60, which no mesh keeps; 0: no bound. conforming: the lens is the whole diametral
  * disk. */
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
+
+/* The same for a stage of a call. In a lattice points halve angles of 60 degrees, and rounding must not make these
+ * bad. */
+struct tri_bounds tri_bounds_of(const struct tri_quality *quality, double min_angle);
 
 /* --- the sizes that are asked for, at a place and of a triangle
  *

@@ -1,0 +1,40 @@
+/* Points of the lattice, and what keeps them apart from vertices and subsegments. */
+#include "triangle/refine/lattice.h"
+
+#include "triangle/refine/place.h"
+#include "triangle/tunables.h"
+
+struct tri_lattice tri_lattice_for(double area2)
+{
+    static const double rise = 0.86602540378443864676; /* sqrt(3) / 2 */
+    const double edge = sqrt(TRI_LATTICE_SHARE * area2 / rise);
+    return (struct tri_lattice){edge, rise * edge, TRI_LATTICE_FEATURE * edge};
+}
+
+bool tri_lattice_point(const struct tri_lattice *lattice, const struct tri_point *xy, const tri_vertex_id v[3],
+                       const struct tri_shape *shape, struct tri_point *p)
+{
+    const double apart = TRI_LATTICE_APART * lattice->edge;
+    double row, column;
+    tri_lattice_near(lattice, tri_place(xy, v, shape, HUGE_VAL), &row, &column);
+    *p = tri_lattice_at(lattice, row, column);
+    for (int k = 0; k < 3; k++)
+        if (!(tri_distance2(xy[v[k]], *p) >= apart * apart))
+            return false;
+    return true;
+}
+
+bool tri_lattice_is_clear(const struct tri_cavity *cavity, const struct tri_lattice *lattice)
+{
+    const double apart = TRI_LATTICE_APART * lattice->edge, off_walls = TRI_LATTICE_OFF_WALLS * lattice->edge;
+    for (int32_t i = 0; i < cavity->n_edges; i++)
+        if (cavity->edge[i].a->r.l < apart * apart)
+            return false;
+    for (int32_t i = 0; i < cavity->n_wall; i++) {
+        const struct tri_cavity_edge *wall = &cavity->edge[cavity->wall[i]];
+        const double x = wall[1].a->r.x - wall->a->r.x, y = wall[1].a->r.y - wall->a->r.y;
+        if (wall->area2 * wall->area2 < off_walls * off_walls * (x * x + y * y))
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,252 @@
+/* Triangles are painted row by row; then sites near to corners and subsegments are wiped out. */
+#include "triangle/refine/sites.h"
+
+#include <stdlib.h>
+
+#include "triangle/tunables.h"
+
+/* What is nearer than this, in edges, to the border of a triangle counts as inside: no site between two is lost by
+ * rounding. One that is outside the mesh lies too near to its boundary. */
+static const double SLACK = 1e-6;
+
+/* Columns first .. last, as whole numbers. */
+struct span {
+    double first, last;
+};
+
+/* The columns of a row whose points lie between two abscissae. */
+static struct span columns_between(const struct tri_lattice *lattice, double row, double from, double to)
+{
+    const double shift = tri_lattice_shift(row);
+    return (struct span){ceil(from / lattice->edge - shift - SLACK), floor(to / lattice->edge - shift + SLACK)};
+}
+
+static double lowest(const struct tri_point p[3]) { return tri_lesser(p[0].y, tri_lesser(p[1].y, p[2].y)); }
+
+static double highest(const struct tri_point p[3]) { return tri_larger(p[0].y, tri_larger(p[1].y, p[2].y)); }
+
+/* The columns of a row in a triangle, whose corners reach to the row's height, but for SLACK. */
+static struct span columns_in(const struct tri_lattice *lattice, const struct tri_point p[3], double row)
+{
+    const double y = tri_lesser(tri_larger(row * lattice->rise, lowest(p)), highest(p));
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        const struct tri_point a = p[k], b = p[tri_next[k]];
+        if (tri_lesser(a.y, b.y) > y || tri_larger(a.y, b.y) < y || a.y == b.y)
+            continue;
+        const double x = a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y);
+        from = tri_lesser(from, x);
+        to = tri_larger(to, x);
+    }
+    return from <= to ? columns_between(lattice, row, from, to) : (struct span){1, 0};
+}
+
+static struct span rows_between(const struct tri_lattice *lattice, double from, double to)
+{
+    return (struct span){ceil(from / lattice->rise - SLACK), floor(to / lattice->rise + SLACK)};
+}
+
+static struct span rows_in(const struct tri_lattice *lattice, const struct tri_point p[3])
+{
+    return rows_between(lattice, lowest(p), highest(p));
+}
+
+static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point p[3])
+{
+    for (int k = 0; k < 3; k++)
+        p[k] = mesh->xy[mesh->tri[t].v[k]];
+}
+
+/* The lattice's rows and the leftmost column; false: there are more than `most`, or coordinates are too coarse for
+ * them. */
+static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
+                       int32_t most)
+{
+    struct span rows = {HUGE_VAL, -HUGE_VAL}, columns = rows;
+    for (int32_t i = 0; i < n; i++) {
+        struct tri_point p[3];
+        corners_of(mesh, triangle[i], p);
+        const struct span own = rows_in(&s->lattice, p);
+        rows.first = tri_lesser(rows.first, own.first);
+        rows.last = tri_larger(rows.last, own.last);
+        for (int k = 0; k < 3; k++) {
+            columns.first = tri_lesser(columns.first, floor(p[k].x / s->lattice.edge) - 1);
+            columns.last = tri_larger(columns.last, floor(p[k].x / s->lattice.edge) + 1);
+        }
+    }
+    s->bottom = 2 * floor(0.5 * rows.first) - TRI_SITE_MARGIN;
+    s->left = columns.first - TRI_SITE_MARGIN;
+    const double farthest = tri_larger(tri_larger(fabs(rows.first), fabs(rows.last)),
+                                       tri_larger(fabs(columns.first), fabs(columns.last)));
+    if (!(farthest < TRI_LATTICE_FARTHEST) || !(rows.last - s->bottom < most) ||
+        !(columns.last - columns.first < INT32_MAX / 2))
+        return false;
+    s->n_rows = rows.first <= rows.last ? (int32_t)(rows.last - s->bottom) + 1 + TRI_SITE_MARGIN : 0;
+    return true;
+}
+
+/* Calls `paint` for each row of each triangle with its columns. */
+static void paint_all(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
+                      void (*paint)(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t))
+{
+    for (int32_t i = 0; i < n; i++) {
+        struct tri_point p[3];
+        corners_of(mesh, triangle[i], p);
+        const struct span rows = rows_in(&s->lattice, p);
+        for (double row = rows.first; row <= rows.last; row++) {
+            struct span columns = columns_in(&s->lattice, p, row);
+            columns.first -= s->left;
+            columns.last -= s->left;
+            if (columns.first <= columns.last)
+                paint(s, (int32_t)(row - s->bottom), columns, triangle[i]);
+        }
+    }
+}
+
+static void widen_row(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t)
+{
+    (void)t;
+    for (int32_t k = row - TRI_SITE_MARGIN; k <= row + TRI_SITE_MARGIN; k++) {
+        s->row[k].first = (int32_t)tri_lesser(s->row[k].first, columns.first - TRI_SITE_MARGIN);
+        s->row[k].last = (int32_t)tri_larger(s->row[k].last, columns.last + TRI_SITE_MARGIN);
+    }
+}
+
+static void paint_row(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t)
+{
+    const int32_t base = s->row[row].base;
+    for (int32_t c = (int32_t)columns.first; c <= (int32_t)columns.last; c++) {
+        s->at[base + c] = TRI_SITE_FREE;
+        s->near[base + c] = t;
+    }
+}
+
+/* Where rows begin; s->n stays 0 where there are more than `most` sites. */
+static void lay_out(struct tri_sites *s, int32_t most)
+{
+    int64_t n = 0;
+    for (int32_t row = 0; row < s->n_rows && n <= most; row++) {
+        struct tri_site_row *r = &s->row[row];
+        r->base = (int32_t)n - r->first;
+        n += r->first <= r->last ? (int64_t)r->last - r->first + 1 : 0;
+    }
+    s->n = n <= most ? (int32_t)n : 0;
+}
+
+/* The index of the site in a row and column; TRI_NONE: there is none. */
+static int32_t find_site(const struct tri_sites *s, double row, double column)
+{
+    if (!(row >= 0 && row < s->n_rows))
+        return TRI_NONE;
+    const struct tri_site_row *r = &s->row[(int32_t)row];
+    return column >= r->first && column <= r->last ? r->base + (int32_t)column : TRI_NONE;
+}
+
+struct segment {
+    struct tri_point a, b; /* may be the same */
+};
+
+static double distance2_to(const struct segment *s, struct tri_point p)
+{
+    const double x = s->b.x - s->a.x, y = s->b.y - s->a.y, l = x * x + y * y;
+    const double along = l > 0 ? ((p.x - s->a.x) * x + (p.y - s->a.y) * y) / l : 0;
+    const double at = tri_larger(0, tri_lesser(along, 1));
+    return tri_distance2(p, (struct tri_point){s->a.x + at * x, s->a.y + at * y});
+}
+
+/* The columns of a row in which lie all sites nearer than `distance` to a segment. */
+static struct span columns_near(const struct tri_lattice *lattice, const struct segment *s, double row, double distance)
+{
+    const double x = s->b.x - s->a.x, y = s->b.y - s->a.y, height = row * lattice->rise - s->a.y;
+    double from = 0, to = 1; /* what of the segment is so near to the row, in its lengths */
+    if (y != 0) {
+        from = tri_larger(0, tri_lesser((height - distance) / y, (height + distance) / y));
+        to = tri_lesser(1, tri_larger((height - distance) / y, (height + distance) / y));
+    }
+    const double left = tri_lesser(s->a.x + x * from, s->a.x + x * to);
+    const double right = tri_larger(s->a.x + x * from, s->a.x + x * to);
+    return columns_between(lattice, row, left - distance, right + distance);
+}
+
+/* Wipes out the sites nearer than `distance` to a segment. */
+static void wipe_out(struct tri_sites *s, struct segment segment, double distance)
+{
+    const struct tri_lattice *lattice = &s->lattice;
+    const struct span rows = rows_between(lattice, tri_lesser(segment.a.y, segment.b.y) - distance,
+                                          tri_larger(segment.a.y, segment.b.y) + distance);
+    for (double row = rows.first; row <= rows.last; row++) {
+        const struct span columns = columns_near(lattice, &segment, row, distance);
+        for (double column = columns.first; column <= columns.last; column++) {
+            const int32_t site = find_site(s, row - s->bottom, column - s->left);
+            if (site != TRI_NONE &&
+                distance2_to(&segment, tri_lattice_at(lattice, row, column)) < distance * distance)
+                s->at[site] = TRI_SITE_OUT;
+        }
+    }
+}
+
+int32_t tri_site_of(const struct tri_sites *s, struct tri_point p)
+{
+    double row, column;
+    tri_lattice_near(&s->lattice, p, &row, &column);
+    const struct tri_point at = tri_lattice_at(&s->lattice, row, column);
+    return at.x == p.x && at.y == p.y ? find_site(s, row - s->bottom, column - s->left) : TRI_NONE;
+}
+
+/* A vertex stands on its site, or wipes out those near to it. */
+static void note_vertex(struct tri_sites *s, const struct tri_mesh *mesh, tri_vertex_id v, tri_triangle_id t)
+{
+    const struct tri_point p = mesh->xy[v];
+    const int32_t site = tri_site_of(s, p);
+    if (site == TRI_NONE) {
+        wipe_out(s, (struct segment){p, p}, TRI_LATTICE_APART * s->lattice.edge);
+    } else if (s->at[site] != TRI_SITE_OUT) {
+        s->at[site] = v;
+        s->near[site] = t;
+    }
+}
+
+static void note_features(struct tri_sites *s, const struct tri_mesh *mesh, tri_triangle_id triangle)
+{
+    const struct tri_triangle *t = &mesh->tri[triangle];
+    for (int k = 0; k < 3; k++) {
+        note_vertex(s, mesh, t->v[k], triangle);
+        if (t->n[k] < 0 && t->n[k] != TRI_BEYOND)
+            wipe_out(s, (struct segment){mesh->xy[t->v[tri_next[k]]], mesh->xy[t->v[tri_prev[k]]]},
+                     TRI_LATTICE_OFF_WALLS * s->lattice.edge);
+    }
+}
+
+bool tri_sites_find(struct tri_sites *s, const struct tri_mesh *mesh, const struct tri_lattice *lattice,
+                    const tri_triangle_id *triangle, int32_t n, int32_t most)
+{
+    *s = (struct tri_sites){.lattice = *lattice};
+    if (!find_frame(s, mesh, triangle, n, most))
+        return true;
+    s->row = malloc(((size_t)s->n_rows + 1) * sizeof *s->row);
+    if (!s->row)
+        return false;
+    for (int32_t row = 0; row < s->n_rows; row++)
+        s->row[row] = (struct tri_site_row){INT32_MAX / 2, -1, 0};
+    paint_all(s, mesh, triangle, n, widen_row);
+    lay_out(s, most);
+    s->at = malloc(((size_t)s->n + 1) * sizeof *s->at);
+    s->near = malloc(((size_t)s->n + 1) * sizeof *s->near);
+    if (!s->at || !s->near)
+        return false;
+    for (int32_t i = 0; i < s->n; i++)
+        s->at[i] = TRI_SITE_OUT;
+    if (s->n > 0)
+        paint_all(s, mesh, triangle, n, paint_row);
+    for (int32_t i = 0; s->n > 0 && i < n; i++)
+        note_features(s, mesh, triangle[i]);
+    return true;
+}
+
+void tri_sites_free(struct tri_sites *s)
+{
+    free(s->row);
+    free(s->at);
+    free(s->near);
+    *s = (struct tri_sites){0};
+}
