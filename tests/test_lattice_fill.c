@@ -162,11 +162,13 @@ static void test_tangles(void **state)
         }
 }
 
-/* A square of side 3 in three columns, each of them a region with a bound of its own; 0: of none. */
-static struct tri_pslg columns(double first, double second, double third)
+/* A square of side 3 with n points in it, in three columns, each of them a region with a bound of its own; 0: of
+ * none. */
+static struct tri_pslg columns(double first, double second, double third, int32_t n)
 {
+    struct support_random random = {11};
     const double bounds[3] = {first, second, third};
-    struct tri_pslg pslg = support_pslg(8, 10, 0, 3);
+    struct tri_pslg pslg = support_pslg(8 + n, 10, 0, 3);
     for (int32_t i = 0; i < 4; i++) {
         support_add_point(&pslg, i, 0);
         support_add_point(&pslg, i, 3);
@@ -174,6 +176,8 @@ static struct tri_pslg columns(double first, double second, double third)
         for (int32_t k = 0; k < 2 && i < 3; k++)
             support_add_segment(&pslg, 2 * i + k, 2 * i + 2 + k);
     }
+    for (int32_t i = 0; i < n; i++)
+        support_add_point(&pslg, 3 * support_unit(&random), 3 * support_unit(&random));
     for (int k = 0; k < 3; k++) {
         const double region[4] = {k + 0.5, 1.5, k + 1, bounds[k]};
         memcpy(&pslg.regions[4 * pslg.n_regions++], region, sizeof region);
@@ -185,7 +189,7 @@ static void test_regions(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; i++) {
-        struct tri_pslg pslg = i % 2 == 0 ? columns(0.002, 0, 0.0031) : load("section.poly");
+        struct tri_pslg pslg = i % 2 == 0 ? columns(0.002, 0, 0.0031, 40) : load("section.poly");
         struct tri_options options = support_quality(28, i < 2 ? 0 : i == 2 ? 0.002 : bound_for(&pslg, 3000));
         options.spread_regions = options.quality.region_areas = true;
         compare_with_classic(&pslg, options, 0);
@@ -199,7 +203,7 @@ static void test_regions_without_walls(void **state)
     (void)state;
     for (uint64_t seed = 0; seed < 6; seed++) {
         struct support_random random = {seed};
-        struct tri_pslg pslg = columns(0.004, 0.004, seed % 2 ? 0.001 : 0.004);
+        struct tri_pslg pslg = columns(0.004, 0.004, seed % 2 ? 0.001 : 0.004, 0);
         struct tri_options options = in_lattice(seed % 3 ? 25 : 0, 0);
         struct tri_refine_report report;
         options.spread_regions = options.quality.region_areas = true;
@@ -243,10 +247,12 @@ static void test_middle_of_a_square(void **state)
             }
             n += far;
             for (int k = 0; far && k < 3; k++) {
+                const double feature = mesh.feature[mesh.tri[t].v[k]];
                 const double row = round(p[k]->y / (rise * edge)), shift = fmod(row, 2) != 0 ? 0.5 : 0;
                 const double column = round(p[k]->x / edge - shift);
                 assert_true(fabs(p[k]->y - row * rise * edge) < 1e-12);
                 assert_true(fabs(p[k]->x - (column + shift) * edge) < 1e-12);
+                assert_true(feature > 0 && feature < TRI_LATTICE_FEATURE * edge * (1 + 1e-12));
                 assert_true(fabs(sqrt(tri_distance2(*p[k], *p[(k + 1) % 3])) - edge) < 1e-12);
             }
         }
@@ -288,11 +294,17 @@ static void test_scaled(void **state)
 
 /* --- pauses */
 
+static const struct tri_refine_hooks no_hooks;
+
+enum { MANY = 100 };
+
 /* A caller who has no room at first. */
 struct host {
     int32_t asked;  /* points that room was asked for last */
-    int32_t most;   /* of all calls */
+    int32_t most;   /* of all calls for room */
+    int32_t cells;  /* triangles that were made more than MANY at once */
     int32_t calls;
+    struct tri_part part; /* to be told of triangles that are made */
     int32_t grants; /* so many calls get what they ask for */
     enum tri_status refusal; /* of the later ones */
     int32_t vertices, triangles, subs; /* that the mesh's arrays have room for; the mesh knows of less */
@@ -315,14 +327,17 @@ static void make_room(struct host *host, struct tri_mesh *mesh, int32_t points)
     mesh->sub_capacity = mesh->n_subs + 1;
 }
 
-static struct host host_for(struct tri_mesh *mesh, int32_t grants, enum tri_status refusal)
+static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
-    struct host host = {.grants = grants, .refusal = refusal};
-    host.vertices = mesh->vertex_capacity;
-    host.triangles = mesh->triangle_capacity;
-    host.subs = mesh->sub_capacity;
-    make_room(&host, mesh, 1);
-    return host;
+    struct host *host = user;
+    assert_true(n > 0 && triangle[0] >= 0);
+    host->cells += n > MANY ? n : 0;
+}
+
+static void lacks_nothing(void *user, const tri_vertex_id edge[2])
+{
+    (void)user, (void)edge;
+    fail_msg("the whole mesh is there");
 }
 
 static enum tri_status ask_host(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
@@ -335,6 +350,26 @@ static enum tri_status ask_host(void *user, struct tri_mesh *mesh, int32_t point
         return tri_fail(error, host->refusal, NULL, 0, "the host refuses");
     make_room(host, mesh, points);
     return TRI_OK;
+}
+
+static struct host host_for(struct tri_mesh *mesh, int32_t grants, enum tri_status refusal)
+{
+    struct host host = {.grants = grants, .refusal = refusal};
+    host.vertices = mesh->vertex_capacity;
+    host.triangles = mesh->triangle_capacity;
+    host.subs = mesh->sub_capacity;
+    make_room(&host, mesh, 1);
+    return host;
+}
+
+/* The hooks, and those to the host. */
+static struct tri_refine_hooks hooks_to(struct host *host, struct tri_refine_hooks hooks)
+{
+    host->part = (struct tri_part){note_changes, lacks_nothing, host};
+    hooks.part = &host->part;
+    hooks.more_room = ask_host;
+    hooks.more_room_user = host;
+    return hooks;
 }
 
 static bool always(void *user)
@@ -353,7 +388,7 @@ static void assert_valid(const struct tri_mesh *mesh)
 }
 
 /* Refines, with a pause before each point that needs room, and whenever the refiner asks whether to stop. Returns how
- * many points were asked for at once, at most. */
+ * many triangles were made at once. */
 static int32_t refine_with_pauses(struct tri_mesh *mesh, const struct tri_options *options,
                                   struct tri_refine_hooks hooks, struct tri_refine_report *report)
 {
@@ -361,8 +396,7 @@ static int32_t refine_with_pauses(struct tri_mesh *mesh, const struct tri_option
     struct tri_refiner *refiner;
     enum tri_status status;
     int pauses = 0, stops = 0;
-    hooks.more_room = ask_host;
-    hooks.more_room_user = &host;
+    hooks = hooks_to(&host, hooks);
     assert_int_equal(tri_refiner_new(&refiner, mesh, &options->quality, &hooks, report, NULL), TRI_OK);
     mesh->stop = &at_once;
     while ((status = tri_refiner_run(refiner, NULL)) == TRI_NO_ROOM || status == TRI_STOPPED) {
@@ -377,28 +411,27 @@ static int32_t refine_with_pauses(struct tri_mesh *mesh, const struct tri_option
     mesh->stop = NULL;
     tri_refiner_free(refiner);
     assert_int_equal(status, TRI_OK);
-    assert_true(stops > 0);
-    return host.most;
+    assert_true(stops > 0 && pauses > 0);
+    return host.cells;
 }
 
-/* Two calls, one with pauses, on meshes of the same input. Returns how many points were asked for at once, at most. */
+/* Two calls, one with pauses, on meshes of the same input. Returns how many triangles were made at once. */
 static int32_t compare_pauses(const struct tri_pslg *pslg, const struct tri_options *options,
                            const struct tri_refine_hooks *hooks)
 {
     struct tri_mesh mesh = coarse_mesh(pslg, options), twin = coarse_mesh(pslg, options);
     struct tri_refine_report report, wanted;
     assert_int_equal(tri_refine_with(&twin, &options->quality, hooks, &wanted, NULL), TRI_OK);
-    const int32_t most = refine_with_pauses(&mesh, options, *hooks, &report);
+    const int32_t n = mesh.n_vertices, cells = refine_with_pauses(&mesh, options, *hooks, &report);
     tri_surface_settle(&mesh, NULL);
     tri_surface_settle(&twin, NULL);
     support_assert_same_bytes(&mesh, &twin);
     assert_memory_equal(&report, &wanted, sizeof report);
+    assert_int_equal(mesh.n_vertices, n + report.inserted_free + report.inserted_on_segments);
     tri_mesh_free(&mesh);
     tri_mesh_free(&twin);
-    return most;
+    return cells;
 }
-
-static const struct tri_refine_hooks no_hooks;
 
 static void test_pauses_change_nothing(void **state)
 {
@@ -409,7 +442,7 @@ static void test_pauses_change_nothing(void **state)
             struct tri_pslg pslg = load(names[i]);
             struct tri_options options = in_lattice(k == 0 ? 0 : 28, bound_for(&pslg, 2000));
             options.quality.conforming = k == 2;
-            assert_true(compare_pauses(&pslg, &options, &no_hooks) > 400);
+            assert_true(compare_pauses(&pslg, &options, &no_hooks) > 800);
             tri_pslg_free(&pslg);
         }
 }
@@ -419,26 +452,26 @@ static void test_pauses_in_tangles(void **state)
 {
     (void)state;
     static const enum support_kind kinds[] = {SUPPORT_RANDOM, SUPPORT_LATTICE, SUPPORT_RING};
-    int32_t most = 0;
+    int32_t cells = 0;
     for (int kind = 0; kind < 3; kind++)
         for (uint64_t seed = 100; seed < 200; seed += (uint64_t)every(7)) {
             struct tri_pslg pslg = support_tangle(kinds[kind], 3 + (int32_t)(seed % 7), (int32_t)(seed % 4), seed);
             struct tri_options options = in_lattice(seed % 2 ? 25 : 0, bound_for(&pslg, 1500));
             options.quality.conforming = seed % 3 == 0;
-            most += compare_pauses(&pslg, &options, &no_hooks);
+            cells += compare_pauses(&pslg, &options, &no_hooks);
             tri_pslg_free(&pslg);
         }
-    assert_true(most > 1000);
+    assert_true(cells > 20000);
 }
 
 /* Two regions have cells, one after the other. */
 static void test_pauses_between_bounds(void **state)
 {
     (void)state;
-    struct tri_pslg pslg = columns(0.002, 0, 0.0031);
+    struct tri_pslg pslg = columns(0.002, 0, 0.0031, 150);
     struct tri_options options = in_lattice(28, 0);
     options.spread_regions = options.quality.region_areas = true;
-    assert_true(compare_pauses(&pslg, &options, &no_hooks) > 400);
+    assert_true(compare_pauses(&pslg, &options, &no_hooks) > 1200);
     tri_pslg_free(&pslg);
 }
 
@@ -448,7 +481,7 @@ static void test_pauses_within_a_fence(void **state)
     struct tri_pslg pslg = support_square(8, 150, 3);
     const struct tri_options options = in_lattice(25, 0.015);
     const struct tri_fence fence = {-1, -1, 7.03, 9};
-    assert_true(compare_pauses(&pslg, &options, &(struct tri_refine_hooks){.fence = &fence}) > 400);
+    assert_true(compare_pauses(&pslg, &options, &(struct tri_refine_hooks){.fence = &fence}) > 1500);
     tri_pslg_free(&pslg);
 }
 
@@ -464,7 +497,7 @@ static void test_room_may_fail(void **state)
     for (int32_t grants = 0; !is_ready; grants += every(7)) {
         struct tri_mesh mesh = coarse_mesh(&pslg, &options);
         struct host host = host_for(&mesh, grants, TRI_NO_MEMORY);
-        const struct tri_refine_hooks hooks = {.more_room = ask_host, .more_room_user = &host};
+        const struct tri_refine_hooks hooks = hooks_to(&host, no_hooks);
         struct tri_refine_report report;
         struct tri_error error = {0};
         const enum tri_status status = tri_refine_with(&mesh, &options.quality, &hooks, &report, &error);
@@ -472,6 +505,7 @@ static void test_room_may_fail(void **state)
         assert_int_equal(status, host.calls > grants ? TRI_NO_MEMORY : TRI_OK);
         assert_true(is_ready || strcmp(error.text, "the host refuses") == 0);
         most = host.most > most ? host.most : most;
+        assert_true(!is_ready || host.cells > 400);
         judge_as_far_as_it_got(&mesh, &pslg);
         if (is_ready)
             judge(&mesh, &pslg, &options, 0);
@@ -485,7 +519,7 @@ static void test_room_may_fail(void **state)
 static void test_allocations_may_fail(void **state)
 {
     (void)state;
-    struct tri_pslg pslg = columns(0.01, 0, 0.008);
+    struct tri_pslg pslg = columns(0.004, 0, 0.0045, 0);
     struct tri_options options = in_lattice(25, 0);
     options.spread_regions = options.quality.region_areas = true;
     for (int ever_after = 0; ever_after < 2; ever_after++) {
@@ -514,10 +548,12 @@ static void test_allocations_may_fail(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Once it has said yes, it is not asked again. */
 static bool counts_down(void *user)
 {
     int *left = user;
-    return *left <= 0 || --*left == 0;
+    assert_true(*left > 0);
+    return --*left == 0;
 }
 
 /* Whenever it is stopped, the mesh is valid, and another call makes it ready. */
@@ -571,14 +607,16 @@ static bool is_owned(const struct tri_fence *f, const double at[6])
     return true;
 }
 
-/* Returns how many points were asked for at once, at most. */
+/* Returns how many triangles were made at once. */
 static int32_t refine_within(struct tri_mesh *mesh, const struct tri_fence *fence, const struct tri_options *options,
                              struct tri_refine_report *report)
 {
     struct host host = host_for(mesh, INT32_MAX, TRI_OK);
-    const struct tri_refine_hooks hooks = {.fence = fence, .more_room = ask_host, .more_room_user = &host};
+    const struct tri_refine_hooks hooks = hooks_to(&host, (struct tri_refine_hooks){.fence = fence});
+    const int32_t n = mesh->n_vertices;
     assert_int_equal(tri_refine_with(mesh, &options->quality, &hooks, report, NULL), TRI_OK);
-    return host.most;
+    assert_int_equal(mesh->n_vertices, n + report->inserted_free + report->inserted_on_segments);
+    return host.cells;
 }
 
 /* Each triangle with a corner outside the box is there before and after. */
@@ -592,7 +630,7 @@ static void test_fence_protects_the_outside(void **state)
         struct support_places before = support_places(&mesh);
         const struct tri_options options = in_lattice(30, 0.006);
         struct tri_refine_report report;
-        assert_true(refine_within(&mesh, &fences[f], &options, &report) > 200);
+        assert_true(refine_within(&mesh, &fences[f], &options, &report) > 1200);
         assert_true(report.fenced > 0);
         struct support_places after = support_places(&mesh);
         for (int32_t i = 0; i < before.n; i++)
@@ -619,14 +657,14 @@ static void test_disjoint_fences_commute(void **state)
         for (int o = 0; o < 3; o++) {
             struct tri_pslg pslg;
             struct tri_mesh mesh = coarse_square(&pslg);
-            int32_t most = 0;
+            int32_t cells = 0;
             for (int k = 0; k < 3; k++) {
                 const struct tri_options options = in_lattice(angles[a], orders[o][k] == 1 ? 0.004 : 0.01);
                 struct tri_refine_report report;
-                most += refine_within(&mesh, &fences[orders[o][k]], &options, &report);
+                cells += refine_within(&mesh, &fences[orders[o][k]], &options, &report);
                 assert_true(report.fenced > 0);
             }
-            assert_true(most > 500);
+            assert_true(cells > 4000);
             judge_as_far_as_it_got(&mesh, &pslg);
             struct support_places places = support_places(&mesh);
             if (o > 0 && !support_same_places(&first, &places))
@@ -655,16 +693,17 @@ static void test_quarters_commute(void **state)
     (void)state;
     static const enum support_kind kinds[] = {SUPPORT_RANDOM, SUPPORT_LATTICE, SUPPORT_RING};
     static const int orders[3][4] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}};
-    int32_t most = 0;
+    int32_t cells = 0;
     for (uint64_t seed = 0; seed < 150; seed += (uint64_t)every(5)) {
         struct tri_pslg pslg = support_tangle(kinds[seed % 3], 4 + (int32_t)(seed % 9), (int32_t)(seed % 4), seed);
         struct support_random random = {seed};
         struct support_places first = {0};
         const double bound = bound_for(&pslg, 3000);
         struct tri_options options = in_lattice(seed % 2 ? 25 : 0, bound);
+        struct tri_options coarse = in_lattice(20, 30 * bound);
         options.quality.conforming = seed % 5 == 0;
         for (int o = 0; o < 3; o++) {
-            struct tri_mesh mesh = coarse_mesh(&pslg, &options);
+            struct tri_mesh mesh = support_generate(&pslg, &coarse, NULL);
             struct tri_refine_report report;
             const struct tri_lattice lattice = tri_lattice_for(2 * bound / mesh.unit / mesh.unit);
             random.state = seed;
@@ -675,7 +714,7 @@ static void test_quarters_commute(void **state)
                 at.y = round(at.y / lattice.rise) * lattice.rise;
             for (int k = 0; k < 4; k++) {
                 const struct tri_fence fence = quarter(at, orders[o][k]);
-                most += refine_within(&mesh, &fence, &options, &report);
+                cells += refine_within(&mesh, &fence, &options, &report);
             }
             judge_as_far_as_it_got(&mesh, &pslg);
             struct support_places places = support_places(&mesh);
@@ -694,7 +733,7 @@ static void test_quarters_commute(void **state)
         support_places_free(&first);
         tri_pslg_free(&pslg);
     }
-    assert_true(most > 1000);
+    assert_true(cells > 20000);
 }
 
 struct left {
@@ -753,33 +792,75 @@ static void test_what_is_left_is_told(void **state)
     }
 }
 
-/* A list of some triangles, in any order, and then of all. */
-static void test_worklist(void **state)
+static void add_lattice_point(struct tri_pslg *pslg, const struct tri_lattice *lattice, double row, double column)
+{
+    const struct tri_point p = tri_lattice_at(lattice, row, column);
+    support_add_point(pslg, p.x, p.y);
+}
+
+/* A vertex in the middle of a cell whose corners are there, and whose triangles are small enough to stay. */
+static void test_vertex_in_a_cell(void **state)
 {
     (void)state;
-    struct tri_pslg pslg;
-    struct tri_mesh mesh = coarse_square(&pslg);
-    const struct tri_options options = in_lattice(28, 0.01);
+    enum { ROW = 20, COLUMN = 17 };
+    const struct tri_options options = in_lattice(20, 0.02);
+    const struct tri_lattice lattice = tri_lattice_for(2 * 0.02);
+    struct tri_pslg pslg = support_square(8, 4, 1);
     struct tri_refine_report report;
-    struct support_random random = {7};
-    int32_t *listed = calloc((size_t)mesh.n_triangles, sizeof *listed), n = 0;
-    for (int32_t t = 0; t < mesh.n_triangles; t++)
-        if (mesh.xy[mesh.tri[t].v[0]].x < 4) {
-            const int32_t other = support_below(&random, n + 1);
-            listed[n++] = listed[other];
-            listed[other] = t;
-        }
-    const struct tri_refine_hooks hooks = {.worklist = listed, .n_worklist = n};
-    assert_int_equal(tri_refine_with(&mesh, &options.quality, &hooks, &report, NULL), TRI_OK);
-    judge_as_far_as_it_got(&mesh, &pslg);
+    pslg.n_points = 4;
+    add_lattice_point(&pslg, &lattice, ROW, COLUMN);
+    add_lattice_point(&pslg, &lattice, ROW, COLUMN + 1);
+    add_lattice_point(&pslg, &lattice, ROW + 1, COLUMN);
+    support_add_point(&pslg, (COLUMN + 0.5) * lattice.edge, (ROW + 1 / 3.0) * lattice.rise);
+    struct tri_mesh mesh = coarse_mesh(&pslg, &options);
+    assert_true(mesh.unit == 1);
     assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
     judge(&mesh, &pslg, &options, 0);
-    const int32_t ready = mesh.n_triangles;
-    assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-    assert_int_equal(mesh.n_triangles, ready);
-    free(listed);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
+}
+
+/* Lists of some triangles of a coarser lattice, whose vertices are points of the finer one, and then of all. */
+static void test_worklists(void **state)
+{
+    (void)state;
+    int32_t cells = 0;
+    for (uint64_t seed = 0; seed < 100; seed += (uint64_t)every(5)) {
+        struct tri_pslg pslg = support_square(8, (int32_t)(seed % 8), seed);
+        const struct tri_options coarse = in_lattice(seed % 2 ? 25 : 0, 0.16);
+        const struct tri_options fine = in_lattice(seed % 2 ? 25 : 0, seed % 3 ? 0.04 : 0.05);
+        struct tri_mesh mesh = support_generate(&pslg, &coarse, NULL);
+        struct tri_refine_report report;
+        struct support_random random = {seed};
+        const int32_t before = mesh.n_triangles;
+        struct tri_triangle *old = calloc((size_t)before, sizeof *old);
+        int32_t *listed = calloc((size_t)before, sizeof *listed), n = 0;
+        for (int32_t t = 0; t < before; t++) {
+            old[t] = mesh.tri[t];
+            if (support_below(&random, 8) <= (int32_t)(seed % 8)) {
+                const int32_t other = support_below(&random, n + 1);
+                listed[n++] = listed[other];
+                listed[other] = t;
+            }
+        }
+        struct host host = host_for(&mesh, INT32_MAX, TRI_OK);
+        const struct tri_refine_hooks hooks =
+            hooks_to(&host, (struct tri_refine_hooks){.worklist = listed, .n_worklist = n});
+        assert_int_equal(tri_refine_with(&mesh, &fine.quality, &hooks, &report, NULL), TRI_OK);
+        cells += host.cells;
+        judge_as_far_as_it_got(&mesh, &pslg);
+        for (int32_t t = 0; t < before; t++) /* another triangle has another life */
+            assert_true(memcmp(old[t].v, mesh.tri[t].v, sizeof old[t].v) == 0 || mesh.tri[t].life != old[t].life);
+        assert_int_equal(tri_refine(&mesh, &fine.quality, &report, NULL), TRI_OK);
+        judge(&mesh, &pslg, &fine, 0);
+        assert_int_equal(tri_refine(&mesh, &fine.quality, &report, NULL), TRI_OK);
+        assert_int_equal(report.inserted_free + report.inserted_on_segments, 0);
+        free(old);
+        free(listed);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+    assert_true(cells > 4000);
 }
 
 static bool left_of(void *user, const double p[2]) { return p[0] < *(double *)user; }
@@ -831,7 +912,8 @@ int main(void)
         cmocka_unit_test(test_disjoint_fences_commute),
         cmocka_unit_test(test_quarters_commute),
         cmocka_unit_test(test_what_is_left_is_told),
-        cmocka_unit_test(test_worklist),
+        cmocka_unit_test(test_vertex_in_a_cell),
+        cmocka_unit_test(test_worklists),
         cmocka_unit_test(test_limits_and_gates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

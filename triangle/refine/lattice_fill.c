@@ -305,8 +305,7 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
         }
         if (border.outside == TRI_BEYOND)
             return tri_wait_for(r, v[a], v[b]);
-        if (border.outside < 0 || !tri_fence_owns(r->hooks->fence, r->mesh, tri_of(border.inside)) ||
-            !is_delaunay(r, c, border.outside)) {
+        if (border.outside < 0 || !is_delaunay(r, c, border.outside)) {
             if (leave_out(f, c->at[a]) == FAILED || leave_out(f, c->at[b]) == FAILED)
                 return FAILED;
             continue;
