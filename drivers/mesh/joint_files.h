@@ -22,31 +22,35 @@
 
 enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };
 
+struct joint_h5 {                 /* an HDF5 file: the first three on rank 0 alone, the rest on all ranks */
+    struct tri_h5_writer *writer; /* NULL: there is no such file, or this is not rank 0 */
+    struct tri_sink sink;         /* of the writer */
+    struct tri_output *output;    /* of the writer */
+    struct tri_h5_layout layout;  /* where rows belong; ours, except that rank 0 refers to the writer's */
+    struct tri_h5_part *part;     /* writes this rank's rows; NULL: not begun, or no such file */
+};
+
 struct joint_files {
-    struct par_carrier *carrier;
-    const char *scratch;
+    /* Asked for. */
+    struct par_carrier *carrier;          /* between the ranks */
+    const char *scratch;                  /* the folder of spools */
     bool no_sync;                         /* files get their names without a look at the disk */
-    const struct tri_stop *stop;          /* of what other ranks than the first one write */
+    const struct tri_stop *stop;          /* of what other ranks than the first one write; NULL: never asked */
     struct tri_text_options text_options; /* its three outputs on rank 0 alone */
-    struct tri_sink text;                 /* rank 0: that of these files, if there are any */
-    struct joint_h5 {                     /* rank 0: an HDF5 file, if it has a writer; */
-        struct tri_h5_writer *writer;
-        struct tri_sink sink;
-        struct tri_output *output;
-        struct tri_h5_layout layout;      /* the rest is ours, on all ranks */
-        struct tri_h5_part *part;
-    } h5[JOINT_H5];
+    struct tri_sink text;                 /* rank 0: that of these files; all NULL: there are none */
+    struct joint_h5 h5[JOINT_H5];         /* those that there are come first */
     struct orphans orphans;               /* which HDF5 files leave out */
-    int32_t n_attributes;                 /* of a point */
+    /* Found. */
     bool together;                        /* all ranks write */
-    struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files */
+    struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files; an empty path: no such file */
     struct tri_output file[JOINT_FILES];  /* where others than rank 0 have joined in */
-    struct tri_output spool[JOINT_TEXTS];
-    struct tri_text_stream *stream;       /* into these */
-    struct tri_sink to_spool;
+    struct tri_output spool[JOINT_TEXTS]; /* their lines, until all know where these belong */
+    struct tri_text_stream *stream;       /* into these; NULL: not begun, or rank 0 */
+    struct tri_sink to_spool;             /* of the stream */
+    int32_t n_attributes;                 /* of a point */
     int64_t total[3];                     /* vertices, triangles, segments of all ranks, once the sink has begun */
-    int64_t n_input;
-    double bounds[4];
+    int64_t n_input;                      /* points before refinement, without orphans; counted on rank 0, else 0 */
+    double bounds[4];                     /* least x, least y, greatest x, greatest y of this rank's points */
 };
 
 /* Collective, on files just opened: finds out whether all ranks can write them. wanted, of rank 0: they shall. The

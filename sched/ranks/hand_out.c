@@ -123,9 +123,10 @@ static int compare_places(const void *left, const void *right)
 static bool are_numbers(const struct handing *h, const struct par_bytes *told)
 {
     const struct numbered_place *place = (const struct numbered_place *)(const void *)told->at;
+    const struct par_tiles *tiles = h->tiles;
     bool good = told->n % sizeof *place == 0;
     for (size_t i = 0; good && i < told->n / sizeof *place; i++)
-        good = place[i].number >= h->tiles->n_kept && place[i].number < h->tiles->first[0][h->ranks->carrier->n_ranks];
+        good = place[i].number >= tiles->n_kept && place[i].number < tiles->ranks.first[0][tiles->ranks.n];
     return good;
 }
 
@@ -247,11 +248,10 @@ static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const
 
 static void tell_first(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
 {
-    tiles->kept_elsewhere = carrier->rank > 0;
-    tiles->n_ranks = carrier->n_ranks;
-    tiles->rank = carrier->rank;
+    tiles->ranks.n = carrier->n_ranks;
+    tiles->ranks.rank = carrier->rank;
     for (size_t k = 0; k < 3; k++)
-        tiles->first[k] = first + k * ((size_t)carrier->n_ranks + 1);
+        tiles->ranks.first[k] = first + k * ((size_t)carrier->n_ranks + 1);
 }
 
 enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par_tiles *tiles, struct tri_error *error)
@@ -287,14 +287,14 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     if (!status)
         tell_first(tiles, r->carrier, first);
     for (int k = 0; !status && k < 3; k++)
-        base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
+        base[k] = tiles->ranks.first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_columns(&h, base, error);
-    assert(status || tiles->n_vertices == tiles->first[0][rank + 1]); /* as many as have been counted */
+    assert(status || tiles->n_vertices == tiles->ranks.first[0][rank + 1]); /* as many as have been counted */
     status = exchange_numbers(&h, status, error);
     if (!status)
         status = hand_out_columns(&h, base, error);
-    assert(status || tiles->n_triangles == tiles->first[1][rank + 1]);
-    assert(status || tiles->n_segments == tiles->first[2][rank + 1]);
+    assert(status || tiles->n_triangles == tiles->ranks.first[1][rank + 1]);
+    assert(status || tiles->n_segments == tiles->ranks.first[2][rank + 1]);
     clean_up(&h);
     free(first);
     return par_agree(r->carrier, status, error);

@@ -33,20 +33,25 @@ static inline int32_t turn(int32_t number, int corner) { return number << CORNER
 static inline int32_t number_in(int32_t turned) { return turned >> CORNER_BITS; }
 static inline int corner_in(int32_t turned) { return turned & 3; }
 
+struct par_numbered_subs {
+    int32_t n;                   /* subsegments that are not free */
+    int32_t *number;             /* [mesh->n_subs] the new number of each */
+    struct tri_subsegment *item; /* [mesh->n_subs] in their new order, on their way back to the mesh */
+};
+
 struct par_numbering {
-    struct tri_mesh *mesh;
-    const struct par_partition *partition;
-    const struct tri_executor *executor;
+    struct tri_mesh *mesh;                 /* whose arrays move */
+    const struct par_partition *partition; /* its tiles give the order */
+    const struct tri_executor *executor;   /* runs shares and tiles; NULL: they run one after the other */
     int32_t n_kept;     /* the vertices that keep their numbers */
-    int32_t n_tiles;
-    int32_t *kept_tile; /* [n_kept] */
+    int32_t *kept_tile; /* [n_kept] the tile of each of these */
     struct par_deal vertices, triangles; /* new vertices; all triangles */
-    int32_t n_new, n_tri, n_subs; /* new vertices, triangles and subsegments that are not free */
+    struct par_numbered_subs subs;         /* as many as the mesh has */
     /* Memory that serves several times, by several names: each until the next is needed. */
     union {
         int32_t *order;   /* [n_vertices - n_kept] the new vertices, one after the other */
         int32_t *fan_end; /* of the triangles that start at each */
-        struct tri_triangle *buffer; /* [batch] */
+        struct tri_triangle *buffer; /* [move_batch_size] those that move at once */
     };
     union {
         int32_t *tile_of; /* [n_vertices] of a new vertex; TRI_NONE: the id is free */
@@ -57,10 +62,7 @@ struct par_numbering {
         int32_t *place;   /* turned: where it goes; TRI_NONE: the id is free */
     };
     int32_t *dealt;      /* [n_triangles] turned, tile by tile, in the end in their new order */
-    int32_t *sub_number; /* [n_subs] */
-    struct tri_subsegment *sub; /* [n_subs] */
     void *scratch;       /* what is sorted, vertices on their way, triangles set aside */
-    int32_t batch;       /* triangles that move at once */
 };
 
 /* The tile of a new number. */
@@ -68,7 +70,7 @@ static inline int32_t tile_of_number(const struct par_numbering *n, int32_t numb
 {
     if (number < n->n_kept)
         return n->kept_tile[number];
-    return par_holder_of(n->vertices.start, n->n_tiles, number - n->n_kept);
+    return par_holder_of(n->vertices.start, n->vertices.n_tiles, number - n->n_kept);
 }
 
 /* A half-edge where all triangles have their places. */
@@ -131,13 +133,15 @@ static void find_kept(void *context, size_t share)
     }
 }
 
-static void number_vertices(struct par_numbering *n)
+/* Returns how many new vertices there are. */
+static int32_t number_vertices(struct par_numbering *n)
 {
     tri_execute(n->executor, tri_shares(n->n_kept), find_kept, n);
     tri_execute(n->executor, n->vertices.shares, count_vertices, n);
-    n->n_new = par_deal_add_up(&n->vertices);
+    const int32_t n_new = par_deal_add_up(&n->vertices);
     tri_execute(n->executor, n->vertices.shares, deal_vertices, n);
     par_deal_work(&n->vertices, n->executor, n->scratch, number_tile, n);
+    return n_new;
 }
 
 /* --- subsegments */
@@ -153,7 +157,7 @@ static void rename_subs(struct par_numbering *n)
 static void sort_subs(const struct par_numbering *n, int32_t limit)
 {
     uint64_t *item = n->scratch;
-    tri_radix_sort(item, item + n->mesh->n_subs, n->n_subs, VALUE_BITS, VALUE_BITS + tri_bits_of(limit), n->executor);
+    tri_radix_sort(item, item + n->mesh->n_subs, n->subs.n, VALUE_BITS, VALUE_BITS + tri_bits_of(limit), n->executor);
 }
 
 static int32_t tile_of_sub(const struct par_numbering *n, const struct tri_subsegment *s)
@@ -169,19 +173,19 @@ static void number_subs(struct par_numbering *n)
     uint64_t *item = n->scratch;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (mesh->sub[s].v[0] != TRI_NONE)
-            item[n->n_subs++] = item_of(mesh->sub[s].v[0], s);
+            item[n->subs.n++] = item_of(mesh->sub[s].v[0], s);
     sort_subs(n, mesh->n_vertices);
-    for (int32_t i = 0; i < n->n_subs; i++) {
+    for (int32_t i = 0; i < n->subs.n; i++) {
         tri_parent_id parent = mesh->sub[value_of(item[i])].parent;
         assert(parent >= 0 && parent < mesh->n_parents);
         item[i] = item_of(parent, value_of(item[i]));
     }
     sort_subs(n, mesh->n_parents);
-    for (int32_t i = 0; i < n->n_subs; i++)
+    for (int32_t i = 0; i < n->subs.n; i++)
         item[i] = item_of(tile_of_sub(n, &mesh->sub[value_of(item[i])]), value_of(item[i]));
-    sort_subs(n, n->n_tiles);
-    for (int32_t i = 0; i < n->n_subs; i++)
-        n->sub_number[value_of(item[i])] = i;
+    sort_subs(n, n->vertices.n_tiles);
+    for (int32_t i = 0; i < n->subs.n; i++)
+        n->subs.number[value_of(item[i])] = i;
 }
 
 static void move_subs(struct par_numbering *n)
@@ -190,14 +194,14 @@ static void move_subs(struct par_numbering *n)
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         if (mesh->sub[s].v[0] == TRI_NONE)
             continue;
-        struct tri_subsegment *to = &n->sub[n->sub_number[s]];
+        struct tri_subsegment *to = &n->subs.item[n->subs.number[s]];
         *to = mesh->sub[s];
         for (int side = 0; side < 2; side++)
             if (to->side[side] != TRI_NONE)
                 to->side[side] = new_code(n->place, to->side[side]);
     }
-    if (n->n_subs > 0)
-        memcpy(mesh->sub, n->sub, (size_t)n->n_subs * sizeof *n->sub);
+    if (n->subs.n > 0)
+        memcpy(mesh->sub, n->subs.item, (size_t)n->subs.n * sizeof *n->subs.item);
 }
 
 /* --- The new order of triangles: tile by tile, in each by their corners' new numbers.  A key is the largest number of
@@ -478,12 +482,14 @@ static void place_tile(const void *context, size_t tile, uint64_t *room)
     n->triangles.at[tile] = down;
 }
 
-static void sort_triangles(struct par_numbering *n)
+/* Returns how many triangles there are. */
+static int32_t sort_triangles(struct par_numbering *n)
 {
     tri_execute(n->executor, n->triangles.shares, key_share, n);
-    n->n_tri = par_deal_add_up(&n->triangles);
+    const int32_t n_tri = par_deal_add_up(&n->triangles);
     tri_execute(n->executor, n->triangles.shares, deal_triangles, n);
     par_deal_work(&n->triangles, n->executor, items_of(n), place_tile, n);
+    return n_tri;
 }
 
 static size_t sort_scratch(const struct tri_mesh *mesh)
@@ -530,7 +536,7 @@ static inline tri_link new_link(const int32_t *place, const int32_t *sub_number,
 
 static inline struct tri_triangle renamed(const struct par_numbering *n, const struct tri_triangle *t, int first)
 {
-    const int32_t *number = n->number, *place = n->place, *sub_number = n->sub_number;
+    const int32_t *number = n->number, *place = n->place, *sub_number = n->subs.number;
     int second = tri_next[first], third = tri_prev[first];
     return (struct tri_triangle){{number[t->v[first]], number[t->v[second]], number[t->v[third]]},
                                  {new_link(place, sub_number, t->n[first]), new_link(place, sub_number, t->n[second]),
@@ -591,25 +597,25 @@ static void move_batch(struct move *m)
     tri_execute(m->n->executor, BATCH_SHARES, put_down, m);
 }
 
-static void move_triangles(const struct par_numbering *n)
-{
-    int64_t down = 0;
-    for (int32_t tile = 0; tile < n->n_tiles; tile++)
-        down += n->triangles.at[tile];
-    struct move m = {.n = n, .down = 2 * down <= n->n_tri};
-    int32_t batches = n->n_tri / n->batch + 1;
-    for (int32_t i = 0; i < batches; i++) {
-        int32_t first = n->batch * (m.down ? batches - 1 - i : i), left = n->n_tri - first;
-        m.batch = (struct tri_range){first, first + (left < n->batch ? left : n->batch)};
-        move_batch(&m);
-    }
-    assert(m.n_aside <= n->mesh->n_triangles / 2);
-}
-
 /* How many triangles are to move at once. */
 static int32_t move_batch_size(int32_t n_triangles)
 {
     return n_triangles / PAR_FEWEST_BATCHES < PAR_MOST_MOVE ? n_triangles / PAR_FEWEST_BATCHES + 1 : PAR_MOST_MOVE;
+}
+
+static void move_triangles(const struct par_numbering *n, int32_t n_tri)
+{
+    const int32_t size = move_batch_size(n->mesh->n_triangles), batches = n_tri / size + 1;
+    int64_t down = 0;
+    for (int32_t tile = 0; tile < n->triangles.n_tiles; tile++)
+        down += n->triangles.at[tile];
+    struct move m = {.n = n, .down = 2 * down <= n_tri};
+    for (int32_t i = 0; i < batches; i++) {
+        int32_t first = size * (m.down ? batches - 1 - i : i), left = n_tri - first;
+        m.batch = (struct tri_range){first, first + (left < size ? left : size)};
+        move_batch(&m);
+    }
+    assert(m.n_aside <= n->mesh->n_triangles / 2);
 }
 
 /* --- all of it */
@@ -629,19 +635,20 @@ static enum tri_status allocate(struct par_numbering *n, struct tri_error *error
 {
     const struct tri_mesh *mesh = n->mesh;
     size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
-    bool deals = par_deal_reserve(&n->vertices, mesh->n_vertices - n->n_kept, n->n_tiles);
-    deals = par_deal_reserve(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
+    const int32_t n_tiles = par_tile_columns(n->partition) * par_tile_rows(n->partition);
+    bool deals = par_deal_reserve(&n->vertices, mesh->n_vertices - n->n_kept, n_tiles);
+    deals = par_deal_reserve(&n->triangles, mesh->n_triangles, n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
-    n->batch = move_batch_size(mesh->n_triangles);
     n->order = tri_mesh_extra(mesh, most_bytes((vertices + 1) * sizeof *n->order,
-                                               (size_t)n->batch * sizeof *n->buffer));
+                                               (size_t)move_batch_size(mesh->n_triangles) * sizeof *n->buffer));
     n->number = tri_mesh_extra(mesh, ((size_t)mesh->n_vertices + 1) * sizeof *n->number);
-    n->sub_number = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_number);
-    n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
+    n->subs.number = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->subs.number);
+    n->subs.item = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->subs.item);
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
     n->dealt = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->dealt);
     n->scratch = tri_mesh_extra(mesh, scratch_bytes(mesh, vertices));
-    if (deals && n->kept_tile && n->order && n->number && n->sub_number && n->sub && n->place && n->dealt && n->scratch)
+    if (deals && n->kept_tile && n->order && n->number && n->subs.number && n->subs.item && n->place && n->dealt &&
+        n->scratch)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
 }
@@ -650,16 +657,16 @@ static enum tri_status allocate(struct par_numbering *n, struct tri_error *error
 static void renumber(struct par_numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;
-    number_vertices(n);
-    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->scratch, n->executor);
+    const int32_t n_new = number_vertices(n);
+    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n_new, n->scratch, n->executor);
     rename_subs(n);
     number_subs(n);
-    sort_triangles(n);
-    move_triangles(n);
+    const int32_t n_tri = sort_triangles(n);
+    move_triangles(n, n_tri);
     move_subs(n);
-    mesh->n_triangles = n->n_tri;
-    mesh->n_subs = n->n_subs;
-    mesh->n_vertices = n->n_kept + n->n_new;
+    mesh->n_triangles = n_tri;
+    mesh->n_subs = n->subs.n;
+    mesh->n_vertices = n->n_kept + n_new;
 }
 
 static void free_numbering(struct par_numbering *n)
@@ -669,8 +676,8 @@ static void free_numbering(struct par_numbering *n)
     free(n->kept_tile);
     tri_mesh_extra_free(n->mesh, n->order);
     tri_mesh_extra_free(n->mesh, n->number);
-    tri_mesh_extra_free(n->mesh, n->sub_number);
-    tri_mesh_extra_free(n->mesh, n->sub);
+    tri_mesh_extra_free(n->mesh, n->subs.number);
+    tri_mesh_extra_free(n->mesh, n->subs.item);
     tri_mesh_extra_free(n->mesh, n->place);
     tri_mesh_extra_free(n->mesh, n->dealt);
     tri_mesh_extra_free(n->mesh, n->scratch);
@@ -680,8 +687,7 @@ enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *pa
                            const struct tri_executor *executor, struct tri_error *error)
 {
     assert(mesh->incidence.n_vertices <= n_kept && n_kept <= mesh->n_vertices);
-    struct par_numbering n = {.mesh = mesh, .partition = partition, .executor = executor, .n_kept = n_kept,
-                          .n_tiles = par_tile_columns(partition) * par_tile_rows(partition)};
+    struct par_numbering n = {.mesh = mesh, .partition = partition, .executor = executor, .n_kept = n_kept};
     enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);
     if (!status)
         renumber(&n);

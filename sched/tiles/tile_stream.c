@@ -107,9 +107,9 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
     double *regions;
     struct tri_stream stream = {.n_attributes = mesh->n_attributes, .n_regions = mesh->n_regions, .estimate = estimate,
                                 .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column,
-                                .n_ranks = tiles->n_ranks > 0 ? tiles->n_ranks : 1, .rank = tiles->rank,
-                                .first_vertex = tiles->first[0], .first_triangle = tiles->first[1],
-                                .first_segment = tiles->first[2]};
+                                .n_ranks = tiles->ranks.n > 0 ? tiles->ranks.n : 1, .rank = tiles->ranks.rank,
+                                .first_vertex = tiles->ranks.first[0], .first_triangle = tiles->ranks.first[1],
+                                .first_segment = tiles->ranks.first[2]};
     if (!copy_regions(mesh, stream.n_columns, &regions))
         return no_memory(error);
     stream.regions = regions;
@@ -117,7 +117,7 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
     if (tiles->sink->begin)
         status = tiles->sink->begin(tiles->sink->user, &stream, error);
     free(regions);
-    return status || tiles->kept_elsewhere ? status : hand_out_kept(tiles, error);
+    return status || tiles->ranks.rank > 0 ? status : hand_out_kept(tiles, error);
 }
 
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)

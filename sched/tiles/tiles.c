@@ -309,16 +309,14 @@ static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struc
 static struct par_pipeline pipeline_of(struct par_column *c)
 {
     int32_t threads = c->tiles->n_threads > 0 ? c->tiles->n_threads : 1;
-    return (struct par_pipeline){.n = c->vertices.n_rows, .n_slots = c->tiles->n_jobs, .n_threads = threads,
+    return (struct par_pipeline){.n = c->vertices.n_rows, .n_slots = par_tiles_jobs(c->tiles), .n_threads = threads,
                                  .context = c};
 }
 
-/* Two more than threads: while one tile is taken another is ready. */
 static bool reserve_jobs(struct par_tiles *tiles)
 {
-    tiles->n_jobs = tiles->n_threads > 1 ? tiles->n_threads + 2 : 1;
     if (!tiles->job)
-        tiles->job = calloc((size_t)tiles->n_jobs, sizeof *tiles->job);
+        tiles->job = calloc((size_t)par_tiles_jobs(tiles), sizeof *tiles->job);
     return tiles->job;
 }
 
@@ -509,7 +507,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
 
 void par_tiles_free(struct par_tiles *tiles)
 {
-    for (int32_t i = 0; tiles->job && i < tiles->n_jobs; i++)
+    for (int32_t i = 0; tiles->job && i < par_tiles_jobs(tiles); i++)
         par_tile_job_free(&tiles->job[i]);
     free(tiles->job);
     free_numbers(tiles);

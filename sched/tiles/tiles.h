@@ -19,28 +19,35 @@
 #include "sched/schedule/worklist.h"
 #include "triangle/base/executor.h"
 
+struct par_tile_ranks {           /* all 0: one rank hands out everything */
+    int32_t n, rank;              /* how many, and which is this; rank 0 hands out vertices that keep their numbers */
+    const int64_t *first[3];      /* [n + 1] first vertex, triangle, segment of each rank; NULL: there is one rank */
+};
+
 struct par_tiles {
-    struct tri_mesh *mesh;
+    /* Asked for. */
+    struct tri_mesh *mesh;                 /* the finished mesh, which shrinks as columns are handed out */
     const struct par_partition *partition; /* NULL: the mesh has no tiles, and is handed out in pieces */
-    const struct tri_executor *executor;
-    const struct tri_sink *sink;
+    const struct tri_executor *executor;   /* runs shares and tiles; NULL: they run one after the other */
+    const struct tri_sink *sink;           /* receives the tiles */
     const struct tri_pslg *figure; /* the input: its points are handed out bit by bit; NULL: the mesh's points are */
     int32_t n_kept;               /* vertices that there were before refinement */
     int32_t kept_at_once;         /* so many of these are a tile; 0: all are one */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
-    bool kept_elsewhere;          /* the vertices that keep their numbers are handed out by another rank */
-    int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
-    const int64_t *first[3];
+    int32_t n_threads;            /* of the executor; 0: one */
+    struct par_tile_ranks ranks;  /* who hands out which numbers */
+    /* Found: what each vertex has here, and how far the stream has come. */
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
     int32_t *kept_tile;           /* [n_kept] column * n_rows + row of the vertices that keep their numbers */
-    int32_t capacity;
+    int32_t capacity;             /* vertices that `number` has room for */
     bool is_in_files;             /* the array `number` lies in files, in the mesh's storage */
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_ids held;          /* numbered vertices that triangles beyond the last column still have */
-    int32_t n_threads;            /* of the executor; 0: one */
-    int32_t n_jobs;
-    struct par_tile_job *job;     /* [n_jobs] tiles on their way */
+    struct par_tile_job *job;     /* [par_tiles_jobs] room for tiles on their way; NULL: none yet */
 };
+
+/* Tiles on their way at one time. Two more than threads: while one tile is taken another is ready. */
+static inline int32_t par_tiles_jobs(const struct par_tiles *t) { return t->n_threads > 1 ? t->n_threads + 2 : 1; }
 
 /* --- columns (tiles.c) */
 
@@ -56,7 +63,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
 static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 {
     const struct par_partition *p = tiles->partition;
-    const double jobs = tiles->n_threads > 1 ? tiles->n_threads + 2 : 1, tile = 4 * p->estimate / par_blocks(p);
+    const double jobs = par_tiles_jobs(tiles), tile = 4 * p->estimate / par_blocks(p);
     return 12 * (size_t)tiles->mesh->n_triangles + (size_t)(48 * jobs * tile);
 }
 
