@@ -186,6 +186,17 @@ long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*/*.[ch] triangle/*/*.cpp sc
 long=$(LC_ALL=C.UTF-8 grep -nE '^[^|].{120,}' ./*.md docs/*.md data/*.md | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
+# ... and no struct of sched/ and drivers/ has more than 20 fields, those of structs inside it among them. Options and
+# reports may have more.
+crowded=$(grep -E '^(sched|drivers)/' "$code" | awk '
+    name == "" && /^[^ ]* (typedef |static |const )*(struct|union)( [a-z0-9_]+)? \{ *$/ { name = $0; fields = 0; next }
+    name != "" && /^[^ ]* \}/ { if (fields > 20) print name " " fields " fields"; name = "" }
+    name != "" && !/^[^ ]* +\} *;/ {
+        while (gsub(/\([^()]*\)|\[[^][]*\]/, "")) { }
+        fields += gsub(/[;,]/, "")
+    }' | grep -vE ' struct (par_options|par_report|long_options) ')
+[ -z "$crowded" ] || breach "more than 20 fields: $crowded"
+
 # 5. Each header compiles alone; those of hdf5/ where HDF5 is there; that for MPI in its client (tests/client/ranks.c).
 for file in include/*/*.h triangle/*/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
