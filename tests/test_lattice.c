@@ -94,7 +94,11 @@ static void test_nearest(void **state)
         const double from_corners = least_distance(corner, wanted) / expected;
         if (fabs(from_corners - TRI_LATTICE_APART) < 1e-6 || sqrt(tri_distance2(centre, corner[0])) > 100 * expected)
             continue; /* rounding may decide either way */
-        assert_true((edge > 0) == (from_corners > TRI_LATTICE_APART));
+        const struct tri_shape shape = tri_shape_of(corner, (const tri_vertex_id[]){0, 1, 2});
+        const double reach2 = TRI_LATTICE_REACH * tri_longest2(&shape), far2 = tri_distance2(corner[0], wanted);
+        if (fabs(far2 - reach2) < 1e-6 * reach2)
+            continue;
+        assert_true((edge > 0) == (from_corners > TRI_LATTICE_APART && far2 < reach2));
         if (edge == 0)
             continue;
         n_found++;

@@ -46,7 +46,7 @@ same 3e8 -pq30aA "--max-bad 60" coast/borders.poly
 same 0.004 -pqaA "--min-angle 20" section.poly
 same 0.012 -pq32 "--min-angle 32" gear.poly
 same 6e-6 -pqD "--min-angle 20 --conforming" koch_lake.poly
-same 0.003 -pq30 "--min-angle 30" perforated.poly
+same 0.0015 -pq30 "--min-angle 30" perforated.poly
 same 1e-4 -pq30 "--min-angle 30" naca2412_box.poly
 same 4e-4 -pqY "--max-bad 2000" cracked_plate.poly
 same 1e-5 -pq30 "--max-bad 500" nasty/slit_1e-9.poly

@@ -14,10 +14,14 @@ struct tri_lattice tri_lattice_for(double area2)
 bool tri_lattice_point(const struct tri_lattice *lattice, const struct tri_point *xy, const tri_vertex_id v[3],
                        const struct tri_shape *shape, struct tri_point *p)
 {
-    const double apart = TRI_LATTICE_APART * lattice->edge;
+    const double apart = TRI_LATTICE_APART * lattice->edge, reach2 = TRI_LATTICE_REACH * tri_longest2(shape);
     double row, column;
     tri_lattice_near(lattice, tri_place(xy, v, shape, HUGE_VAL), &row, &column);
     *p = tri_lattice_at(lattice, row, column);
+    if (!(fabs(row) < TRI_LATTICE_FARTHEST && fabs(column) < TRI_LATTICE_FARTHEST))
+        return false;
+    if (tri_distance2(xy[v[0]], *p) > reach2)
+        return false;
     for (int k = 0; k < 3; k++)
         if (!(tri_distance2(xy[v[k]], *p) >= apart * apart))
             return false;

@@ -43,8 +43,8 @@ static inline void tri_lattice_near(const struct tri_lattice *lattice, struct tr
     *column = floor(p.x / lattice->edge - tri_lattice_shift(*row) + 0.5);
 }
 
-/* Sets *p to the lattice point for a bad triangle with corners v. False: there is none, as a corner is too near to
- * it. */
+/* Sets *p to the lattice point for a bad triangle with corners v. False: there is none, since a corner is too near to
+ * it, the triangle so flat that the point is far away, or the coordinates are too coarse. */
 bool tri_lattice_point(const struct tri_lattice *lattice, const struct tri_point *xy, const tri_vertex_id v[3],
                        const struct tri_shape *shape, struct tri_point *p);
 

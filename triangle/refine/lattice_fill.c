@@ -21,9 +21,9 @@
 
 /* A triangle that is too large. */
 struct large {
-    double area2;  /* twice the bound on its area */
-    tri_triangle_id t;
-    int32_t place; /* in the worklist */
+    double area2;           /* twice the bound on its area */
+    struct tri_entry entry;
+    int32_t place;          /* in the worklist, and behind that in the queue */
 };
 
 struct place {
@@ -39,7 +39,9 @@ struct border {
 
 struct tri_fill {
     struct large *large;   /* [n_large] by bound, then by place */
-    int32_t n_large, done; /* the sites at work are those of the bound of large[done] */
+    int32_t n_large, large_capacity;
+    int32_t done;          /* the sites at work are those of the bound of large[done] */
+    double cells;          /* that all these triangles ask for */
     struct tri_sites sites;
     bool has_sites;        /* they have been found */
     struct place *check;   /* [n_check] sites to look at: what is around them has changed */
@@ -290,7 +292,7 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
     struct tri_fill *f = r->fill;
     const struct tri_sites *s = &f->sites;
     const tri_vertex_id v[3] = {s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]};
-    (void)by_edge;
+    (void)by_edge; /* as make_cell has it */
     f->n_cells++;
     for (int e = 0; e < 3; e++) {
         const int a = tri_next[e], b = tri_prev[e];
@@ -490,30 +492,75 @@ static int by_bound(const void *left, const void *right)
     return (a->place > b->place) - (a->place < b->place);
 }
 
-/* Lists the triangles of the worklist that are too large. r->fill stays NULL where they are not worth it. False: no
- * memory. */
+/* Lists a triangle if it is too large. False: no memory. */
+static bool list_large(struct tri_refiner *r, tri_triangle_id t, int32_t place)
+{
+    struct tri_fill *f = r->fill;
+    double area2 = 0;
+    const double bound = broken_bound(r, t, &area2);
+    if (bound <= 0)
+        return true;
+    if (!tri_grow(&f->large, &f->large_capacity, f->n_large + 1, sizeof *f->large))
+        return false;
+    f->large[f->n_large++] = (struct large){bound, {t, r->mesh->tri[t].life}, place};
+    f->cells += area2 / bound;
+    return true;
+}
+
+/* Lists the triangles of the worklist and of the queue that are too large. False: no memory. */
+static bool list_all_large(struct tri_refiner *r)
+{
+    struct tri_entry entry;
+    int32_t place = 0;
+    bool room = true;
+    for (; room && place < r->n_worklist; place++)
+        room = list_large(r, tri_listed(r, place), place);
+    while (room && tri_bad_queue_pop(&r->queue, r->mesh, &entry))
+        room = entry.life != r->mesh->tri[entry.t].life || list_large(r, entry.t, place++);
+    return room;
+}
+
+/* Puts back into the queue what has been taken from it, and is too large still. False: no memory. */
+static bool queue_again(struct tri_refiner *r)
+{
+    const struct tri_fill *f = r->fill;
+    bool room = true;
+    for (int32_t i = 0; room && i < f->n_large; i++) {
+        const struct tri_entry entry = f->large[i].entry;
+        if (f->large[i].place >= r->n_worklist)
+            room = tri_bad_queue_push_size(&r->queue, entry, entry.life == r->mesh->tri[entry.t].life);
+    }
+    return room;
+}
+
+/* Where cells are not worth it, there are none to be made. False: no memory. */
 static bool begin(struct tri_refiner *r)
 {
-    struct tri_fill *f = calloc(1, sizeof *f);
-    double area2 = 0, cells = 0;
-    int32_t capacity = 0;
-    bool room = f != NULL;
-    for (int32_t i = 0; room && i < r->n_worklist; i++) {
-        const tri_triangle_id t = tri_listed(r, i);
-        const double bound = broken_bound(r, t, &area2);
-        if (bound <= 0)
-            continue;
-        room = tri_grow(&f->large, &capacity, f->n_large + 1, sizeof *f->large);
-        if (room)
-            f->large[f->n_large++] = (struct large){bound, t, i};
-        cells += area2 / bound;
-    }
-    r->fill = f;
-    if (room && cells >= TRI_LATTICE_LEAST)
-        qsort(f->large, (size_t)f->n_large, sizeof *f->large, by_bound);
+    assert(r->queue.n_angles == 0);
+    r->fill = calloc(1, sizeof *r->fill);
+    if (!r->fill || !list_all_large(r))
+        return false;
+    if (r->fill->cells >= TRI_LATTICE_LEAST)
+        qsort(r->fill->large, (size_t)r->fill->n_large, sizeof *r->fill->large, by_bound);
     else
-        tri_fill_free(r);
-    return room;
+        r->fill->done = r->fill->n_large;
+    return true;
+}
+
+/* Checks the sites that are not inside cells. Where these are many, cells are not worth it. False: no memory. */
+static bool check_all(struct tri_fill *f)
+{
+    struct tri_sites *s = &f->sites;
+    int32_t n_in = 0;
+    for (struct place at = {0, 0}; s->n > 0 && at.row < s->n_rows; at.row++)
+        for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++) {
+            n_in += is_in(f, at);
+            if (is_in(f, at) && neighbours_in(f, at) != ALL_IN && !check(f, at))
+                return false;
+        }
+    if (f->n_check > TRI_LATTICE_RIM * n_in)
+        s->n = f->n_check = 0;
+    return true;
 }
 
 /* Finds the sites of the next bound, and those that are not inside cells. False: no memory. */
@@ -524,21 +571,17 @@ static bool find_sites(struct tri_refiner *r)
     double area2 = 0, cells = 0;
     f->n_numbers = 0;
     for (int32_t i = f->done; i < f->n_large && f->large[i].area2 == f->large[f->done].area2; i++)
-        if (broken_bound(r, f->large[i].t, &area2) == f->large[i].area2) { /* it may have become another one */
+        if (broken_bound(r, f->large[i].entry.t, &area2) == f->large[i].area2) { /* it may have become another one */
             if (!tri_grow(&f->number, &f->number_capacity, f->n_numbers + 1, sizeof *f->number))
                 return false;
-            f->number[f->n_numbers++] = f->large[i].t;
+            f->number[f->n_numbers++] = f->large[i].entry.t;
             cells += area2 / f->large[i].area2;
         }
     const double most = cells < TRI_LATTICE_LEAST ? 0 : tri_lesser(TRI_LATTICE_SPARSE * cells, INT32_MAX / 4);
     if (!tri_sites_find(&f->sites, r->mesh, &lattice, f->number, f->n_numbers, (int32_t)most))
         return false;
     f->has_sites = true;
-    for (struct place at = {0, 0}; f->sites.n > 0 && at.row < f->sites.n_rows; at.row++)
-        for (at.column = f->sites.row[at.row].first; at.column <= f->sites.row[at.row].last; at.column++)
-            if (is_in(f, at) && neighbours_in(f, at) != ALL_IN && !check(f, at))
-                return false;
-    return true;
+    return check_all(f);
 }
 
 static void end_bound(struct tri_fill *f)
@@ -551,21 +594,28 @@ static void end_bound(struct tri_fill *f)
     f->n_check = 0;
 }
 
+bool tri_wants_cells(const struct tri_refiner *r)
+{
+    return r->lattice && !r->hooks->urgent && !r->hooks->gate && r->quality->max_steiner < 0 &&
+           tri_area_scale(r->quality) <= 1;
+}
+
 bool tri_fill_lattice(struct tri_refiner *r)
 {
-    const bool wanted = r->lattice && !r->hooks->urgent && !r->hooks->gate && r->quality->max_steiner < 0 &&
-                        tri_area_scale(r->quality) <= 1;
-    if (wanted && !r->fill && !begin(r))
+    if (!tri_wants_cells(r))
+        return true;
+    if (!r->fill && !begin(r))
         return false;
-    while (r->fill && r->fill->done < r->fill->n_large) {
+    while (r->fill->done < r->fill->n_large) {
         if (!r->fill->has_sites && !find_sites(r))
             return false;
         if (r->fill->sites.n > 0 && (settle(r) == FAILED || put_cells(r) == FAILED))
             return false;
         end_bound(r->fill);
     }
+    const bool room = queue_again(r);
     tri_fill_free(r);
-    return true;
+    return room;
 }
 
 void tri_fill_free(struct tri_refiner *r)

@@ -22,7 +22,7 @@
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
-    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
+    return r->step <= ALL_ANGLES ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
                                  : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
 
@@ -59,30 +59,37 @@ static bool queue_chunk(struct tri_refiner *r)
 /* Passes over the worklist twice. The first pass takes, chunk by chunk, the bad angles beside the shorter half of the
  * edges: the order by shortest edge (bad_queue.h) then nearly holds for the whole mesh, and the work stays in the
  * cache, if neighbours in the list are neighbours in the plane. The second pass takes the other bad angles, in the same
- * order, and then, place by place, triangles that are only too large. Resumable: false means that something failed, or
- * that there was no room. */
+ * order, and then, place by place, triangles that are only too large. Cells of a lattice come before these, once no
+ * angle is bad any more: by then triangles beside small features are small. Resumable: false means that something
+ * failed, or that there was no room. */
 static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
         assert(!r->in_hand && r->n_encroached == 0);
         r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
         r->next_listed = 0;
-        r->step = FILLING;
-    }
-    if (r->step == FILLING) {
-        if (!tri_fill_lattice(r))
-            return false;
         r->step = FIRST_PASS;
     }
     while (r->step == FIRST_PASS) {
         if (!work_off(r))
             return false;
         if (r->next_listed == r->n_worklist) {
-            r->step = SECOND_PASS;
-            r->next_listed = 0;
+            r->step = ALL_ANGLES;
+            r->limit = tri_wants_cells(r) ? TRI_BUCKETS : 0;
         } else if (!queue_chunk(r)) {
             return false;
         }
+    }
+    if (r->step == ALL_ANGLES) {
+        if (!work_off(r))
+            return false;
+        r->step = FILLING;
+    }
+    if (r->step == FILLING) {
+        if (!tri_fill_lattice(r))
+            return false;
+        r->step = SECOND_PASS;
+        r->next_listed = 0;
     }
     if (!work_off(r))
         return false;

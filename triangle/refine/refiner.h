@@ -10,7 +10,7 @@
 
 enum tri_bound_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
-enum tri_step { NOT_BEGUN, FILLING, FIRST_PASS, SECOND_PASS };
+enum tri_step { NOT_BEGUN, FIRST_PASS, ALL_ANGLES, FILLING, SECOND_PASS };
 
 struct tri_fill;
 struct tri_lattice;
@@ -83,8 +83,11 @@ bool tri_feed_walls(struct tri_refiner *r);
 
 /* --- lattice_fill.c */
 
-/* Makes cells of the lattice in the triangles of the worklist that are too large. Resumable: false means that something
- * failed, or that there was no room. */
+/* May the call make cells of a lattice? */
+bool tri_wants_cells(const struct tri_refiner *r);
+
+/* Makes cells of the lattice in the triangles of the worklist and of the queue that are too large. Resumable: false
+ * means that something failed, or that there was no room. */
 bool tri_fill_lattice(struct tri_refiner *r);
 void tri_fill_free(struct tri_refiner *r);
 

@@ -57,18 +57,20 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
         p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* The lattice's rows and the leftmost column; false: there are more than `most`, or coordinates are too coarse for
- * them. */
+/* The lattice's rows and the leftmost column; false: there are more than `most`, triangles have more, or coordinates
+ * are too coarse for them. */
 static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
                        int32_t most)
 {
     struct span rows = {HUGE_VAL, -HUGE_VAL}, columns = rows;
+    double painted = 0; /* rows of all triangles */
     for (int32_t i = 0; i < n; i++) {
         struct tri_point p[3];
         corners_of(mesh, triangle[i], p);
         const struct span own = rows_in(&s->lattice, p);
         rows.first = tri_lesser(rows.first, own.first);
         rows.last = tri_larger(rows.last, own.last);
+        painted += tri_larger(own.last - own.first + 1, 0);
         for (int k = 0; k < 3; k++) {
             columns.first = tri_lesser(columns.first, floor(p[k].x / s->lattice.edge) - 1);
             columns.last = tri_larger(columns.last, floor(p[k].x / s->lattice.edge) + 1);
@@ -78,7 +80,7 @@ static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const t
     s->left = columns.first - TRI_SITE_MARGIN;
     const double farthest = tri_larger(tri_larger(fabs(rows.first), fabs(rows.last)),
                                        tri_larger(fabs(columns.first), fabs(columns.last)));
-    if (!(farthest < TRI_LATTICE_FARTHEST) || !(rows.last - s->bottom < most) ||
+    if (!(farthest < TRI_LATTICE_FARTHEST) || !(rows.last - s->bottom < most) || !(painted <= most) ||
         !(columns.last - columns.first < INT32_MAX / 2))
         return false;
     s->n_rows = rows.first <= rows.last ? (int32_t)(rows.last - s->bottom) + 1 + TRI_SITE_MARGIN : 0;
