@@ -175,13 +175,18 @@ struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partit
                               .n_threads = run->report->threads};
 }
 
-/* Something that no block could do lies left of x, where every block has had its turn. */
+/* Something that no block could do lies left of x, where every block has had its turn. The number of a triangle that was
+ * left may be that of a good one by now. */
 static bool is_left_behind(const struct par_run *run, double x)
 {
     const struct tri_mesh *mesh = run->mesh;
+    const struct tri_criterion criterion = tri_criterion_for(mesh, &run->bounds);
     for (int32_t i = 0; i < run->worklist.n; i++) {
         const struct tri_triangle *t = &mesh->tri[run->worklist.item[i]];
-        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
+        if (!tri_is_live(t) || mesh->xy[t->v[0]].x >= x || mesh->xy[t->v[1]].x >= x || mesh->xy[t->v[2]].x >= x)
+            continue;
+        const struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        if (tri_judge(&criterion, t, &shape) != TRI_GOOD)
             return true;
     }
     return false;

@@ -86,10 +86,11 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
     return room && tri_feed_walls(r) ? DONE : FAILED;
 }
 
+/* TRI_NONE: a point that stands for no triangle. */
 static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
 {
-    ++*counter;
-    if (r->hooks->deferred)
+    *counter += triangle != TRI_NONE;
+    if (r->hooks->deferred && triangle != TRI_NONE)
         r->hooks->deferred(r->hooks->deferred_user, triangle);
     return DEFERRED;
 }
@@ -340,10 +341,10 @@ static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id t
     return outcome;
 }
 
-/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has
- * it. */
+/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has it;
+ * bad: the triangle, or TRI_NONE if it is not for its sake. */
 static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
-                                        const struct tri_shape *shape, double most)
+                                        const struct tri_shape *shape, double most, tri_triangle_id bad)
 {
     assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
     tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
@@ -351,7 +352,7 @@ static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point 
         return insert_free(r, p, triangle, shape, most);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    const enum tri_outcome outcome = split(r, s, triangle);
+    const enum tri_outcome outcome = split(r, s, bad);
     return outcome == DONE ? AGAIN : outcome;
 }
 
@@ -369,7 +370,7 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
         p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
         outcome = find_cavity(r, triangle, p);
     }
-    return outcome == DONE ? insert_or_split(r, p, triangle, shape, most) : outcome;
+    return outcome == DONE ? insert_or_split(r, p, triangle, shape, most, triangle) : outcome;
 }
 
 enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p,
@@ -387,7 +388,7 @@ enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id tr
     }
     if (!tri_lattice_is_clear(&r->cavity, lattice))
         return REFUSED;
-    return insert_or_split(r, p, triangle, &shape, lattice->feature);
+    return insert_or_split(r, p, triangle, &shape, lattice->feature, TRI_NONE);
 }
 
 /* For sizes, where the usual point is refused: see place.c. */
