@@ -341,8 +341,8 @@ static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id t
     return outcome;
 }
 
-/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has it;
- * bad: the triangle, or TRI_NONE if it is not for its sake. */
+/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has
+ * it; bad: the triangle, or TRI_NONE if it is not for its sake. */
 static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
                                         const struct tri_shape *shape, double most, tri_triangle_id bad)
 {
