@@ -175,8 +175,8 @@ struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partit
                               .n_threads = run->report->threads};
 }
 
-/* Something that no block could do lies left of x, where every block has had its turn. The number of a triangle that was
- * left may be that of a good one by now. */
+/* Something that no block could do lies left of x, where every block has had its turn. The number of a triangle that
+ * was left may be that of a good one by now. */
 static bool is_left_behind(const struct par_run *run, double x)
 {
     const struct tri_mesh *mesh = run->mesh;
