@@ -178,7 +178,7 @@ static enum tri_outcome walk_to(struct tri_refiner *r, struct tri_point p, tri_t
         if (e == 3)
             return DONE;
         if (at->n[e] == TRI_BEYOND)
-            return tri_wait_for(r, at->v[tri_next[e]], at->v[tri_prev[e]]);
+            return tri_wait_for(r, (tri_vertex_id[]){at->v[tri_next[e]], at->v[tri_prev[e]]});
         if (at->n[e] < 0 || !tri_fence_owns(r->hooks->fence, m, tri_of(at->n[e])))
             return REFUSED;
         *t = tri_of(at->n[e]);
@@ -211,7 +211,8 @@ static enum tri_outcome insert(struct tri_refiner *r, struct place at)
     }
 }
 
-/* Looks at a site: one that only cells are around waits for them, another one that has cells is of the rim. */
+/* Looks at a site. One with cells all around waits for them; one with some cells is of the rim, and is inserted; one
+ * without cells is left out. */
 static enum tri_outcome look_at(struct tri_refiner *r, struct place at)
 {
     struct tri_fill *f = r->fill;
@@ -265,7 +266,7 @@ static enum tri_outcome find_edge(struct tri_refiner *r, tri_triangle_id t, tri_
             }
             const tri_link link = tri[at].n[side[k]];
             if (link == TRI_BEYOND)
-                return tri_wait_for(r, a, tri[at].v[turn == 0 ? tri_prev[k] : tri_next[k]]);
+                return tri_wait_for(r, (tri_vertex_id[]){a, tri[at].v[turn == 0 ? tri_prev[k] : tri_next[k]]});
             if (link < 0)
                 break;
             at = tri_of(link);
@@ -306,7 +307,7 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
             border.region = r->mesh->tri[tri_of(border.inside)].region;
         }
         if (border.outside == TRI_BEYOND)
-            return tri_wait_for(r, v[a], v[b]);
+            return tri_wait_for(r, (tri_vertex_id[]){v[a], v[b]});
         if (border.outside < 0 || !is_delaunay(r, c, border.outside)) {
             if (leave_out(f, c->at[a]) == FAILED || leave_out(f, c->at[b]) == FAILED)
                 return FAILED;
@@ -365,7 +366,7 @@ static enum tri_outcome walk_on(struct tri_refiner *r, tri_triangle_id inside)
     const struct tri_triangle *t = &r->mesh->tri[inside];
     for (int e = 0; e < 3; e++) {
         if (t->n[e] == TRI_BEYOND)
-            return tri_wait_for(r, t->v[tri_next[e]], t->v[tri_prev[e]]);
+            return tri_wait_for(r, (tri_vertex_id[]){t->v[tri_next[e]], t->v[tri_prev[e]]});
         if (t->n[e] != CUT && (t->n[e] < 0 || !note_inside(r, tri_of(t->n[e]), ~t->region)))
             return REFUSED;
     }

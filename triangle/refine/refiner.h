@@ -99,8 +99,8 @@ enum tri_status tri_make_room(struct tri_refiner *r, int32_t points);
 /* Adds a vertex, for which there is room. on: as tri_mesh.on. */
 tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker);
 
-/* The same is tried again when there is more of the mesh beyond edge ab. Returns FAILED. */
-enum tri_outcome tri_wait_for(struct tri_refiner *r, tri_vertex_id a, tri_vertex_id b);
+/* Asks for what lies beyond an edge; the same is tried again when it is there. Returns FAILED. */
+enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2]);
 
 /* Inserts p, a lattice point in a triangle, or splits a subsegment that it encroaches (AGAIN). REFUSED: something is
  * too near to it, or the fence. */

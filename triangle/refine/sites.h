@@ -27,8 +27,8 @@ struct tri_sites {
     tri_triangle_id *near;    /* [n] a triangle: one at the vertex, or near to the site */
 };
 
-/* Finds the sites in n triangles of one bound on areas. most: more sites than this, or rows of all
- * triangles, and there are none. False: no memory. O(n + rows of all triangles + sites). */
+/* Finds the sites in n triangles of one bound on areas. most: if there are more sites than this, or more rows of all
+ * triangles, none are found. False: no memory. O(n + rows of all triangles + sites). */
 bool tri_sites_find(struct tri_sites *sites, const struct tri_mesh *mesh, const struct tri_lattice *lattice,
                     const tri_triangle_id *triangle, int32_t n, int32_t most);
 void tri_sites_free(struct tri_sites *sites);

@@ -40,15 +40,13 @@ static enum tri_status find_room(struct tri_refiner *r, int32_t points)
     return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
 }
 
-static inline enum tri_status make_room(struct tri_refiner *r, int32_t points)
+enum tri_status tri_make_room(struct tri_refiner *r, int32_t points)
 {
     const struct tri_mesh *m = r->mesh;
     bool has_room = m->vertex_capacity - m->n_vertices >= points &&
                     m->triangle_capacity - m->n_triangles >= 2 * points && m->sub_capacity > m->n_subs;
     return has_room ? TRI_OK : find_room(r, points);
 }
-
-enum tri_status tri_make_room(struct tri_refiner *r, int32_t points) { return make_room(r, points); }
 
 tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
@@ -73,7 +71,7 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
                                 const struct tri_shape *shape, double most)
 {
     assert(p.x == r->cavity.p.x && p.y == r->cavity.p.y && r->cavity.n_edges == r->cavity.n_tri + 2);
-    if (make_room(r, 1))
+    if (tri_make_room(r, 1))
         return FAILED;
     tri_vertex_id v = tri_add_vertex(r, p, TRI_VERTEX_FREE, 0);
     const tri_vertex_id *corner = r->mesh->tri[triangle].v;
@@ -96,18 +94,12 @@ static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, i
 }
 
 /* Nothing has been changed; the same is tried again when there is more of the mesh. */
-static enum tri_outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edge[2])
+enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2])
 {
     assert(r->hooks->part);
     r->hooks->part->beyond(r->hooks->part->user, edge);
     r->error.status = TRI_NO_ROOM;
     return FAILED;
-}
-
-enum tri_outcome tri_wait_for(struct tri_refiner *r, tri_vertex_id a, tri_vertex_id b)
-{
-    const tri_vertex_id edge[2] = {a, b};
-    return wait_for_more(r, edge);
 }
 
 static enum tri_outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
@@ -203,10 +195,10 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     if (found == TRI_SEARCH_FENCED)
         return defer(r, triangle, &r->report->fenced);
     if (found == TRI_SEARCH_BEYOND)
-        return wait_for_more(r, r->cavity.beyond);
+        return tri_wait_for(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
-    if (found == TRI_SEARCH_NO_MEMORY || make_room(r, 1))
+    if (found == TRI_SEARCH_NO_MEMORY || tri_make_room(r, 1))
         return FAILED;
     bool boundary = tri_is_boundary(&old);
     assert(r->cavity.n_edges > n_left || boundary);
@@ -305,7 +297,7 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
     case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
-    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
+    case TRI_SEARCH_BEYOND: return tri_wait_for(r, r->cavity.beyond);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }
@@ -318,7 +310,7 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
     tri_vertex_id beyond[2];
     switch (tri_petal_point(r->mesh, r->hooks->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
     case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
-    case TRI_PETAL_BEYOND: return wait_for_more(r, beyond);
+    case TRI_PETAL_BEYOND: return tri_wait_for(r, beyond);
     default: return REFUSED;
     }
 }
@@ -382,7 +374,7 @@ enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id tr
     r->sized = true;
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: break;
-    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
+    case TRI_SEARCH_BEYOND: return tri_wait_for(r, r->cavity.beyond);
     case TRI_SEARCH_NO_MEMORY: return FAILED;
     default: return REFUSED;
     }
@@ -466,7 +458,7 @@ bool tri_split_encroached(struct tri_refiner *r)
         tri_sub_id s = r->encroached[r->n_encroached - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
-            return wait_for_more(r, sub->v) != FAILED;
+            return tri_wait_for(r, sub->v) != FAILED;
         r->n_encroached--;
         struct tri_disk_split where;
         if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
