@@ -43,6 +43,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/crowd.c
     triangle/size/gap.c
     triangle/size/hopeless.c
+    triangle/size/lengths.c
     triangle/size/quality.c
     triangle/size/estimate.c
     triangle/api/generate.c

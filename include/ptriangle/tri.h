@@ -108,6 +108,35 @@ static inline struct tri_figure tri_no_figure(void)
     return figure;
 }
 
+/* --- sizes: how long edges shall be, place by place. A field gives a length h, in the unit of the coordinates, and the
+ * mesh has edges of about that length: unlike a bound on areas, it is met on the average. */
+
+enum tri_size_kind {
+    TRI_SIZE_NUMBER = 1, /* `length` everywhere */
+    TRI_SIZE_RASTER,     /* `values` at the nodes of a grid, bilinear between them; outside that of the nearest node */
+    TRI_SIZE_MESH,       /* `values` at `points`, linear in each of the `triangles`; outside that of the nearest place */
+    TRI_SIZE_FUNCTION,   /* `function` */
+    TRI_SIZE_NEAR        /* `length` at the segments with this marker, growing by `growth` for a distance of 1 */
+};
+
+/* One source of lengths. Arrays are the caller's, are only read, and not looked at after the call. A length that is not
+ * above 0, or no number, is no data: the nearest data count in its place. */
+struct tri_size_field {
+    enum tri_size_kind kind;
+    double length;           /* NUMBER, NEAR: above 0 */
+    double growth;           /* NEAR: 0 or more; below 0: tri_settings.gradation */
+    int32_t marker;          /* NEAR: of the segments */
+    struct tri_reals values; /* RASTER: [rows][columns], the lowest row first; MESH: [points.n][1] */
+    double origin[2];        /* RASTER: the place of the first value .. */
+    double step[2];          /* .. and the distance of columns and of rows, above 0 */
+    struct tri_reals points; /* MESH: [n][2] */
+    struct tri_ints triangles; /* MESH: [n][3] points */
+    /* FUNCTION: writes the lengths at n places. Asked by the calling thread alone, for some million places in a few
+     * dozen calls, before anything is meshed: what it says is kept in a quadtree, bilinear to 2%. */
+    void (*function)(void *user, int64_t n, const double (*at)[2], double *length);
+    void *user;
+};
+
 enum tri_placement {         /* of new points */
     TRI_PLACEMENT_LATTICE = 0, /* in a hexagonal lattice, if bounds on areas alone set the sizes and min_angle is at
                                   most 30: a third fewer triangles, most of them equilateral. With a larger
@@ -180,6 +209,14 @@ struct tri_settings {
     void *progress_user;
 
     enum tri_placement placement; /* of new points */
+
+    /* Lengths of edges that are asked for: at each place the least that a field gives. min_angle, and bounds on areas,
+     * hold beside them. TRI_BAD_INPUT: a field that has no data, a NEAR whose marker no segment has. */
+    const struct tri_size_field *sizes; /* [n_sizes] */
+    int64_t n_sizes;
+    double gradation;   /* lengths grow by no more than this for a distance of 1; 0: 0.2; infinite: no limit */
+    double min_size;    /* shorter lengths count as this; 0: none is too short */
+    double max_size;    /* > 0: no length is longer, also where no field says anything */
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -65,7 +65,8 @@ static double ask_length(void *user, const double at[2])
 
 static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *s)
 {
-    return s->min_angle > 0 || s->max_area > 0 || s->conforming || s->edge_length || s->unsuitable || m->has_areas;
+    return s->min_angle > 0 || s->max_area > 0 || s->conforming || s->edge_length || s->unsuitable || m->has_areas ||
+           s->n_sizes > 0 || s->max_size > 0;
 }
 
 static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes *sizes)
@@ -84,6 +85,14 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.unsuitable = s->unsuitable;
     how.unsuitable_user = s->unsuitable_user;
     return how;
+}
+
+static enum tri_status lengths_of(struct tri_lengths **lengths, const struct tri_settings *s,
+                                  const struct tri_mesh *mesh, const struct tri_executor *executor,
+                                  struct tri_error *error)
+{
+    const struct tri_sizes sizes = {s->sizes, s->n_sizes, s->gradation, s->min_size, s->max_size};
+    return tri_lengths_new(lengths, &sizes, mesh, executor, error);
 }
 
 /* *fence is room for the settings' fence in the units of the mesh. */
@@ -242,7 +251,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     const struct tri_settings *s = refiner->settings;
     struct tri_fence fence;
     struct sizes sizes = {.settings = s, .is_odd = ATOMIC_FLAG_INIT};
-    const struct tri_quality how = quality_of(refiner->m, &sizes);
+    struct tri_quality how = quality_of(refiner->m, &sizes);
     const struct tri_refine_hooks hooks = hooks_of(refiner->m, s, &fence);
     (void)quality;
     *report = (struct tri_refine_report){0};
@@ -250,8 +259,13 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     refiner->m->refined = (struct tri_settings){0};
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
-    enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, &hooks, s, report, error)
-                                         : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);
+    struct tri_lengths *lengths;
+    enum tri_status status = lengths_of(&lengths, s, mesh, refiner->way->executor, error);
+    how.lengths = lengths;
+    if (!status)
+        status = s->progress ? refine_told(refiner->way, mesh, &how, &hooks, s, report, error)
+                             : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);
+    tri_lengths_free(lengths);
     if (atomic_flag_test_and_set(&sizes.is_odd))
         tell_odd(refiner->m, &sizes);
     if (!status)

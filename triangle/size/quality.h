@@ -9,6 +9,7 @@
 
 #include "triangle/geometry/shape.h"
 #include "triangle/mesh/mesh.h"
+#include "triangle/size/lengths.h"
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule/schedule.h). */
@@ -25,6 +26,7 @@ struct tri_quality {
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
                                      its corners and centroid */
     void *edge_length_user;
+    const struct tri_lengths *lengths; /* edges shall be so long (lengths.h); borrowed; NULL: nothing is asked for */
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
     double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
