@@ -95,7 +95,7 @@ static void test_integral(void **state)
     (void)state;
     enum { N = 1000 };
     const struct tri_point corner[3] = {{0, 0}, {1, 0}, {1, 1}};
-    const struct tri_size_field field = {.at = size_about, .large = 1e-3, .few = 0.3, .deepest = 60},
+    const struct tri_integrand field = {.at = size_about, .large = 1e-3, .few = 0.3, .deepest = 60},
                                 over = {.at = size_about, .over = 1e3, .large = 1e-3, .few = 0.3, .deepest = 60};
     double sum = 0, sum_over = 0;
     for (int i = 0; i < N; i++)

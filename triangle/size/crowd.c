@@ -93,7 +93,7 @@ static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, do
     const int DEEPEST = 128; /* h is smooth, and bounded from below */
     const tri_vertex_id *v = mesh->tri[triangle].v;
     struct field f = {.least = HUGE_VAL};
-    const struct tri_size_field field = {.at = size_at, .user = &f, .over = 1 / (most * most), .large = HUGE_VAL,
+    const struct tri_integrand field = {.at = size_at, .user = &f, .over = 1 / (most * most), .large = HUGE_VAL,
                                          .few = FEW, .deepest = DEEPEST};
     for (int k = 0; k < 3; k++) {
         f.corner[k] = mesh->xy[v[k]];
@@ -160,7 +160,7 @@ static int opposite_longest(const struct place p[3])
     return a >= b && a >= c ? 0 : b >= c ? 1 : 2;
 }
 
-static double count_by_corners(const struct tri_size_field *f, const struct place p[3], double area, bool simple)
+static double count_by_corners(const struct tri_integrand *f, const struct place p[3], double area, bool simple)
 {
     double mean = (p[0].h + p[1].h + p[2].h) / (3 * p[0].h * p[1].h * p[2].h);
     if (f->at_least && !simple) {
@@ -171,7 +171,7 @@ static double count_by_corners(const struct tri_size_field *f, const struct plac
 }
 
 /* Is h nearly linear between these, or is the part worth nothing? */
-static bool is_simple(const struct tri_size_field *f, const struct place p[3], int k, const struct place *middle,
+static bool is_simple(const struct tri_integrand *f, const struct place p[3], int k, const struct place *middle,
                       double area)
 {
     const double RATIO = 4, BENT = 0.4;
@@ -181,7 +181,7 @@ static bool is_simple(const struct tri_size_field *f, const struct place p[3], i
     return area <= f->large && (area < f->few * low * low || (high < RATIO * low && bend < BENT * middle->h));
 }
 
-static double count_in(const struct tri_size_field *f, const struct place p[3], int depth)
+static double count_in(const struct tri_integrand *f, const struct place p[3], int depth)
 {
     double area = fabs(tri_area_of(p[0].at, p[1].at, p[2].at));
     if (depth == 0 || (f->left && *f->left <= 0))
@@ -196,7 +196,7 @@ static double count_in(const struct tri_size_field *f, const struct place p[3], 
     return count_in(f, first, depth - 1) + count_in(f, second, depth - 1);
 }
 
-double tri_integral(const struct tri_size_field *field, const struct tri_point corner[3])
+double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3])
 {
     struct place p[3];
     for (int k = 0; k < 3; k++)

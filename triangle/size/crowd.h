@@ -25,7 +25,7 @@ double tri_crowd_work(const struct tri_crowd *crowd, tri_triangle_id t, double a
 /* The integral of 1 / h^2 over a triangle: how many squares of the size h fill it. A mesh graded by h has that many
  * triangles, to a constant (Ruppert 1995, theorem 4). */
 
-struct tri_size_field {
+struct tri_integrand {
     double (*at)(const void *user, struct tri_point q); /* h, above 0 and below 1e100 */
     const void *user;
     double over;  /* what counts is 1 / h^2 beyond this */
@@ -37,6 +37,6 @@ struct tri_size_field {
 };
 
 /* Where h is smooth, O(log of the ratios of sizes) places are looked at. */
-double tri_integral(const struct tri_size_field *field, const struct tri_point corner[3]);
+double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3]);
 
 #endif

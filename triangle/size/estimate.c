@@ -85,7 +85,7 @@ static double wished_in(const struct estimator *e, const struct tri_point p[3])
     const struct wish wish = {&e->asked, p, e->budget};
     if (e->at_least && e->budget->left <= 0)
         return 0;
-    const struct tri_size_field field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
+    const struct tri_integrand field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
                                          &e->budget->left, e->at_least};
     return tri_integral(&field, p);
 }
