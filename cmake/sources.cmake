@@ -97,6 +97,11 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/read_gmsh.c
     triangle/text/read_hydro.c
     triangle/text/formats.c
+    triangle/text/words.c
+    triangle/text/read_raster.c
+    triangle/text/read_jigsaw.c
+    triangle/text/read_view.c
+    triangle/text/size_file.c
     triangle/api/files.c)
 
 # Folder triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
@@ -203,6 +208,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/summary.c
     drivers/mesh/needs.c
     drivers/mesh/plan.c
+    drivers/mesh/size_options.c
     drivers/mesh/stages.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 

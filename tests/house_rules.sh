@@ -70,6 +70,8 @@ tested_by() {
     triangle/text/output.c | triangle/text/layouts.c) echo write ;;
     triangle/text/stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c) echo formats ;;
+    triangle/text/read_raster.c | triangle/text/read_jigsaw.c | triangle/text/read_view.c) echo size_file ;;
+    triangle/text/words.c) echo size_file ;;
     triangle/text/read_*.c | triangle/text/reading.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/mesh/parents.c) echo groundwork ;;

@@ -21,10 +21,12 @@ for program in triangle ptriangle trianglecheck meshplot; do
     "$build/bin/$program" --version | grep -qx "$program [0-9.]*" || fault "$program --version"
     # What the sources take: tables of {"name", ...}.
     case $program in
-    ptriangle) source=$root/drivers/mesh/long_options.c ;;
+    ptriangle) source="$root/drivers/mesh/long_options.c $root/drivers/mesh/size_options.c" ;;
+    triangle) source=$root/drivers/mesh/size_options.c ;;
     *) source=$(echo "$root"/drivers/*/"$program.c") ;;
     esac
-    taken=$(grep -oE '\{"[a-z-]+", *([A-Z]|(required|no)_argument)' "$source" | sed 's/{"\([a-z-]*\)".*/--\1/')
+    # shellcheck disable=SC2086 # one word a file
+    taken=$(grep -ohE '\{"[a-z-]+", *([A-Z]|(required|no)_argument)' $source | sed 's/{"\([a-z-]*\)".*/--\1/')
     [ $program = triangle ] || [ "$(echo "$taken" | wc -l)" -gt 10 ] || fault "$program: which options does $source take?"
     told=$(grep -E '^ {2,8}-' help.txt | grep -oE -e '--[a-z-]+')
     for option in $taken; do

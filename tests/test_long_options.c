@@ -55,10 +55,6 @@ static void test_both_forms(void **state)
     assert_true(t.switches.even_odd);
     assert_int_equal(TAKE_ALONE(&t, "--holes=points"), TRI_OK);
     assert_false(t.switches.even_odd);
-    assert_int_equal(TAKE(&t, "--placement", "classic"), TRI_OK);
-    assert_true(t.switches.classic);
-    assert_int_equal(TAKE_ALONE(&t, "--placement=lattice"), TRI_OK);
-    assert_false(t.switches.classic);
     assert_int_equal(TAKE(&t, "--numbering", "blocks"), TRI_OK);
     assert_true(t.options.by_block);
     assert_int_equal(TAKE_ALONE(&t, "--numbering=curve"), TRI_OK);

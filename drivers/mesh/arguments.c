@@ -33,7 +33,7 @@ char *next_iteration(const char *name)
 
 struct arguments arguments_begin(int argc, char **argv)
 {
-    return (struct arguments){argc, argv, tri_switches_none(), NULL, NULL, NULL, NULL, NULL};
+    return (struct arguments){.argc = argc, .argv = argv, .switches = tri_switches_none()};
 }
 
 void arguments_word(struct arguments *arguments, const char *word)
@@ -96,6 +96,7 @@ void arguments_free(struct arguments *arguments)
 {
     free(arguments->input);
     free(arguments->output);
+    size_options_free(&arguments->sizes);
     arguments->input = arguments->output = NULL;
 }
 
@@ -136,6 +137,20 @@ static const char *const paragraphs[] = {
     "  -u      a test of the caller's own; without effect on the command line\n"
     "  -Y      do not put vertices on the boundary; -YY: nor on any segment\n"
     "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",
+
+    "Sizes (both forms: --size 500 and --size=500; up to 8 times --size and --size-near: the least length counts)\n"
+    "  --size H | FILE\n"
+    "          edges shall have about the length H, or at each place that of a field: a raster (.asc; .npy as\n"
+    "          FILE.npy@XMIN,YMIN,XMAX,YMAX, the places of its first and its last value) or a mesh with a length\n"
+    "          at each point (.node and .ele; .msh of Gmsh and of JIGSAW; .pos; .vtu, .2dm, .14, .grd). Beyond the\n"
+    "          field the nearest length counts. Without -q the angle bound is 20 degrees, as for -q\n"
+    "  --size-near MARKER:H[,GROWTH]\n"
+    "          edges of length H at segments with this marker, growing by GROWTH for a distance of 1 (default:\n"
+    "          that of --gradation)\n"
+    "  --gradation G\n"
+    "          lengths of all sources grow by no more than G for a distance of 1 (0.2; inf: no limit)\n"
+    "  --min-size H, --max-size H\n"
+    "          no length that is asked for is below, or above H. --max-size alone holds everywhere\n",
 
     "Output\n"
     "  -e      also edges (.edge)\n"

@@ -2,6 +2,7 @@
 #ifndef DRIVERS_MESH_ARGUMENTS_H
 #define DRIVERS_MESH_ARGUMENTS_H
 
+#include "drivers/mesh/size_options.h"
 #include "triangle/base/status.h"
 #include "triangle/dropin/switches.h"
 #include "triangle/text/formats.h"
@@ -10,6 +11,7 @@ struct arguments {
     int argc; /* the words as given, for the comment in every file */
     char **argv;
     struct tri_switches switches;
+    struct size_options sizes; /* --size and so on; all 0: nothing */
     const char *file, *further; /* the first word that is no switch, and the last of several; NULL: there was none */
     const struct tri_format *format; /* of the file, a mesh that another program reads as well; NULL: Triangle's */
     char *input;      /* file without its suffix; suffixes are appended to this */

@@ -59,7 +59,7 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    FLAG, NAME, THREADS, MAX_AREA, MIN_ANGLE, HOLES, PLACEMENT, OUTPUT, PARTS, NUMBERING, MEMORY, EVERY, TIME_LIMIT,
+    FLAG, NAME, THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, PARTS, NUMBERING, MEMORY, EVERY, TIME_LIMIT,
     PROGRESS, NO_PROGRESS
 };
 
@@ -73,7 +73,6 @@ static const struct kind {
     {"max-area", MAX_AREA, "not a number > 0", 0},
     {"min-angle", MIN_ANGLE, "not a number from 0 to 60", 0}, /* no triangle has three angles above 60 degrees */
     {"holes", HOLES, "neither auto nor points", 0},
-    {"placement", PLACEMENT, "neither lattice nor classic", 0},
     {"output", OUTPUT, "", 0},
     {"parts", PARTS, "not a whole number from 1 to 512", 0},
     {"report", NAME, "", offsetof(struct long_options, report)},
@@ -138,7 +137,6 @@ static bool take_value(struct long_options *options, struct tri_switches *switch
     case TIME_LIMIT: return words_take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
     case MEMORY: return words_take_size(text, 1e6, &options->memory, &options->memory_share);
     case HOLES: return take_word(text, "points", "auto", &switches->even_odd);
-    case PLACEMENT: return take_word(text, "lattice", "classic", &switches->classic);
     case NUMBERING: return take_word(text, "curve", "blocks", &options->by_block);
     default: return false;
     }

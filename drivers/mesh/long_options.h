@@ -58,7 +58,7 @@ static inline bool long_options_report_is_printed(const struct long_options *o)
 
 /* Takes argv[*at], which begins with two dashes, and the next word too where that is its value (--name value; or
  * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches
- * -a and -q, but take exponents; --placement and --holes set switches without a letter. What comes later replaces what
+ * -a and -q, but take exponents; --holes sets a switch without a letter. What comes later replaces what
  * came before. TRI_BAD_INPUT: an unknown option, a value too many, too few or out of range. */
 enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
                                   char *const *argv, int *at, struct tri_error *error);

@@ -4,12 +4,13 @@
 
 #include <stdbool.h>
 
+#include "drivers/mesh/size_options.h"
 #include "triangle/mesh/grid.h"
 #include "triangle/text/formats.h"
 
 struct run; /* drivers/mesh/stages.h */
 
-enum { MESH_FILES_MOST_NAMES = 4 };
+enum { MESH_FILES_MOST_NAMES = 4 + SIZE_OPTIONS_MOST };
 
 /* Names of files, borrowed. */
 struct file_names {

@@ -472,7 +472,9 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     enum tri_status status = TRI_OK;
     for (int i = 1; !status && i < arguments->argc; i++) {
         const char *word = arguments->argv[i];
-        if (strncmp(word, "--", 2) == 0)
+        if (size_options_take(&arguments->sizes, &arguments->switches, arguments->argc, arguments->argv, &i, error))
+            status = error->status;
+        else if (strncmp(word, "--", 2) == 0)
             status = long_options_take(&p->options, &arguments->switches, arguments->argc, arguments->argv, &i, error);
         else
             arguments_word(arguments, word);
@@ -480,6 +482,7 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     if (status || p->options.version || p->options.help || arguments->switches.help)
         return status;
     status = long_options_check(&p->options, error);
+    status = status ? status : size_options_end(&arguments->sizes, &arguments->switches, error);
     status = status ? status : arguments_end(arguments, error);
     status = status ? status : check_formats(&p->options, &arguments->switches, error);
     status = status ? status : name_output(arguments, p->options.output, error);
@@ -547,6 +550,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
          "  --numbering curve|blocks"
          "  --placement lattice|classic\n"
+         "  --size H|FILE  --size-near MARKER:H[,GROWTH]  --gradation G  --min-size H  --max-size H\n"
          "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
          "  --help");
     return EXIT_SUCCESS;

@@ -194,6 +194,35 @@ static json_t *ranks_of(const struct rank_report *report)
     return ranks;
 }
 
+/* --- lengths that are asked for */
+
+static json_t *source_of(const struct size_source *source)
+{
+    const struct tri_size_field *f = &source->field;
+    if (source->path)
+        return json_pack("{s:o?}", "file", json_string(source->path)); /* a name need not be UTF-8 */
+    if (f->kind == TRI_SIZE_NUMBER)
+        return json_pack("{s:o}", "length", real(f->length));
+    return json_pack("{s:o, s:i, s:o}", "length", real(f->length), "marker", (int)f->marker, "growth",
+                     f->growth >= 0 ? real(f->growth) : json_null());
+}
+
+/* null: there are none. */
+static json_t *sizes_of(const struct size_options *options)
+{
+    json_t *sources = json_array();
+    if (!size_options_any(options)) {
+        json_decref(sources);
+        return json_null();
+    }
+    for (int i = 0; i < options->n; i++)
+        sources = appended(sources, source_of(&options->source[i]));
+    return json_pack("{s:o, s:o, s:o, s:o}", "sources", sources, "gradation",
+                     options->gradation > 0 ? real(options->gradation) : json_null(), "min_size",
+                     options->min_size > 0 ? real(options->min_size) : json_null(), "max_size",
+                     options->max_size > 0 ? real(options->max_size) : json_null());
+}
+
 /* --- all of it */
 
 /* Of new vertices: in a lattice where there are bounds on areas, or not. */
@@ -208,10 +237,10 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
     const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
-    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "program", run->console.program,
+    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "program", run->console.program,
                      "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
                      "threads", run->settings.threads, "peak_memory_bytes", whole(memory), "bounds", bounds,
-                     "placement", placement_of(q), "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "ranks",
+                     "sizes", sizes_of(&run->arguments->sizes), "placement", placement_of(q), "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "ranks",
                      ranks_of(ranks), "schedule", schedule ? schedule_of(schedule) : json_null());
 }
 

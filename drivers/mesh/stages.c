@@ -127,6 +127,9 @@ static struct file_names files_read(const struct run *r)
         read.name[read.n++] = r->input.names.ele;
     if (s->mesh && s->area_lists)
         read.name[read.n++] = r->input.names.area;
+    for (int i = 0; i < r->arguments->sizes.n; i++)
+        if (r->arguments->sizes.source[i].path)
+            read.name[read.n++] = r->arguments->sizes.source[i].path;
     return read;
 }
 
@@ -156,6 +159,7 @@ enum tri_status run_read(struct run *r)
 {
     interrupt_stage("reading");
     enum tri_status status = r->settings.written_elsewhere ? TRI_OK : read_input(r);
+    status = status ? status : size_fields_read(&r->sizes, &r->arguments->sizes, r->settings.executor, r->error);
     return status || r->settings.n_ranks > 0 ? status : plan_check_input(r);
 }
 
@@ -282,10 +286,26 @@ enum tri_status run_find_unused(struct run *r)
     return TRI_OK;
 }
 
+/* Of the mesh as it is before refinement. */
+static enum tri_status make_lengths(struct run *r)
+{
+    const struct size_options *options = &r->arguments->sizes;
+    if (!r->options.refine)
+        return TRI_OK;
+    const enum tri_status status = size_fields_make(&r->sizes, options, &r->mesh, r->settings.executor, r->error);
+    r->options.quality.lengths = r->sizes.lengths;
+    if (r->sizes.lengths && tri_lengths_note(r->sizes.lengths)[0])
+        console_warn(&r->console, "%s.\n", tri_lengths_note(r->sizes.lengths));
+    return status;
+}
+
 enum tri_status run_refine_begin(struct run *r)
 {
+    enum tri_status status = make_lengths(r);
+    if (status)
+        return status;
     const struct estimate estimate = estimate_make(r, false);
-    enum tri_status status = plan_make(&r->plan, r, &estimate);
+    status = plan_make(&r->plan, r, &estimate);
     if (status)
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
@@ -490,6 +510,9 @@ static enum tri_status make_dry(struct run *r)
     if (status)
         return status;
     summary_notes(r);
+    status = make_lengths(r);
+    if (status)
+        return status;
     const struct estimate estimate = estimate_make(r, true);
     if (r->options.refine)
         status = plan_make(&r->plan, r, &estimate);
@@ -548,6 +571,7 @@ static void free_run(struct run *r)
     free(r->twin);
     free(r->unused.kept);
     tri_names_free(&r->input.names);
+    size_fields_free(&r->sizes);
 }
 
 int run_end(struct run *r, enum tri_status status)

@@ -10,6 +10,7 @@
 #include "drivers/mesh/long_options.h"
 #include "drivers/mesh/mesh_files.h"
 #include "drivers/mesh/orphans.h"
+#include "drivers/mesh/size_options.h"
 #include "triangle/base/executor.h"
 #include "triangle/api/generate.h"
 #include "triangle/mesh/topology.h"
@@ -71,6 +72,7 @@ struct run {
     struct tri_options options;     /* by the switches; refine_call and refine_user are the program's, which refines
                                        between run_refine_begin and run_refine_end */
     struct run_input input;
+    struct size_fields sizes;       /* options.quality.lengths are its own, from run_refine_begin on */
     struct run_plan plan;           /* all 0 until refinement begins */
     struct tri_mesh mesh;
     bool built;                     /* there is a mesh: what stops now leaves one that is valid */
@@ -96,7 +98,7 @@ struct run run_new(const char *program, const struct arguments *arguments, struc
 /* Starts the clock and the watch for signals, and checks the switches. */
 enum tri_status run_begin(struct run *run);
 
-/* Unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
+/* Every rank reads the lengths of edges; all else unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
 enum tri_status run_read(struct run *run);
 
 /* Makes the mesh, refined by options.refine_call. A dry run leaves it as it is before, and ends here: it says what the

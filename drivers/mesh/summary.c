@@ -155,6 +155,11 @@ void summary_counts(const struct run *run)
         console_say(console, "  Input segments: %" PRId32 "\n", run->input.pslg.n_segments);
     if (switches->segments && !switches->mesh)
         console_say(console, "  Input holes: %" PRId32 "\n", run->input.pslg.n_holes);
+    if (size_options_any(&run->arguments->sizes)) {
+        char text[SIZE_OPTIONS_TEXT];
+        size_options_print(&run->arguments->sizes, text);
+        console_say(console, "  Sizes: %s\n", text);
+    }
     int64_t nodes_amid = switches->second_order ? counts->edges : 0;
     console_say(console, "\n  Mesh vertices: %" PRId64 "\n", counts->vertices + nodes_amid);
     console_say(console, "  Mesh triangles: %" PRId64 "\n", counts->triangles);

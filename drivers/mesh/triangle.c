@@ -14,24 +14,6 @@ static const char PROGRAM[] = PTRIANGLE_NAME;
 /* Triangle has no long options: it reads the letters of --min-angle as switches, which nobody means. */
 static bool is_long(const char *word) { return strncmp(word, "--", 2) == 0 && isalpha((unsigned char)word[2]); }
 
-/* --placement VALUE or --placement=VALUE; false: the word is another one. *at becomes the index of the last word taken,
- * and the error is set if the value is none. */
-static bool take_placement(struct arguments *arguments, int *at, struct tri_error *error)
-{
-    static const char name[] = "--placement";
-    const char *word = arguments->argv[*at], *end = word + sizeof name - 1;
-    if (strncmp(word, name, sizeof name - 1) != 0 || (*end && *end != '='))
-        return false;
-    const char *value = *end ? end + 1 : *at + 1 < arguments->argc ? arguments->argv[++*at] : NULL;
-    if (!value)
-        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--placement needs a value");
-    else if (strcmp(value, "classic") != 0 && strcmp(value, "lattice") != 0)
-        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--placement: \"%.40s\" is neither lattice nor classic", value);
-    else
-        arguments->switches.classic = strcmp(value, "classic") == 0;
-    return true;
-}
-
 static int take_long(const char *word)
 {
     const struct console console = {.program = PROGRAM};
@@ -54,7 +36,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 {
     struct run *run = user;
     enum tri_status status = run_refine_begin(run);
-    return status ? status : run_refine_end(run, tri_refine(mesh, quality, report, error));
+    (void)quality; /* as it was before the lengths were made */
+    return status ? status : run_refine_end(run, tri_refine(mesh, &run->options.quality, report, error));
 }
 
 static enum tri_status write_output(struct run *run)
@@ -103,13 +86,14 @@ int main(int argc, char **argv)
     int code = EXIT_FAILURE;
     console_open();
     for (int i = 1; !error.status && i < argc; i++) {
-        if (take_placement(&arguments, &i, &error))
+        if (size_options_take(&arguments.sizes, &arguments.switches, argc, argv, &i, &error))
             continue;
         if (is_long(argv[i]))
             return take_long(argv[i]);
         arguments_word(&arguments, argv[i]);
     }
-    if (error.status || arguments_end(&arguments, &error))
+    if (error.status || size_options_end(&arguments.sizes, &arguments.switches, &error) ||
+        arguments_end(&arguments, &error))
         console_error(&(struct console){.program = PROGRAM}, &error);
     else
         code = carry_out(&arguments);

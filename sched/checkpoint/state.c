@@ -19,7 +19,9 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
     const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q),
                               q->lattice};
-    return tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
+    hash = tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
+    const uint64_t lengths = q->lengths ? tri_lengths_hash(q->lengths) : 0;
+    return q->lengths ? tri_hash(hash, &lengths, sizeof lengths) : hash;
 }
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)

@@ -30,6 +30,7 @@ typedef enum tri_status tri_read_call(const char *path, struct tri_pslg *mesh, s
                                       const struct tri_executor *executor, struct tri_error *error);
 tri_read_call tri_read_vtu; /* one piece, arrays appended raw or as text */
 tri_read_call tri_read_msh; /* 4.1, binary; a part of a mesh, too */
+tri_read_call tri_read_msh_data; /* the same; the first numbers at nodes are an attribute, however they are called */
 tri_read_call tri_read_2dm;
 tri_read_call tri_read_14;
 

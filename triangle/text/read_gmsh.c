@@ -17,6 +17,7 @@ struct reading {
     struct tri_reading to;
     struct tri_bytes file;
     bool has_format, has_nodes, has_elements;
+    bool any_data; /* the first numbers of nodes are an attribute, however they are called */
     struct tri_tags nodes, triangles, segments;
     int64_t n_elements;      /* of any kind */
     int64_t n_triangles, n_segments; /* read so far */
@@ -306,7 +307,7 @@ static bool take_data(struct reading *r, const struct data *data)
     if (strcmp(data->name, "\"marker\"") == 0)
         return take_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
                             data->of_nodes ? &r->to.mesh->markers : &r->to.mesh->segment_markers);
-    if (strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES)
+    if ((strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES) || (r->any_data && data->of_nodes && *width == 0))
         return add_column(r, data, data->of_nodes ? &r->nodes : &r->triangles,
                           data->of_nodes ? &r->to.mesh->attributes : &r->to.elements->attributes, width);
     return true;
@@ -366,10 +367,10 @@ static bool read_sections(struct reading *r)
     return r->has_elements || FAIL(r, "not a .msh file, or one without elements");
 }
 
-enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
-                             const struct tri_executor *executor, struct tri_error *error)
+static enum tri_status read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                                const struct tri_executor *executor, bool any_data, struct tri_error *error)
 {
-    struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
+    struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}, .any_data = any_data};
     r.to.status = tri_bytes_load(&r.file, path, error);
     (void)(!r.to.status && read_sections(&r));
     tri_bytes_free(&r.file);
@@ -377,4 +378,16 @@ enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri
     tri_tags_free(&r.triangles);
     tri_tags_free(&r.segments);
     return r.to.status;
+}
+
+enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                             const struct tri_executor *executor, struct tri_error *error)
+{
+    return read_msh(path, mesh, elements, executor, false, error);
+}
+
+enum tri_status tri_read_msh_data(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                                  const struct tri_executor *executor, struct tri_error *error)
+{
+    return read_msh(path, mesh, elements, executor, true, error);
 }

@@ -1,0 +1,365 @@
+/* Reading fields of Gmsh that are text: meshes of version 2.2 and 4.1 with numbers at nodes (the first $NodeData of one
+ * component), and parsed views (.pos) of scalar triangles and points. Places are x and y; z is not looked at. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/text/size_file.h"
+
+/* --- .msh */
+
+struct gmsh {
+    struct tri_words *words;
+    bool blocks; /* version 4.1: nodes and elements come in blocks */
+    struct tri_tags nodes;
+    int64_t n_nodes, n_triangles; /* read so far */
+};
+
+static bool take_any(struct gmsh *g, const char *what, int64_t *value)
+{
+    return tri_words_whole(g->words, what, INT64_MIN, INT64_MAX, value);
+}
+
+static bool take_place(struct gmsh *g, double *xy)
+{
+    double z;
+    return tri_words_real(g->words, "a coordinate", true, &xy[0]) &&
+           tri_words_real(g->words, "a coordinate", true, &xy[1]) &&
+           tri_words_real(g->words, "a coordinate", true, &z);
+}
+
+/* Numbers of all blocks, of all items, and their least and greatest tags; in version 2.2 the second alone. */
+static bool take_totals(struct gmsh *g, const char *what, int64_t *blocks, int64_t *n)
+{
+    int64_t tag;
+    *blocks = 1;
+    if (g->blocks && !tri_words_count(g->words, "the number of blocks", 2, blocks))
+        return false;
+    return tri_words_count(g->words, what, 2, n) &&
+           (!g->blocks || (take_any(g, "the least tag", &tag) && take_any(g, "the greatest tag", &tag)));
+}
+
+/* Of a block its dimension, its tag, a kind, and how many items it has. */
+static bool take_block(struct gmsh *g, int64_t *kind, int64_t left, int64_t *n)
+{
+    int64_t entity;
+    return take_any(g, "a dimension", &entity) && take_any(g, "the tag of a block", &entity) &&
+           take_any(g, "the kind of a block", kind) && tri_words_whole(g->words, "the size of a block", 0, left, n);
+}
+
+static bool take_nodes(struct gmsh *g, int64_t n)
+{
+    double *xy = g->words->to.mesh->points + 2 * g->n_nodes;
+    for (int64_t i = 0; i < n; i++)
+        if (!take_any(g, "the tag of a node", &g->nodes.tag[g->n_nodes + i]) ||
+            (!g->blocks && !take_place(g, xy + 2 * i)))
+            return false;
+    for (int64_t i = 0; i < n && g->blocks; i++)
+        if (!take_place(g, xy + 2 * i))
+            return false;
+    g->n_nodes += n;
+    return true;
+}
+
+static bool read_nodes(struct gmsh *g)
+{
+    int64_t blocks, n, parametric;
+    if (g->nodes.tag)
+        return TRI_WORDS_FAIL(g->words, "$Nodes is there twice");
+    if (!take_totals(g, "the number of nodes", &blocks, &n) || !tri_tags_begin_nodes(&g->nodes, n, &g->words->to))
+        return false;
+    for (int64_t b = 0; b < blocks; b++) {
+        int64_t here = n;
+        if (g->blocks && !take_block(g, &parametric, n - g->n_nodes, &here))
+            return false;
+        if (g->blocks && parametric != 0)
+            return TRI_WORDS_FAIL(g->words, "nodes with parameters are not read");
+        if (!take_nodes(g, here))
+            return false;
+    }
+    if (g->n_nodes < n)
+        return TRI_WORDS_FAIL(g->words, "%" PRId64 " nodes, not %" PRId64, g->n_nodes, n);
+    return tri_tags_order(&g->nodes, "node", &g->words->to);
+}
+
+/* Nodes of an element by its type; 0: one that is not read. */
+static int nodes_of(int64_t kind)
+{
+    static const int nodes[] = {[1] = 2, [2] = 3, [8] = 3, [9] = 6, [15] = 1};
+    return kind >= 0 && kind < (int64_t)(sizeof nodes / sizeof *nodes) ? nodes[kind] : 0;
+}
+
+/* Corners come first; what is no triangle is passed. */
+static bool take_element(struct gmsh *g, int64_t kind)
+{
+    const int n = nodes_of(kind);
+    const bool is_triangle = kind == 2 || kind == 9;
+    int32_t *corners = g->words->to.elements->corners + 3 * g->n_triangles;
+    if (n == 0)
+        return TRI_WORDS_FAIL(g->words, "an element of type %" PRId64 ": triangles, lines and points are read", kind);
+    for (int k = 0; k < n; k++) {
+        int64_t tag;
+        if (!take_any(g, "a node of an element", &tag))
+            return false;
+        const int64_t place = tri_tags_place(&g->nodes, tag);
+        if (place < 0)
+            return TRI_WORDS_FAIL(g->words, "an element names node %" PRId64 ", which is not there", tag);
+        if (is_triangle && k < 3)
+            corners[k] = (int32_t)place;
+    }
+    g->n_triangles += is_triangle;
+    return true;
+}
+
+static bool take_elements(struct gmsh *g, int64_t kind, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        int64_t tag, n_tags = 0;
+        if (!take_any(g, "the tag of an element", &tag))
+            return false;
+        if (!g->blocks && (!take_any(g, "the type of an element", &kind) ||
+                           !tri_words_count(g->words, "the number of tags", 1, &n_tags)))
+            return false;
+        for (int64_t k = 0; k < n_tags; k++)
+            if (!take_any(g, "a tag", &tag))
+                return false;
+        if (!take_element(g, kind))
+            return false;
+    }
+    return true;
+}
+
+static bool read_elements(struct gmsh *g)
+{
+    int64_t blocks, n, kind = 0, done = 0;
+    if (!g->nodes.tag || g->words->to.elements->corners)
+        return TRI_WORDS_FAIL(g->words, "$Elements before $Nodes, or twice");
+    if (!take_totals(g, "the number of elements", &blocks, &n) || !tri_reading_triangles(&g->words->to, n, 3))
+        return false;
+    for (int64_t b = 0; b < blocks; b++) {
+        int64_t here = n;
+        if (g->blocks && !take_block(g, &kind, n - done, &here))
+            return false;
+        if (!take_elements(g, kind, here))
+            return false;
+        done += here;
+    }
+    g->words->to.elements->n = (int32_t)g->n_triangles;
+    return true;
+}
+
+/* A name in a line of its own, a time, and numbers, the second and third of which are components and nodes. */
+static bool take_data_head(struct gmsh *g, int64_t *components, int64_t *n)
+{
+    int64_t count, other;
+    double time;
+    if (!tri_words_count(g->words, "the number of names", 1, &count))
+        return false;
+    tri_words_skip_lines(g->words, count);
+    if (!tri_words_count(g->words, "the number of times", 1, &count))
+        return false;
+    for (int64_t i = 0; i < count; i++)
+        if (!tri_words_real(g->words, "a time", false, &time))
+            return false;
+    if (!tri_words_whole(g->words, "the number of whole numbers", 3, 100, &count) || !take_any(g, "a step", &other) ||
+        !take_any(g, "the number of components", components) ||
+        !tri_words_count(g->words, "the number of nodes with data", 4, n))
+        return false;
+    for (int64_t i = 3; i < count; i++)
+        if (!take_any(g, "a whole number", &other))
+            return false;
+    return true;
+}
+
+static bool read_data(struct gmsh *g)
+{
+    struct tri_pslg *mesh = g->words->to.mesh;
+    int64_t components, n, tag;
+    double value;
+    if (!g->nodes.tag)
+        return TRI_WORDS_FAIL(g->words, "$NodeData before $Nodes");
+    if (!take_data_head(g, &components, &n))
+        return false;
+    if (components != 1 || mesh->attributes)
+        return true;
+    mesh->attributes = calloc((size_t)mesh->n_points + 1, sizeof *mesh->attributes);
+    mesh->n_attributes = 1;
+    if (!mesh->attributes)
+        return tri_reading_no_memory(&g->words->to);
+    for (int64_t i = 0; i < n; i++) {
+        if (!take_any(g, "the tag of a node", &tag) || !tri_words_length(g->words, &value))
+            return false;
+        const int64_t place = tri_tags_place(&g->nodes, tag);
+        if (place < 0)
+            return TRI_WORDS_FAIL(g->words, "a value at node %" PRId64 ", which is not there", tag);
+        mesh->attributes[place] = value;
+    }
+    return true;
+}
+
+static bool read_format(struct gmsh *g)
+{
+    int64_t binary, bytes;
+    double version;
+    if (!tri_words_next(g->words) || !tri_words_is(g->words, "$meshformat"))
+        return TRI_WORDS_FAIL(g->words, "no .msh file");
+    if (!tri_words_real(g->words, "a version", true, &version) || !take_any(g, "a kind of file", &binary) ||
+        !take_any(g, "a size", &bytes))
+        return false;
+    g->blocks = version == 4.1;
+    return ((g->blocks || version == 2.2) && binary == 0) ||
+           TRI_WORDS_FAIL(g->words, "of version %g%s: 2.2 and 4.1 are read as text, and 4.1 as binary", version,
+                          binary ? ", binary" : "");
+}
+
+/* Passes what is left of the section. */
+static bool end_section(struct gmsh *g, const char *name, size_t n)
+{
+    char end[64];
+    snprintf(end, sizeof end, "$End%.*s", (int)(n < 50 ? n : 50), name);
+    while (tri_words_next(g->words))
+        if (g->words->length == strlen(end) && memcmp(g->words->word, end, g->words->length) == 0)
+            return true;
+    return TRI_WORDS_FAIL(g->words, "the section $%.*s has no end", (int)(n < 50 ? n : 50), name);
+}
+
+static bool read_section(struct gmsh *g)
+{
+    const char *name = g->words->word + 1;
+    const size_t n = g->words->length - 1;
+    bool good = true;
+    if (g->words->word[0] != '$')
+        return TRI_WORDS_FAIL(g->words, "what stands between two sections is none");
+    if (tri_words_is(g->words, "$nodes"))
+        good = read_nodes(g);
+    else if (tri_words_is(g->words, "$elements"))
+        good = read_elements(g);
+    else if (tri_words_is(g->words, "$nodedata"))
+        good = read_data(g);
+    return good && end_section(g, name, n);
+}
+
+bool tri_size_read_gmsh(struct tri_words *words)
+{
+    struct gmsh g = {.words = words};
+    bool good = read_format(&g) && end_section(&g, "MeshFormat", strlen("MeshFormat"));
+    while (good && tri_words_next(words))
+        good = read_section(&g);
+    tri_tags_free(&g.nodes);
+    return good;
+}
+
+/* --- .pos: View "name" { ST(x,y,z,x,y,z,x,y,z){h,h,h}; SP(x,y,z){h}; }; */
+
+struct view {
+    struct tri_words *words;
+    int64_t room_points, room_values, room_corners;
+};
+
+/* The next character; false: it is another one. */
+static bool take_sign(struct view *v, char sign)
+{
+    if (!tri_words_seek(v->words) || *v->words->at != sign)
+        return TRI_WORDS_FAIL(v->words, "a \"%c\" is missing", sign);
+    v->words->at++;
+    return true;
+}
+
+/* Numbers between two signs, the first n of which are kept. Further ones are those of later times. */
+static bool take_list(struct view *v, char open, char close, double *to, int n)
+{
+    struct tri_words *w = v->words;
+    if (!take_sign(v, open))
+        return false;
+    for (int i = 0;; i++) {
+        double value;
+        const char *end = tri_words_seek(w) ? tri_scan_real(w->at, w->text.data + w->text.size, &value) : w->at;
+        if (end == w->at || !isfinite(value))
+            return TRI_WORDS_FAIL(w, "a number is missing, or not finite");
+        if (i < n)
+            to[i] = value;
+        w->at = end;
+        if (tri_words_seek(w) && *w->at == close && i + 1 >= n)
+            return take_sign(v, close);
+        if (!take_sign(v, ','))
+            return false;
+    }
+}
+
+/* The end of an element may be missing behind the last one. */
+static void pass_end(struct view *v)
+{
+    while (tri_words_seek(v->words) && *v->words->at == ';')
+        v->words->at++;
+}
+
+static bool add_points(struct view *v, const double *xyz, const double *h, int n)
+{
+    struct tri_pslg *mesh = v->words->to.mesh;
+    const int64_t first = mesh->n_points;
+    if (first > INT32_MAX - n || !tri_grow_far(&mesh->points, &v->room_points, 2 * (first + n), sizeof *mesh->points) ||
+        !tri_grow_far(&mesh->attributes, &v->room_values, first + n, sizeof *mesh->attributes))
+        return tri_reading_no_memory(&v->words->to);
+    for (int k = 0; k < n; k++) {
+        mesh->points[2 * (first + k)] = xyz[3 * k];
+        mesh->points[2 * (first + k) + 1] = xyz[3 * k + 1];
+        mesh->attributes[first + k] = h[k];
+    }
+    mesh->n_points += n;
+    mesh->n_attributes = 1;
+    return true;
+}
+
+static bool add_triangle(struct view *v)
+{
+    struct tri_elements *e = v->words->to.elements;
+    if (!tri_grow_far(&e->corners, &v->room_corners, 3 * ((int64_t)e->n + 1), sizeof *e->corners))
+        return tri_reading_no_memory(&v->words->to);
+    for (int k = 0; k < 3; k++)
+        e->corners[3 * (int64_t)e->n + k] = v->words->to.mesh->n_points - 3 + k;
+    e->n_nodes = 3;
+    e->n++;
+    return true;
+}
+
+static bool read_element(struct view *v)
+{
+    struct tri_words *w = v->words;
+    double xyz[9], h[3];
+    const char *kind = w->at;
+    while (*w->at >= 'A' && *w->at <= 'Z')
+        w->at++;
+    const size_t length = (size_t)(w->at - kind);
+    const int n = length != 2 || kind[0] != 'S' ? 0 : kind[1] == 'T' ? 3 : kind[1] == 'P' ? 1 : 0;
+    if (n == 0)
+        return TRI_WORDS_FAIL(w, "neither a scalar triangle (ST) nor a scalar point (SP)");
+    if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n) || !add_points(v, xyz, h, n))
+        return false;
+    pass_end(v);
+    return n == 1 || add_triangle(v);
+}
+
+static bool read_view_head(struct view *v)
+{
+    struct tri_words *w = v->words;
+    if (!tri_words_next(w) || !tri_words_is(w, "view"))
+        return TRI_WORDS_FAIL(w, "no .pos file: it does not begin with View");
+    if (!take_sign(v, '"'))
+        return false;
+    const char *quote = memchr(w->at, '"', (size_t)(w->text.data + w->text.size - w->at));
+    for (; quote && w->at <= quote; w->at++)
+        w->line += *w->at == '\n';
+    return quote ? take_sign(v, '{') : TRI_WORDS_FAIL(w, "the name of the view has no end");
+}
+
+bool tri_size_read_pos(struct tri_words *words)
+{
+    struct view v = {.words = words};
+    words->comment = "//";
+    bool good = read_view_head(&v);
+    while (good && tri_words_seek(words) && *words->at != '}')
+        good = read_element(&v);
+    return good && take_sign(&v, '}');
+}
