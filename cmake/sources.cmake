@@ -43,6 +43,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/crowd.c
     triangle/size/gap.c
     triangle/size/hopeless.c
+    triangle/size/candidates.c
+    triangle/size/near.c
+    triangle/size/raster.c
     triangle/size/lengths.c
     triangle/size/quality.c
     triangle/size/estimate.c

@@ -76,6 +76,7 @@ tested_by() {
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     triangle/mesh/parents.c) echo groundwork ;;
     triangle/size/gap.c) echo hopeless ;;
+    triangle/size/candidates.c | triangle/size/near.c | triangle/size/raster.c) echo lengths ;;
     triangle/refine/place.c) echo inside ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;

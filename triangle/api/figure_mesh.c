@@ -18,6 +18,11 @@
 
 /* --- settings */
 
+static struct tri_sizes sizes_of(const struct tri_settings *s)
+{
+    return (struct tri_sizes){s->sizes, s->n_sizes, s->gradation, s->min_size, s->max_size};
+}
+
 enum tri_status tri_api_settings_take(struct tri_settings *settings, const struct tri_settings *given,
                                       struct tri_error *error)
 {
@@ -35,7 +40,8 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
     for (int k = 0; settings->fence && k < 4; k++)
         if (isnan(settings->fence[k]))
             return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: fence is not a number");
-    return TRI_OK;
+    const struct tri_sizes sizes = sizes_of(settings);
+    return tri_sizes_check(&sizes, error);
 }
 
 /* The caller's functions of size, and the first length that is none. Several threads may ask. */
@@ -85,14 +91,6 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.unsuitable = s->unsuitable;
     how.unsuitable_user = s->unsuitable_user;
     return how;
-}
-
-static enum tri_status lengths_of(struct tri_lengths **lengths, const struct tri_settings *s,
-                                  const struct tri_mesh *mesh, const struct tri_executor *executor,
-                                  struct tri_error *error)
-{
-    const struct tri_sizes sizes = {s->sizes, s->n_sizes, s->gradation, s->min_size, s->max_size};
-    return tri_lengths_new(lengths, &sizes, mesh, executor, error);
 }
 
 /* *fence is room for the settings' fence in the units of the mesh. */
@@ -164,6 +162,7 @@ static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
     add_note(m, m->report.notes.empty);
     add_note(m, m->report.notes.skipped);
     add_note(m, m->odd_length);
+    add_note(m, m->uncovered);
     if (tri_note_lowered_angle(&asked, lowered))
         add_note(m, lowered);
     if (s->note && m->notes[0])
@@ -255,13 +254,15 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     const struct tri_refine_hooks hooks = hooks_of(refiner->m, s, &fence);
     (void)quality;
     *report = (struct tri_refine_report){0};
-    refiner->m->odd_length[0] = 0;
+    refiner->m->odd_length[0] = refiner->m->uncovered[0] = 0;
     refiner->m->refined = (struct tri_settings){0};
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
     struct tri_lengths *lengths;
-    enum tri_status status = lengths_of(&lengths, s, mesh, refiner->way->executor, error);
+    const struct tri_sizes asked = sizes_of(s);
+    enum tri_status status = tri_lengths_new(&lengths, &asked, mesh, refiner->way->executor, error);
     how.lengths = lengths;
+    snprintf(refiner->m->uncovered, sizeof refiner->m->uncovered, "%s", tri_lengths_note(lengths));
     if (!status)
         status = s->progress ? refine_told(refiner->way, mesh, &how, &hooks, s, report, error)
                              : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);

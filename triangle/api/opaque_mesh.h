@@ -19,7 +19,8 @@ struct tri_api_mesh {
     int32_t *edge_markers; /* [n_edges] .. with their markers */
     int32_t n_edges;
     char odd_length[160]; /* that the last refinement's edge_length returned what is no length; "": it did not */
-    char notes[sizeof(struct tri_notes) + 260];
+    char uncovered[256];  /* that a field of its sizes does not cover the mesh; "": they do */
+    char notes[sizeof(struct tri_notes) + 520];
 };
 
 /* Who refines: tri_refine, or a schedule. */

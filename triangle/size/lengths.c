@@ -1,60 +1,187 @@
-/* Sources of lengths. */
+/* How long edges shall be: the sources (sources.h), each limited in its gradient, and the least of what they say. */
 #include "triangle/size/lengths.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
-struct raster {
-    double origin[2], step[2];
-    int64_t n[2];
-    double *value; /* [n[1]][n[0]] */
-};
+#include "triangle/base/hash.h"
+#include "triangle/size/sources.h"
+
+enum { NOTE = 256 };
+
+static const double USUAL_GRADATION = 0.2;
 
 struct tri_lengths {
-    struct tri_sizes sizes;
-    double number; /* the least of those that hold everywhere; infinity: none */
-    struct raster *raster;
+    double number;         /* the least that holds everywhere; infinity: none */
+    double min_size;       /* 0: none */
+    struct tri_near near;  /* all segments that have lengths */
+    struct tri_raster *raster;
     int64_t n_rasters;
+    char note[NOTE];
 };
 
-static double raster_at(const struct raster *r, struct tri_point p)
+/* --- checks */
+
+static bool is_finite_above(double x, double least) { return x > least && x < HUGE_VAL; }
+
+static enum tri_status check_raster(const struct tri_size_field *f, struct tri_error *error)
 {
-    const double at[2] = {p.x, p.y};
-    int64_t i[2];
-    double f[2];
-    for (int k = 0; k < 2; k++) {
-        const double x = fmin(fmax((at[k] - r->origin[k]) / r->step[k], 0), (double)(r->n[k] - 1));
-        i[k] = (int64_t)x < r->n[k] - 2 ? (int64_t)x : r->n[k] > 1 ? r->n[k] - 2 : 0;
-        f[k] = x - (double)i[k];
+    const struct tri_reals *v = &f->values;
+    if (!v->at || v->n < 1 || v->width < 1 || v->stride < v->width)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no values");
+    if (v->n > INT32_MAX / v->width)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "it has more than 2^31 values");
+    for (int k = 0; k < 2; k++)
+        if (!isfinite(f->origin[k]) || !is_finite_above(f->step[k], 0))
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its origin is (%g, %g), its step (%g, %g)", f->origin[0],
+                            f->origin[1], f->step[0], f->step[1]);
+    return TRI_OK;
+}
+
+static enum tri_status check_field(const struct tri_size_field *f, struct tri_error *error)
+{
+    switch (f->kind) {
+    case TRI_SIZE_NUMBER:
+        return f->length > 0 ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its length is %g", f->length);
+    case TRI_SIZE_NEAR:
+        return is_finite_above(f->length, 0) && !isnan(f->growth)
+                   ? TRI_OK
+                   : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its length is %g, its growth %g", f->length, f->growth);
+    case TRI_SIZE_RASTER: return check_raster(f, error);
+    case TRI_SIZE_MESH:
+    case TRI_SIZE_FUNCTION: break;
     }
-    const double *v = r->value + i[1] * r->n[0] + i[0];
-    const int64_t right = r->n[0] > 1, up = r->n[1] > 1 ? r->n[0] : 0;
-    const double low = v[0] + f[0] * (v[right] - v[0]), high = v[up] + f[0] * (v[up + right] - v[up]);
-    return low + f[1] * (high - low);
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its kind is %d", (int)f->kind);
 }
 
-double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
+/* What is wrong with a field, with its number and kind. */
+static enum tri_status blame(const struct tri_sizes *sizes, int64_t k, const struct tri_error *own,
+                             struct tri_error *error)
 {
-    double h = l->number;
-    for (int64_t k = 0; k < l->n_rasters; k++)
-        h = fmin(h, raster_at(&l->raster[k], p));
-    return fmax(h, l->sizes.min_size);
+    static const char *const names[] = {"", ", a number", ", a raster", ", a mesh", ", a function", ", near segments"};
+    const int kind = (int)sizes->fields[k].kind;
+    const char *name = kind > 0 && kind < (int)(sizeof names / sizeof *names) ? names[kind] : "";
+    return own->status == TRI_BAD_INPUT || own->status == TRI_TOO_LARGE
+               ? tri_fail(error, own->status, NULL, 0, "sizes[%lld]%s: %s", (long long)k, name, own->text)
+               : tri_fail(error, own->status, NULL, 0, "%s", own->text);
 }
 
-double tri_lengths_uniform(const struct tri_lengths *l)
+enum tri_status tri_sizes_check(const struct tri_sizes *s, struct tri_error *error)
 {
-    return l->n_rasters == 0 && l->number < HUGE_VAL ? fmax(l->number, l->sizes.min_size) : 0;
+    struct tri_error own;
+    if (!(s->gradation >= 0))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "gradation is %g", s->gradation);
+    if (!(s->min_size >= 0 && s->min_size < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "min_size is %g", s->min_size);
+    if (!(s->max_size >= 0))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "max_size is %g", s->max_size);
+    if (s->max_size > 0 && s->min_size > s->max_size)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "min_size %g is above max_size %g", s->min_size, s->max_size);
+    if (s->n < 0 || (s->n > 0 && !s->fields))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "sizes is NULL, and n_sizes %lld", (long long)s->n);
+    for (int64_t k = 0; k < s->n; k++)
+        if (check_field(&s->fields[k], &own))
+            return blame(s, k, &own, error);
+    return TRI_OK;
 }
 
-static bool take_raster(struct raster *r, const struct tri_size_field *f, double unit)
+/* --- made */
+
+struct making {
+    struct tri_lengths *out;
+    const struct tri_sizes *sizes;
+    struct tri_size_frame frame;
+};
+
+/* The box of the mesh: its boundary consists of subsegments. */
+static struct tri_size_frame frame_of(const struct tri_sizes *sizes, const struct tri_mesh *mesh)
 {
-    *r = (struct raster){{f->origin[0] / unit, f->origin[1] / unit}, {f->step[0] / unit, f->step[1] / unit},
-                         {f->values.width, f->values.n},
-                         malloc((size_t)(f->values.n * f->values.width) * sizeof *r->value)};
-    for (int64_t j = 0; r->value && j < f->values.n; j++)
-        for (int64_t i = 0; i < f->values.width; i++)
-            r->value[j * f->values.width + i] = f->values.at[j * f->values.stride + i] / unit;
-    return r->value;
+    struct tri_size_frame f = {.mesh = mesh, .gradation = sizes->gradation > 0 ? sizes->gradation : USUAL_GRADATION};
+    f.low = f.high = mesh->n_subs > 0 ? mesh->xy[mesh->sub[0].v[0]] : (struct tri_point){0, 0};
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++) {
+            const struct tri_point p = mesh->xy[mesh->sub[s].v[k]];
+            f.low = (struct tri_point){tri_lesser(f.low.x, p.x), tri_lesser(f.low.y, p.y)};
+            f.high = (struct tri_point){tri_larger(f.high.x, p.x), tri_larger(f.high.y, p.y)};
+        }
+    return f;
+}
+
+/* The marker of a subsegment, as callers see it. */
+static int32_t marker_of(const struct tri_subsegment *s)
+{
+    return s->marker == 0 && tri_is_boundary(s) ? 1 : s->marker;
+}
+
+static enum tri_status take_near(struct making *m, const struct tri_size_field *f, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = m->frame.mesh;
+    const double gradation = m->frame.gradation, growth = f->growth < 0 ? gradation : fmin(f->growth, gradation);
+    const int32_t before = m->out->near.n;
+    if (!(growth < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its growth is infinite");
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        const tri_vertex_id *v = mesh->sub[s].v;
+        if (marker_of(&mesh->sub[s]) == f->marker &&
+            !tri_near_add(&m->out->near, mesh->xy[v[0]], mesh->xy[v[1]], tri_size_of(&m->frame, f->length), growth))
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    }
+    return m->out->near.n > before ? TRI_OK
+                                   : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no segment has the marker %d", f->marker);
+}
+
+/* Notes the first field that ends before the mesh does. The box is in the units of the mesh. */
+static void note_uncovered(struct making *m, int64_t k, struct tri_point low, struct tri_point high)
+{
+    const struct tri_size_frame *f = &m->frame;
+    const double unit = f->mesh->unit, room = 1e-6 * tri_larger(f->high.x - f->low.x, f->high.y - f->low.y);
+    if (m->out->note[0] || (f->low.x >= low.x - room && f->low.y >= low.y - room && f->high.x <= high.x + room &&
+                            f->high.y <= high.y + room))
+        return;
+    snprintf(m->out->note, sizeof m->out->note, "sizes[%lld] covers (%.6g, %.6g) to (%.6g, %.6g), the mesh (%.6g, %.6g)"
+             " to (%.6g, %.6g): outside, the nearest lengths count", (long long)k, low.x * unit, low.y * unit,
+             high.x * unit, high.y * unit, f->low.x * unit, f->low.y * unit, f->high.x * unit, f->high.y * unit);
+}
+
+static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error *error)
+{
+    struct tri_raster *r = &m->out->raster[m->out->n_rasters];
+    const enum tri_status status = tri_raster_make(r, &m->sizes->fields[k], &m->frame, error);
+    if (status)
+        return status;
+    m->out->n_rasters++;
+    note_uncovered(m, k, (struct tri_point){r->origin[0], r->origin[1]},
+                   (struct tri_point){r->origin[0] + (double)(r->n[0] - 1) / r->inverse[0],
+                                      r->origin[1] + (double)(r->n[1] - 1) / r->inverse[1]});
+    return TRI_OK;
+}
+
+static enum tri_status take(struct making *m, int64_t k, struct tri_error *error)
+{
+    const struct tri_size_field *f = &m->sizes->fields[k];
+    switch (f->kind) {
+    case TRI_SIZE_NUMBER: m->out->number = fmin(m->out->number, f->length / m->frame.mesh->unit); return TRI_OK;
+    case TRI_SIZE_NEAR: return take_near(m, f, error);
+    case TRI_SIZE_RASTER: return take_raster(m, k, error);
+    case TRI_SIZE_MESH:
+    case TRI_SIZE_FUNCTION: break;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status take_all(struct making *m, struct tri_error *error)
+{
+    struct tri_lengths *l = m->out;
+    const double unit = m->frame.mesh->unit;
+    l->min_size = m->sizes->min_size / unit;
+    l->number = m->sizes->max_size > 0 ? m->sizes->max_size / unit : HUGE_VAL;
+    if (!(l->raster = calloc((size_t)m->sizes->n + 1, sizeof *l->raster)))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    for (int64_t k = 0; k < m->sizes->n; k++) {
+        struct tri_error own;
+        if (take(m, k, &own))
+            return blame(m->sizes, k, &own, error);
+    }
+    return tri_near_settle(&l->near, &m->frame, error);
 }
 
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
@@ -63,35 +190,57 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
 {
     (void)executor;
     *lengths = NULL;
-    if (sizes->n == 0 && !(sizes->max_size > 0))
-        return TRI_OK;
-    struct tri_lengths *l = calloc(1, sizeof *l);
-    if (!l || !(l->raster = calloc((size_t)sizes->n + 1, sizeof *l->raster))) {
-        free(l);
+    enum tri_status status = tri_sizes_check(sizes, error);
+    if (status || (sizes->n == 0 && !(sizes->max_size > 0)))
+        return status;
+    struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
+    if (!m.out)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
-    }
-    l->sizes = *sizes;
-    l->sizes.min_size = sizes->min_size / mesh->unit;
-    l->number = sizes->max_size > 0 ? sizes->max_size / mesh->unit : HUGE_VAL;
-    for (int64_t k = 0; k < sizes->n; k++) {
-        const struct tri_size_field *f = &sizes->fields[k];
-        if (f->kind == TRI_SIZE_NUMBER)
-            l->number = fmin(l->number, f->length / mesh->unit);
-        else if (f->kind == TRI_SIZE_RASTER && take_raster(&l->raster[l->n_rasters], f, mesh->unit))
-            l->n_rasters++;
-    }
-    l->sizes.fields = NULL;
-    *lengths = l;
-    return TRI_OK;
+    status = take_all(&m, error);
+    if (status)
+        tri_lengths_free(m.out);
+    else
+        *lengths = m.out;
+    return status;
 }
 
 void tri_lengths_free(struct tri_lengths *l)
 {
-    for (int64_t k = 0; l && k < l->n_rasters; k++)
-        free(l->raster[k].value);
-    if (l)
-        free(l->raster);
+    if (!l)
+        return;
+    for (int64_t k = 0; k < l->n_rasters; k++)
+        tri_raster_clear(&l->raster[k]);
+    tri_near_clear(&l->near);
+    free(l->raster);
     free(l);
 }
 
-uint64_t tri_lengths_hash(const struct tri_lengths *l) { return l ? (uint64_t)l->n_rasters : 0; }
+/* --- asked */
+
+double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
+{
+    double h = l->number;
+    if (l->near.n > 0)
+        h = tri_lesser(h, tri_near_at(&l->near, p));
+    for (int64_t k = 0; k < l->n_rasters; k++)
+        h = tri_lesser(h, tri_raster_at(&l->raster[k], p));
+    return tri_larger(h, l->min_size);
+}
+
+double tri_lengths_uniform(const struct tri_lengths *l)
+{
+    return l->n_rasters == 0 && l->near.n == 0 && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
+}
+
+const char *tri_lengths_note(const struct tri_lengths *l) { return l ? l->note : ""; }
+
+uint64_t tri_lengths_hash(const struct tri_lengths *l)
+{
+    if (!l)
+        return 0;
+    const double kept[] = {l->number, l->min_size};
+    uint64_t hash = tri_near_hash(&l->near, tri_hash(1, kept, sizeof kept));
+    for (int64_t k = 0; k < l->n_rasters; k++)
+        hash = tri_raster_hash(&l->raster[k], hash);
+    return hash;
+}

@@ -17,6 +17,9 @@ struct tri_sizes {
     double min_size, max_size; /* 0: none */
 };
 
+/* Can these be asked for at all? TRI_BAD_INPUT, TRI_TOO_LARGE: what is wrong with which field. */
+enum tri_status tri_sizes_check(const struct tri_sizes *sizes, struct tri_error *error);
+
 /* *lengths is the caller's, until tri_lengths_free; NULL where nothing is asked for. The mesh has the subsegments that
  * NEAR means; it is not looked at afterwards. TRI_BAD_INPUT, TRI_NO_MEMORY, TRI_STOPPED. */
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
@@ -31,6 +34,9 @@ double tri_lengths_at(const struct tri_lengths *lengths, struct tri_point p);
 
 /* If the same length is asked for everywhere: that; else 0. */
 double tri_lengths_uniform(const struct tri_lengths *lengths);
+
+/* What a user should know: a field that ends before the mesh does. "": nothing. */
+const char *tri_lengths_note(const struct tri_lengths *lengths);
 
 /* For checkpoints: another field has another number, as good as surely. O(what is kept). */
 uint64_t tri_lengths_hash(const struct tri_lengths *lengths);

@@ -1,0 +1,331 @@
+/* How long edges shall be, against naive twins: all segments, all nodes, all vertices are asked. */
+#include <stdio.h>
+
+#include "support.h"
+#include "triangle/size/lengths.h"
+#include "triangle/size/sources.h"
+
+/* A triangulation of the square from 0 to `side`, n random points in it, and segments between these, of markers 2, 3. */
+static struct tri_mesh square_mesh(double side, int32_t n, uint64_t seed)
+{
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(4 + n, 4 + n, 0, 0);
+    pslg.segment_markers = calloc((size_t)n + 4, sizeof *pslg.segment_markers);
+    assert_non_null(pslg.segment_markers);
+    for (int k = 0; k < 4; k++)
+        support_add_point(&pslg, k == 1 || k == 2 ? side : 0, k >= 2 ? side : 0);
+    for (int32_t i = 0; i < n; i++)
+        support_add_point(&pslg, side * support_unit(&random), side * support_unit(&random));
+    for (int32_t k = 0; k < 4; k++)
+        support_add_segment(&pslg, k, (k + 1) % 4);
+    for (int32_t i = 0; i < n / 2; i++) {
+        pslg.segment_markers[pslg.n_segments] = 2 + support_below(&random, 2);
+        support_add_segment(&pslg, 4 + 2 * i, 4 + 2 * i + 1);
+    }
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+static struct tri_point place(struct support_random *random, double side)
+{
+    return (struct tri_point){side * support_unit(random), side * support_unit(random)};
+}
+
+static struct tri_lengths *lengths_of(const struct tri_mesh *mesh, const struct tri_sizes *sizes)
+{
+    struct tri_lengths *lengths;
+    struct tri_error error = {.text = ""};
+    const enum tri_status status = tri_lengths_new(&lengths, sizes, mesh, NULL, &error);
+    if (status)
+        print_message("%s\n", error.text);
+    assert_int_equal(status, TRI_OK);
+    return lengths;
+}
+
+/* --- near */
+
+static double distance(struct tri_point a, struct tri_point b, struct tri_point p)
+{
+    const double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y;
+    const double t = l2 > 0 ? fmin(fmax(((p.x - a.x) * x + (p.y - a.y) * y) / l2, 0), 1) : 0;
+    return hypot(p.x - a.x - t * x, p.y - a.y - t * y);
+}
+
+/* Random segments, points among them, and n_equal copies of the last. */
+static void check_items(int32_t n, int32_t n_equal, double length, double growth, bool same, uint64_t seed)
+{
+    struct support_random random = {seed};
+    struct tri_near near = {0};
+    struct tri_mesh mesh = {.unit = 1};
+    const struct tri_size_frame frame = {&mesh, {0, 0}, {3, 1}, 0.2};
+    const double reach = n > 100 ? 0.1 : 1;
+    for (int32_t i = 0; i < n; i++) {
+        struct tri_point a = {3 * support_unit(&random), support_unit(&random)}, b = a;
+        if (i % 5) {
+            b.x += reach * support_unit(&random);
+            b.y += reach * support_unit(&random);
+        }
+        const double l = same ? length : length * (1 + 4 * support_unit(&random));
+        const double g = same ? growth : growth * support_unit(&random);
+        for (int32_t k = 0; k < (i == n - 1 ? n_equal : 1); k++)
+            assert_true(tri_near_add(&near, a, b, l, g));
+    }
+    assert_int_equal(tri_near_settle(&near, &frame, NULL), TRI_OK);
+    int32_t exact = 0, all = 4000;
+    double worst = 0;
+    for (int32_t k = 0; k < all; k++) {
+        const struct tri_point p = {3 * support_unit(&random), support_unit(&random)};
+        double naive = HUGE_VAL;
+        for (int32_t i = 0; i < near.n; i++) {
+            const struct tri_near_item *s = &near.item[i];
+            const struct tri_point b = {s->from.x + s->along.x, s->from.y + s->along.y};
+            naive = fmin(naive, s->length + s->growth * distance(s->from, b, p));
+        }
+        const double h = tri_near_at(&near, p);
+        exact += fabs(h / naive - 1) < 1e-12;
+        worst = fmax(worst, h / naive - 1);
+        assert_true(h > naive * (1 - 1e-12) && h < naive * 1.02);
+    }
+    print_message("  %d items: %.4f exact, else within %.4f, %d numbers in lists\n", near.n, (double)exact / all, worst,
+                  near.candidates.n);
+    
+    tri_near_clear(&near);
+}
+
+static void test_near_items_are_as_all_of_them_say(void **state)
+{
+    (void)state;
+    check_items(1, 1, 0.01, 0.2, true, 1);
+    check_items(20, 1, 0.01, 0.2, false, 2);
+    check_items(20, 12, 0.01, 0.2, true, 3);
+    check_items(2000, 1, 0.001, 0.15, true, 4);
+    check_items(2000, 40, 0.1, 0.15, true, 5);
+    check_items(2000, 1, 0.02, 0.3, false, 6);
+    check_items(300, 10, 0.02, 0, false, 7);
+}
+
+/* The centre of a circle is as far from all of it; a fan has many segments at one place. */
+static void test_ties_end(void **state)
+{
+    (void)state;
+    for (int fan = 0; fan < 2; fan++) {
+        struct tri_near near = {0};
+        struct tri_mesh mesh = {.unit = 1};
+        const struct tri_size_frame frame = {&mesh, {-1, -1}, {1, 1}, 0.2};
+        const int n = 500;
+        for (int i = 0; i < n; i++) {
+            const double angle = 6.283185307179586 * i / n, next = 6.283185307179586 * (i + 1) / n;
+            struct tri_point a = {cos(angle), sin(angle)}, b = {cos(next), sin(next)};
+            assert_true(tri_near_add(&near, a, fan ? (struct tri_point){0, 0} : b, 1e-3, 0.2));
+        }
+        assert_int_equal(tri_near_settle(&near, &frame, NULL), TRI_OK);
+        assert_true(near.candidates.n < 1000000);
+        print_message("  %s: %d numbers in lists\n", fan ? "fan" : "circle", near.candidates.n);
+        for (int i = 0; i <= 100; i++) {
+            const struct tri_point p = {1e-4 * i, 1e-5 * i};
+            const double h = fan ? 1e-3 : 1e-3 + 0.2 * (1 - hypot(p.x, p.y));
+            assert_true(fabs(tri_near_at(&near, p) / h - 1) < 0.02);
+        }
+        tri_near_clear(&near);
+    }
+}
+
+static void test_segments_with_a_marker(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = square_mesh(4, 60, 8);
+    for (int32_t marker = 1; marker <= 3; marker++) {
+        const struct tri_size_field fields[] = {
+            {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = -1, .marker = marker},
+            {.kind = TRI_SIZE_NUMBER, .length = 0.2}};
+        const struct tri_sizes sizes = {.fields = fields, .n = 2, .gradation = 0.1, .min_size = 0.015};
+        struct tri_lengths *lengths = lengths_of(&mesh, &sizes);
+        struct support_random random = {9};
+        assert_true(tri_lengths_uniform(lengths) == 0);
+        for (int k = 0; k < 1000; k++) {
+            const struct tri_point p = place(&random, 4);
+            double nearest = HUGE_VAL;
+            for (int32_t s = 0; s < mesh.n_subs; s++) {
+                const struct tri_point a = mesh.xy[mesh.sub[s].v[0]], b = mesh.xy[mesh.sub[s].v[1]];
+                if (mesh.sub[s].marker == marker || (marker == 1 && tri_is_boundary(&mesh.sub[s])))
+                    nearest = fmin(nearest, distance(a, b, p));
+            }
+            const double h = fmax(fmin(0.01 * marker + 0.1 * nearest, 0.2), 0.015);
+            const double got = tri_lengths_at(lengths, p);
+            assert_true(got > h * (1 - 1e-12) && got < h * 1.02);
+        }
+        tri_lengths_free(lengths);
+    }
+    const struct tri_size_field absent = {.kind = TRI_SIZE_NEAR, .length = 0.01, .growth = 0, .marker = 77};
+    struct tri_error error;
+    struct tri_lengths *none;
+    assert_int_equal(tri_lengths_new(&none, &(struct tri_sizes){.fields = &absent, .n = 1}, &mesh, NULL, &error),
+                     TRI_BAD_INPUT);
+    assert_null(none);
+    assert_string_equal(error.text, "sizes[0], near segments: no segment has the marker 77");
+    tri_mesh_free(&mesh);
+}
+
+/* --- rasters */
+
+/* The values, limited, by asking all nodes for each; gaps have those of the nearest node. */
+static void limit_naively(const struct tri_size_field *f, double gradation, double *out)
+{
+    const int64_t w = f->values.width, n = w * f->values.n;
+    double *full = malloc((size_t)n * sizeof *full);
+    assert_non_null(full);
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t k = 0; k < n; k++) {
+            double least = HUGE_VAL;
+            for (int64_t i = 0; i < n; i++) {
+                const double d = hypot((double)(k % w - i % w) * f->step[0], (double)(k / w - i / w) * f->step[1]);
+                const double value = pass ? full[i] : f->values.at[i];
+                if (pass)
+                    least = fmin(least, i == k ? value : value + gradation * d);
+                else if (value > 0 && d < least) {
+                    least = d;
+                    full[k] = value;
+                }
+            }
+            if (pass)
+                out[k] = least;
+        }
+    free(full);
+}
+
+static double bilinear(const struct tri_size_field *f, const double *value, struct tri_point p)
+{
+    const int64_t w = f->values.width, h = f->values.n;
+    const double x = fmin(fmax((p.x - f->origin[0]) / f->step[0], 0), (double)(w - 1));
+    const double y = fmin(fmax((p.y - f->origin[1]) / f->step[1], 0), (double)(h - 1));
+    const int64_t i = (int64_t)x, j = (int64_t)y, i1 = i + (i + 1 < w), j1 = j + (j + 1 < h);
+    const double u = x - (double)i, v = y - (double)j;
+    return (1 - v) * ((1 - u) * value[j * w + i] + u * value[j * w + i1]) +
+           v * ((1 - u) * value[j1 * w + i] + u * value[j1 * w + i1]);
+}
+
+static void check_raster(int64_t w, int64_t h, double gaps, double gradation, uint64_t seed)
+{
+    struct support_random random = {seed};
+    struct tri_mesh mesh = square_mesh(1000, 10, 1);
+    double *values = malloc((size_t)(w * h) * sizeof *values), *limited = malloc((size_t)(w * h) * sizeof *limited);
+    const double none[] = {NAN, 0, -9999};
+    assert_true(values && limited);
+    for (int64_t k = 0; k < w * h; k++) {
+        const bool is_gap = k > 0 && support_unit(&random) < gaps;
+        const double length = support_below(&random, 20) ? 100 : 1 + 50 * support_unit(&random);
+        values[k] = is_gap ? none[support_below(&random, 3)] : length;
+    }
+    const struct tri_size_field f = {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, h, w),
+                                     .origin = {100, -50}, .step = {700 / (double)w, 1100 / (double)h}};
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = gradation});
+    limit_naively(&f, gradation, limited);
+    double worst = 0;
+    for (int k = 0; k < 4000; k++) {
+        const struct tri_point p = place(&random, 1000), q = {p.x / mesh.unit, p.y / mesh.unit};
+        worst = fmax(worst, fabs(tri_lengths_at(lengths, q) * mesh.unit / bilinear(&f, limited, p) - 1));
+    }
+    print_message("  %d x %d: %g\n", (int)w, (int)h, worst);
+    assert_true(worst < 3e-3);
+    assert_non_null(strstr(tri_lengths_note(lengths), "sizes[0] covers (100, -50) to ("));
+    tri_lengths_free(lengths);
+    free(values);
+    free(limited);
+    tri_mesh_free(&mesh);
+}
+
+static void test_rasters_are_as_all_nodes_say(void **state)
+{
+    (void)state;
+    check_raster(1, 1, 0, 0.2, 1);
+    check_raster(40, 1, 0, 0.2, 2);
+    check_raster(1, 40, 0.3, 0.2, 3);
+    check_raster(50, 40, 0, 0.2, 4);
+    check_raster(30, 70, 0.5, 0.1, 5);
+    check_raster(60, 30, 0.9, HUGE_VAL, 6);
+    check_raster(60, 60, 0.01, 1, 7);
+}
+
+/* --- what is refused */
+
+static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
+{
+    struct tri_error error;
+    struct tri_lengths *lengths;
+    assert_int_equal(tri_lengths_new(&lengths, sizes, mesh, NULL, &error), TRI_BAD_INPUT);
+    assert_null(lengths);
+    assert_string_equal(error.text, text);
+}
+
+static void test_what_is_no_field_is_refused(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = square_mesh(1, 10, 1);
+    const double values[4] = {NAN, 0, -1, -HUGE_VAL};
+    const struct tri_size_field fields[] = {
+        {.kind = TRI_SIZE_NUMBER, .length = 0},
+        {.kind = TRI_SIZE_NEAR, .length = NAN, .growth = 1},
+        {.kind = TRI_SIZE_RASTER, .step = {1, 1}},
+        {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, 2, 2), .step = {1, 0}},
+        {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, 2, 2), .step = {1, 1}},
+        {.kind = (enum tri_size_kind)99}};
+    static const char *const texts[] = {"sizes[0], a number: its length is 0",
+                                        "sizes[0], near segments: its length is nan, its growth 1",
+                                        "sizes[0], a raster: it has no values",
+                                        "sizes[0], a raster: its origin is (0, 0), its step (1, 0)",
+                                        "sizes[0], a raster: no value is a length", "sizes[0]: its kind is 99"};
+    for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
+        refuse(&mesh, &(struct tri_sizes){.fields = &fields[k], .n = 1}, texts[k]);
+    refuse(&mesh, &(struct tri_sizes){.gradation = -1}, "gradation is -1");
+    refuse(&mesh, &(struct tri_sizes){.gradation = NAN}, "gradation is nan");
+    refuse(&mesh, &(struct tri_sizes){.min_size = 2, .max_size = 1}, "min_size 2 is above max_size 1");
+    refuse(&mesh, &(struct tri_sizes){.n = 1}, "sizes is NULL, and n_sizes 1");
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.max_size = 0.25});
+    assert_true(tri_lengths_uniform(lengths) * mesh.unit == 0.25);
+    tri_lengths_free(lengths);
+    lengths = lengths_of(&mesh, &(struct tri_sizes){.min_size = 1});
+    assert_null(lengths);
+    tri_mesh_free(&mesh);
+}
+
+/* --- through the public header */
+
+static void test_settings_take_fields(void **state)
+{
+    (void)state;
+    const double xy[] = {0, 0, 1, 0, 1, 1, 0, 1}, values[] = {0.1, 0.2};
+    const int32_t ends[] = {0, 1, 1, 2, 2, 3, 3, 0};
+    struct tri_size_field f = {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, 1, 2), .step = {1, 1}};
+    struct tri_figure figure = tri_no_figure();
+    struct tri_settings settings = tri_no_settings();
+    struct tri_mesh *mesh;
+    struct tri_error error;
+    figure.points = tri_reals_of(xy, 4, 2);
+    figure.segments = tri_ints_of(ends, 4, 2);
+    settings.min_angle = 20;
+    settings.sizes = &f;
+    settings.n_sizes = 1;
+    assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_OK);
+    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (0, 0) to (1, 0), the mesh (0, 0) to (1, 1): outside, the"
+                                              " nearest lengths count");
+    f.values.n = 0;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, &error), TRI_BAD_INPUT);
+    assert_string_equal(error.text, "sizes[0], a raster: it has no values");
+    tri_mesh_delete(mesh);
+    settings.n_sizes = 0;
+    settings.gradation = NAN;
+    assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_BAD_INPUT);
+    assert_null(mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
+        cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
+        cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

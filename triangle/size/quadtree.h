@@ -1,0 +1,81 @@
+/* A square that is cut into four again and again: which leaf is a place in? */
+#ifndef TRIANGLE_SIZE_QUADTREE_H
+#define TRIANGLE_SIZE_QUADTREE_H
+
+#include <math.h>
+#include <stdint.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/geometry/point.h"
+
+enum { TRI_QUADTREE_DEEPEST = 30 };
+
+struct tri_quadtree {
+    struct tri_point low; /* the root's lower left corner */
+    double side;          /* the root's */
+    double scale;         /* 2^TRI_QUADTREE_DEEPEST / side */
+    int32_t *child;       /* [n] of a cell four in a row, by the bits x + 2 y: >= 0: where its own four begin; < 0: ~ of
+                             the number of a leaf. child[0] is the root */
+    int32_t n, capacity;
+};
+
+/* A cell: side * 2^-depth wide. */
+struct tri_cell {
+    uint32_t x, y; /* how many cells of this depth lie before it */
+    int depth;
+};
+
+/* The leaf, or -1 - it never happens to be none - and its cell. A place outside the root has that of the nearest place
+ * in it. */
+static inline int32_t tri_quadtree_find(const struct tri_quadtree *tree, struct tri_point p, struct tri_cell *cell)
+{
+    const double most = (double)((1U << TRI_QUADTREE_DEEPEST) - 1);
+    const uint32_t x = (uint32_t)tri_lesser(tri_larger((p.x - tree->low.x) * tree->scale, 0), most);
+    const uint32_t y = (uint32_t)tri_lesser(tri_larger((p.y - tree->low.y) * tree->scale, 0), most);
+    int32_t at = tree->child[0];
+    int bit = TRI_QUADTREE_DEEPEST;
+    while (at >= 0) {
+        bit--;
+        at = tree->child[(uint32_t)at + (x >> bit & 1) + 2 * (y >> bit & 1)];
+    }
+    *cell = (struct tri_cell){x >> bit, y >> bit, TRI_QUADTREE_DEEPEST - bit};
+    return ~at;
+}
+
+static inline double tri_cell_side(const struct tri_quadtree *tree, int depth)
+{
+    return tree->side / (double)(UINT32_C(1) << depth);
+}
+
+/* The lower left corner. */
+static inline struct tri_point tri_cell_low(const struct tri_quadtree *tree, struct tri_cell cell)
+{
+    const double side = tri_cell_side(tree, cell.depth);
+    return (struct tri_point){tree->low.x + cell.x * side, tree->low.y + cell.y * side};
+}
+
+static inline struct tri_cell tri_cell_child(struct tri_cell cell, uint32_t k)
+{
+    return (struct tri_cell){2 * cell.x + (k & 1), 2 * cell.y + (k >> 1), cell.depth + 1};
+}
+
+/* Room for four more; false: there is none. */
+static inline bool tri_quadtree_grow(struct tri_quadtree *tree)
+{
+    return tri_grow(&tree->child, &tree->capacity, tree->n + 4, sizeof *tree->child);
+}
+
+/* A root around a box, and no leaf yet. False: no memory. */
+static inline bool tri_quadtree_init(struct tri_quadtree *tree, struct tri_point low, struct tri_point high)
+{
+    double side = tri_larger(high.x - low.x, high.y - low.y);
+    side = side > 0 ? side * (1 + 0x1p-20) : 1;
+    *tree = (struct tri_quadtree){.low = low, .side = side, .scale = (double)(1U << TRI_QUADTREE_DEEPEST) / side};
+    if (!tri_quadtree_grow(tree))
+        return false;
+    tree->child[0] = -1;
+    tree->n = 1;
+    return true;
+}
+
+#endif

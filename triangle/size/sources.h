@@ -1,0 +1,86 @@
+/* The kinds of sources that lengths.c takes the least of. Each keeps what it needs, in units of the mesh, and does not
+ * change any more.
+ *
+ * GRADATION. A source h0 is limited to the slope g by h(x) = min over y of h0(y) + g |x - y|: the largest field below
+ * h0 of that slope. The least of several is limited if each is, so each sees to its own. An infinite g is no limit. */
+#ifndef TRIANGLE_SIZE_SOURCES_H
+#define TRIANGLE_SIZE_SOURCES_H
+
+#include "triangle/mesh/mesh.h"
+#include "triangle/size/candidates.h"
+
+/* What all sources are made for. */
+struct tri_size_frame {
+    const struct tri_mesh *mesh;
+    struct tri_point low, high; /* the box of its vertices */
+    double gradation;           /* above 0, or infinite */
+};
+
+/* No length is longer than this: no edge of the mesh is. */
+static inline double tri_size_cap(const struct tri_size_frame *frame)
+{
+    return 8 * tri_larger(frame->high.x - frame->low.x, frame->high.y - frame->low.y);
+}
+
+/* A length of a caller in units of the mesh; 0: it is no data. Infinite: the cap. */
+static inline double tri_size_of(const struct tri_size_frame *frame, double length)
+{
+    return length > 0 ? tri_lesser(length / frame->mesh->unit, tri_size_cap(frame)) : 0;
+}
+
+/* A power of two by which lengths are divided to be kept as floats, and a length as it is kept: never 0. */
+static inline double tri_size_scale(double longest)
+{
+    int exponent;
+    frexp(longest, &exponent);
+    return ldexp(1, exponent);
+}
+
+static inline float tri_size_float(double length, double scale)
+{
+    return (float)tri_larger(length / scale, 0x1p-120);
+}
+
+/* --- near.c: segments, each with a length and a growth of its own
+ *
+ * h is the least of length + growth * distance. */
+struct tri_near_item {
+    struct tri_point from, along; /* the other end is from + along; along may be 0 */
+    double inverse;               /* 1 / |along|^2; 0 of a point */
+    double length, growth;
+};
+
+struct tri_near {
+    struct tri_near_item *item; /* [n] */
+    int32_t n, capacity;
+    struct tri_candidates candidates; /* once settled */
+};
+
+/* Adds one; false: no memory. */
+bool tri_near_add(struct tri_near *near, struct tri_point a, struct tri_point b, double length, double growth);
+
+/* To be called when all have been added. Nothing more is needed of the mesh. */
+enum tri_status tri_near_settle(struct tri_near *near, const struct tri_size_frame *frame, struct tri_error *error);
+
+/* n >= 1. Exact within the frame, but where more than eight segments compete within half of h: a percent more at most.
+ * Beyond the frame: of those that compete at the nearest place in it. */
+double tri_near_at(const struct tri_near *near, struct tri_point p);
+uint64_t tri_near_hash(const struct tri_near *near, uint64_t hash);
+void tri_near_clear(struct tri_near *near);
+
+/* --- raster.c: values on a grid, bilinear between its nodes */
+struct tri_raster {
+    double origin[2], inverse[2]; /* the first node; 1 / the step */
+    int64_t n[2];                 /* columns, rows */
+    double scale;                 /* of the values, a power of two */
+    float *value;                 /* [n[1]][n[0]], limited */
+};
+
+/* No node has data: TRI_BAD_INPUT. Else TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED. */
+enum tri_status tri_raster_make(struct tri_raster *raster, const struct tri_size_field *field,
+                                const struct tri_size_frame *frame, struct tri_error *error);
+double tri_raster_at(const struct tri_raster *raster, struct tri_point p);
+uint64_t tri_raster_hash(const struct tri_raster *raster, uint64_t hash);
+void tri_raster_clear(struct tri_raster *raster);
+
+#endif
