@@ -237,11 +237,12 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
     const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
-    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "program", run->console.program,
-                     "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
-                     "threads", run->settings.threads, "peak_memory_bytes", whole(memory), "bounds", bounds,
-                     "sizes", sizes_of(&run->arguments->sizes), "placement", placement_of(q), "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "ranks",
-                     ranks_of(ranks), "schedule", schedule ? schedule_of(schedule) : json_null());
+    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:s, s:o, s:o, s:o, s:o}", "program",
+                     run->console.program, "version", PTRIANGLE_VERSION, "command", command_of(run->arguments),
+                     "stopped", run->stopped, "threads", run->settings.threads, "peak_memory_bytes", whole(memory),
+                     "bounds", bounds, "sizes", sizes_of(&run->arguments->sizes), "placement", placement_of(q),
+                     "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
+                     schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)

@@ -104,6 +104,12 @@ static bool take_source(struct size_options *options, enum id id, const char *te
     return id == SIZE ? take_size(source, text) : take_near(source, text);
 }
 
+static bool take_placement(struct tri_switches *switches, const char *text)
+{
+    switches->classic = strcmp(text, "classic") == 0;
+    return switches->classic || strcmp(text, "lattice") == 0;
+}
+
 static bool take_value(struct size_options *options, struct tri_switches *switches, enum id id, const char *text)
 {
     switch (id) {
@@ -112,7 +118,7 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case GRADATION: return words_take_real(text, "", NULL, DBL_TRUE_MIN, HUGE_VAL, &options->gradation);
     case MIN_SIZE: return take_length(text, &options->min_size);
     case MAX_SIZE: return take_length(text, &options->max_size);
-    case PLACEMENT: switches->classic = strcmp(text, "classic") == 0; return switches->classic || !strcmp(text, "lattice");
+    case PLACEMENT: return take_placement(switches, text);
     default: return false;
     }
 }
@@ -204,6 +210,16 @@ void size_options_print(const struct size_options *options, char text[SIZE_OPTIO
     add(&line, "; gradation %g", options->gradation > 0 ? options->gradation : USUAL_GRADATION);
 }
 
+void size_options_name(const struct size_options *options, const char *sentence, char text[SIZE_OPTIONS_TEXT])
+{
+    int64_t k = -1;
+    const char *const end = sentence + strlen(sentence);
+    const char *at = strncmp(sentence, "sizes[", 6) == 0 ? tri_scan_integer(sentence + 6, end, &k) : sentence;
+    const bool is_source = k >= 0 && k < options->n && *at == ']';
+    const char *given = is_source ? options->source[k].given : "";
+    snprintf(text, SIZE_OPTIONS_TEXT, "%.200s%s", given, is_source ? at + 1 : sentence);
+}
+
 /* --- the fields */
 
 enum tri_status size_fields_read(struct size_fields *fields, const struct size_options *options,
@@ -226,7 +242,13 @@ enum tri_status size_fields_make(struct size_fields *fields, const struct size_o
 {
     const struct tri_sizes sizes = {.fields = fields->field, .n = options->n, .gradation = options->gradation,
                                     .min_size = options->min_size, .max_size = options->max_size};
-    return tri_lengths_new(&fields->lengths, &sizes, mesh, executor, error);
+    struct tri_error own = {0};
+    char text[SIZE_OPTIONS_TEXT];
+    const enum tri_status status = tri_lengths_new(&fields->lengths, &sizes, mesh, executor, &own);
+    if (!status)
+        return status;
+    size_options_name(options, own.text, text);
+    return tri_fail(error, status, own.file[0] ? own.file : NULL, own.line, "%s", text);
 }
 
 void size_fields_free(struct size_fields *fields)

@@ -45,6 +45,9 @@ static inline bool size_options_any(const struct size_options *options)
 enum { SIZE_OPTIONS_TEXT = 1024 };
 void size_options_print(const struct size_options *options, char text[SIZE_OPTIONS_TEXT]);
 
+/* In a sentence of lengths.h a source is "sizes[2]", counted from 0: at its begin that becomes what the user wrote. */
+void size_options_name(const struct size_options *options, const char *sentence, char text[SIZE_OPTIONS_TEXT]);
+
 /* --- the fields, once the files have been read */
 
 struct size_fields {

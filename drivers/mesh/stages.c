@@ -290,12 +290,15 @@ enum tri_status run_find_unused(struct run *r)
 static enum tri_status make_lengths(struct run *r)
 {
     const struct size_options *options = &r->arguments->sizes;
+    char text[SIZE_OPTIONS_TEXT];
     if (!r->options.refine)
         return TRI_OK;
     const enum tri_status status = size_fields_make(&r->sizes, options, &r->mesh, r->settings.executor, r->error);
     r->options.quality.lengths = r->sizes.lengths;
-    if (r->sizes.lengths && tri_lengths_note(r->sizes.lengths)[0])
-        console_warn(&r->console, "%s.\n", tri_lengths_note(r->sizes.lengths));
+    if (!status && tri_lengths_note(r->sizes.lengths)[0]) {
+        size_options_name(options, tri_lengths_note(r->sizes.lengths), text);
+        console_warn(&r->console, "%s.\n", text);
+    }
     return status;
 }
 

@@ -1,9 +1,9 @@
-/* Reading JIGSAW's .msh, which has nothing but its suffix in common with Gmsh's: sections of KEY = numbers, then rows of
+/* Reading JIGSAW's .msh, which shares nothing but its suffix with Gmsh's: sections of KEY = numbers, then rows of
  * numbers with semicolons between them.
  *
  * Of a mesh POINT, TRIA3 and VALUE are read, of a grid COORD and VALUE; other sections are passed. Points count from 0.
- * In a grid values run along y first. A grid whose coordinates are evenly spaced, to a thousandth of a step, is a raster;
- * any other becomes a mesh of two triangles a cell. */
+ * In a grid values run along y first. A grid whose coordinates are evenly spaced, to a thousandth of a step, is a
+ * raster; any other becomes a mesh of two triangles a cell. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,4 +1,5 @@
 /* Reading rasters of lengths: ESRI ASCII grids (.asc), whose values are those of cells, and arrays of NumPy (.npy). */
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -50,10 +51,11 @@ static bool take_head(struct tri_words *w, struct asc *asc)
     return tri_words_real(w, head_names[head], head != NO_DATA, &asc->value[head]);
 }
 
+/* An entry, not a number, nan or inf. */
 static bool is_head(const struct tri_words *w)
 {
-    const char letter = *w->at;
-    return (letter >= 'a' && letter <= 'z' && letter != 'i') || (letter >= 'A' && letter <= 'Z' && letter != 'I');
+    const bool is_nan = (w->at[0] == 'n' || w->at[0] == 'N') && (w->at[1] == 'a' || w->at[1] == 'A');
+    return isalpha((unsigned char)*w->at) && *w->at != 'i' && *w->at != 'I' && !is_nan;
 }
 
 /* Entries stand in any order before the first number. */

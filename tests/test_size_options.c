@@ -1,0 +1,119 @@
+/* --size and its kin: what each value means, and what is none. */
+#include "drivers/mesh/size_options.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct taken {
+    struct size_options options;
+    struct tri_switches switches;
+    struct tri_error error;
+    int at;
+};
+
+/* Takes the option at word 1. value NULL: there is no further word. */
+static bool take(struct taken *t, const char *word, const char *value)
+{
+    char program[] = "triangle", first[120], second[120];
+    char *argv[] = {program, first, second};
+    strcpy(first, word);
+    strcpy(second, value ? value : "");
+    t->at = 1;
+    t->error.status = TRI_OK;
+    return size_options_take(&t->options, &t->switches, value ? 3 : 2, argv, &t->at, &t->error);
+}
+
+static struct taken nothing(void) { return (struct taken){.switches = tri_switches_none()}; }
+
+static void test_values(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    assert_true(take(&t, "--size", "5e2") && !t.error.status && t.at == 2);
+    assert_true(t.options.source[0].field.kind == TRI_SIZE_NUMBER && t.options.source[0].field.length == 500);
+    assert_true(take(&t, "--size=coast.asc", "x") && !t.error.status && t.at == 1);
+    assert_string_equal(t.options.source[1].path, "coast.asc");
+    assert_true(take(&t, "--size", "a@b.npy@0,-1,2e3,1") && !t.error.status);
+    assert_string_equal(t.options.source[2].path, "a@b.npy");
+    assert_true(t.options.source[2].has_extent && t.options.source[2].extent[1] == -1);
+    assert_true(t.options.source[2].extent[2] == 2000 && t.options.source[2].extent[3] == 1);
+    assert_true(take(&t, "--size-near", "-2:500") && !t.error.status);
+    const struct tri_size_field *near = &t.options.source[3].field;
+    assert_true(near->kind == TRI_SIZE_NEAR && near->marker == -2 && near->length == 500 && near->growth < 0);
+    assert_true(take(&t, "--size-near=7:1.5,0.15", NULL) && !t.error.status);
+    near = &t.options.source[4].field;
+    assert_true(near->marker == 7 && near->length == 1.5 && near->growth == 0.15);
+    assert_true(take(&t, "--gradation", "inf") && t.options.gradation == HUGE_VAL);
+    assert_true(take(&t, "--min-size", "3") && t.options.min_size == 3);
+    assert_true(take(&t, "--max-size", "30") && t.options.max_size == 30);
+    assert_true(take(&t, "--placement", "classic") && t.switches.classic);
+    assert_true(take(&t, "--placement=lattice", NULL) && !t.switches.classic);
+    assert_false(take(&t, "--sizes", "3") || take(&t, "--siz", "3") || take(&t, "-size", "3"));
+    char text[SIZE_OPTIONS_TEXT];
+    size_options_print(&t.options, text);
+    assert_string_equal(text, "500, coast.asc, a@b.npy, 500 at segments with marker -2, 1.5 at segments with marker 7 "
+                              "growing by 0.15; at least 3; at most 30; gradation inf");
+    size_options_free(&t.options);
+}
+
+static void test_no_values(void **state)
+{
+    static const char *const wrong[][2] = {
+        {"--size", "0"}, {"--size", "-3"}, {"--size", "inf"}, {"--size", "nan"}, {"--size", ""}, {"--size", "500m"},
+        {"--size", "coast.tif"}, {"--size", "a.npy@1,2,3"}, {"--size", "a.npy@1,2,3,4,5"}, {"--size", "a.npy@1,2,3,x"},
+        {"--size", "a.asc@0,0,1,1"}, {"--size-near", "500"}, {"--size-near", "2:"}, {"--size-near", "2:0"},
+        {"--size-near", "2:5,"}, {"--size-near", "2:5,-1"}, {"--size-near", "2:5,0.1,3"}, {"--size-near", "x:5"},
+        {"--size-near", "99999999999:5"}, {"--gradation", "0"}, {"--gradation", "-1"}, {"--gradation", "nan"},
+        {"--min-size", "0"}, {"--max-size", "inf"}, {"--max-size", "x"}, {"--placement", "Classic"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        struct taken t = nothing();
+        assert_true(take(&t, wrong[i][0], wrong[i][1]));
+        assert_int_equal(t.error.status, TRI_BAD_INPUT);
+        assert_non_null(strstr(t.error.text, wrong[i][0]));
+        size_options_free(&t.options);
+    }
+    struct taken t = nothing();
+    assert_true(take(&t, "--size", NULL) && t.error.status == TRI_BAD_INPUT);
+    for (int i = 0; i < SIZE_OPTIONS_MOST; i++)
+        assert_true(take(&t, i % 2 ? "--size" : "--size-near", i % 2 ? "1" : "1:1") && !t.error.status);
+    assert_true(take(&t, "--size", "1") && t.error.status == TRI_BAD_INPUT);
+}
+
+/* Lengths set -q; limits alone are an error. */
+static void test_end(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
+    assert_false(t.switches.angle);
+    take(&t, "--gradation", "0.3");
+    assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_BAD_INPUT);
+    take(&t, "--max-size", "3");
+    assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
+    assert_true(t.switches.angle && t.switches.min_angle == 20);
+    take(&t, "--min-size", "4");
+    assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_BAD_INPUT);
+    t = nothing();
+    tri_switches_add(&t.switches, "q30");
+    take(&t, "--size", "3");
+    assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
+    assert_true(t.switches.min_angle == 30);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_no_values),
+        cmocka_unit_test(test_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
