@@ -46,6 +46,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/candidates.c
     triangle/size/near.c
     triangle/size/raster.c
+    triangle/size/spread.c
+    triangle/size/sampled.c
+    triangle/size/background.c
     triangle/size/lengths.c
     triangle/size/quality.c
     triangle/size/estimate.c

@@ -5,7 +5,7 @@
 #include "triangle/size/lengths.h"
 #include "triangle/size/sources.h"
 
-/* A triangulation of the square from 0 to `side`, n random points in it, and segments between these, of markers 2, 3. */
+/* A triangulation of the square from 0 to `side`, with n random points, and segments of markers 2 and 3 between. */
 static struct tri_mesh square_mesh(double side, int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -249,6 +249,207 @@ static void test_rasters_are_as_all_nodes_say(void **state)
     check_raster(60, 60, 0.01, 1, 7);
 }
 
+/* --- background meshes */
+
+/* The value at the nearest place of all triangles, of all places asked naively. */
+static double linear_naively(const struct tri_size_field *f, const double *value, struct tri_point p)
+{
+    double nearest = HUGE_VAL, found = 0;
+    for (int64_t t = 0; t < f->triangles.n; t++) {
+        const int32_t *v = f->triangles.at + 3 * t;
+        struct tri_point c[3];
+        double w[3], sum = 0;
+        for (int k = 0; k < 3; k++)
+            c[k] = (struct tri_point){f->points.at[2 * v[k]], f->points.at[2 * v[k] + 1]};
+        for (int k = 0; k < 3; k++) {
+            w[k] = tri_area_of(p, c[tri_next[k]], c[tri_prev[k]]);
+            sum += w[k];
+        }
+        const bool inside = sum != 0 && w[0] / sum >= 0 && w[1] / sum >= 0 && w[2] / sum >= 0;
+        if (inside && nearest > 0) {
+            nearest = 0;
+            found = (w[0] * value[v[0]] + w[1] * value[v[1]] + w[2] * value[v[2]]) / sum;
+        }
+        for (int k = 0; k < 3; k++) {
+            const struct tri_point a = c[k], b = c[tri_next[k]];
+            const double l2 = tri_distance2(a, b), d = distance(a, b, p);
+            const double dot = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y);
+            if (d < nearest) {
+                nearest = d;
+                found = value[v[k]] + (l2 > 0 ? fmin(fmax(dot / l2, 0), 1) : 0) * (value[v[tri_next[k]]] - value[v[k]]);
+            }
+        }
+    }
+    return found;
+}
+
+/* Points that are there twice are corners once. */
+static bool is_corner(const struct tri_size_field *f, int32_t v)
+{
+    for (int64_t i = 0; i < 3 * f->triangles.n; i++)
+        if (f->triangles.at[i] == v)
+            return true;
+    return false;
+}
+
+/* n points in a part of the mesh and their triangulation; some without data, all lengths limited by all others. */
+static void check_background(int32_t n, double gaps, double gradation, enum support_kind kind, uint64_t seed)
+{
+    struct support_random random = {seed};
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    struct tri_pslg pslg = support_points(kind, n, seed);
+    struct tri_mesh own = support_delaunay(&pslg, 0, NULL);
+    const size_t n_own = (size_t)own.n_vertices;
+    double *at = malloc(2 * n_own * sizeof *at), *value = malloc(n_own * sizeof *value);
+    double *limited = malloc(n_own * sizeof *limited);
+    int32_t *corner = malloc(3 * (size_t)own.n_triangles * sizeof *corner);
+    double reach = 1;
+    assert_true(at && value && limited && corner);
+    for (int32_t v = 0; v < own.n_vertices; v++)
+        reach = fmax(reach, fmax(fabs(own.xy[v].x), fabs(own.xy[v].y)) * own.unit);
+    for (int32_t v = 0; v < own.n_vertices; v++) {
+        at[2 * v] = 1 + own.xy[v].x * own.unit / reach;
+        at[2 * v + 1] = 1 + own.xy[v].y * own.unit / reach;
+        value[v] = support_below(&random, 10) ? 0.3 : 0.01 + 0.1 * support_unit(&random);
+        if (v > 0 && support_unit(&random) < gaps)
+            value[v] = NAN;
+    }
+    int32_t n_triangles = 0;
+    for (int32_t t = 0; t < own.n_triangles; t++)
+        for (int k = 0; k < 3; k++) /* every other one turned around */
+            corner[3 * n_triangles + (t % 2 ? k : 2 - k)] = own.tri[t].v[k], n_triangles += k == 2;
+    const struct tri_size_field f = {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, own.n_vertices, 2),
+                                     .values = tri_reals_of(value, own.n_vertices, 1),
+                                     .triangles = tri_ints_of(corner, n_triangles, 3)};
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = gradation});
+    for (int32_t v = 0; v < own.n_vertices; v++) {
+        limited[v] = HUGE_VAL;
+        for (int32_t w = 0; w < own.n_vertices; w++) {
+            const double d = hypot(at[2 * v] - at[2 * w], at[2 * v + 1] - at[2 * w + 1]);
+            if (w != v && gaps == 0 && is_corner(&f, w))
+                limited[v] = fmin(limited[v], value[w] + gradation * d);
+        }
+        limited[v] = fmin(limited[v], value[v]);
+    }
+    double worst = 0;
+    for (int k = 0; k < 3000 && gaps == 0; k++) {
+        const struct tri_point p = place(&random, 4), q = {p.x / mesh.unit, p.y / mesh.unit};
+        worst = fmax(worst, fabs(tri_lengths_at(lengths, q) * mesh.unit / linear_naively(&f, limited, p) - 1));
+    }
+    for (int32_t v = 0; kind == SUPPORT_RANDOM && v < own.n_vertices; v++) { /* gaps have some other's */
+        const struct tri_point q = {at[2 * v] / mesh.unit, at[2 * v + 1] / mesh.unit};
+        const double h = tri_lengths_at(lengths, q) * mesh.unit;
+        assert_true(h > 0.0099 && h < 0.3001 && (isnan(value[v]) || h < value[v] * (1 + 1e-6)));
+    }
+    print_message("  %d triangles: %g\n", n_triangles, worst);
+    assert_true(worst < 0.01 || kind == SUPPORT_NEAR_LINE); /* where triangles are all but flat, any edge will do */
+    tri_lengths_free(lengths);
+    free(at);
+    free(value);
+    free(limited);
+    free(corner);
+    tri_pslg_free(&pslg);
+    tri_mesh_free(&own);
+    tri_mesh_free(&mesh);
+}
+
+static void test_meshes_are_as_all_triangles_say(void **state)
+{
+    (void)state;
+    check_background(3, 0, 0.2, SUPPORT_RANDOM, 1);
+    check_background(300, 0, 0.2, SUPPORT_RANDOM, 2);
+    check_background(300, 0, HUGE_VAL, SUPPORT_RANDOM, 3);
+    check_background(300, 0.5, 0.2, SUPPORT_RANDOM, 4);
+    check_background(200, 0, 0.2, SUPPORT_LATTICE, 5);
+    check_background(200, 0, 0.2, SUPPORT_RING, 6);
+    check_background(60, 0, 0.2, SUPPORT_NEAR_LINE, 7);
+}
+
+/* --- functions */
+
+struct asked {
+    int which;
+    int calls;
+    int64_t places;
+    double at[20][3]; /* places and lengths that others grow from */
+};
+
+static double function_at(const struct asked *a, double x, double y)
+{
+    double h = HUGE_VAL;
+    for (int k = 0; k < 20; k++)
+        h = fmin(h, a->at[k][2] + 0.2 * hypot(x - a->at[k][0], y - a->at[k][1]));
+    switch (a->which) {
+    case 0: return h;
+    case 1: return 0.05 + 0.04 * sin(3 * x) * cos(5 * y);
+    case 2: return x < 2 ? 0.02 : HUGE_VAL; /* limited afterwards */
+    case 3: return x < 2 ? 0.02 + 0.01 * y : NAN;
+    default: return -1;
+    }
+}
+
+static void ask_function(void *user, int64_t n, const double (*at)[2], double *length)
+{
+    struct asked *a = user;
+    a->calls++;
+    a->places += n;
+    for (int64_t i = 0; i < n; i++) {
+        assert_true(at[i][0] >= 0 && at[i][0] <= 4 && at[i][1] >= 0 && at[i][1] <= 4);
+        length[i] = function_at(a, at[i][0], at[i][1]);
+    }
+}
+
+/* What it is once limited. */
+static double limited_function(const struct asked *a, double x, double y)
+{
+    if (a->which == 2)
+        return 0.02 + 0.2 * fmax(x - 2, 0);
+    return a->which == 3 ? 0.02 + 0.01 * y : function_at(a, x, y);
+}
+
+static bool is_asked_thrice(void *user) { return ((struct asked *)user)->calls >= 3; }
+
+static void test_functions_are_kept(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    struct support_random random = {5};
+    struct asked a = {0};
+    const struct tri_size_field f = {.kind = TRI_SIZE_FUNCTION, .function = ask_function, .user = &a};
+    const struct tri_sizes sizes = {.fields = &f, .n = 1, .gradation = 0.2};
+    struct tri_lengths *lengths;
+    for (int k = 0; k < 20; k++)
+        for (int i = 0; i < 3; i++)
+            a.at[k][i] = i < 2 ? 4 * support_unit(&random) : 0.002 + 0.01 * support_unit(&random);
+    for (a.which = 0; a.which < 4; a.which++) {
+        double worst = 0, mean = 0;
+        a.calls = 0;
+        a.places = 0;
+        lengths = lengths_of(&mesh, &sizes);
+        for (int k = 0; k < 20000; k++) {
+            const struct tri_point p = place(&random, 4), q = {p.x / mesh.unit, p.y / mesh.unit};
+            const double h = limited_function(&a, p.x, p.y);
+            const double error = fabs(tri_lengths_at(lengths, q) * mesh.unit / h - 1);
+            worst = fmax(worst, error);
+            mean += error / 20000;
+        }
+        print_message("  %d: %d calls, %d places: mean %.4f, largest %.4f\n", a.which, a.calls, (int)a.places, mean,
+                      worst);
+        assert_true(worst < 0.05 && mean < 0.005 && a.calls < 60 && a.places < 3500000);
+        assert_string_equal(tri_lengths_note(lengths), "");
+        tri_lengths_free(lengths);
+    }
+    struct tri_error error;
+    assert_int_equal(tri_lengths_new(&lengths, &sizes, &mesh, NULL, &error), TRI_BAD_INPUT);
+    assert_string_equal(error.text, "sizes[0], a function: nothing that it returned is a length");
+    a = (struct asked){.which = 0};
+    const struct tri_stop stop = {is_asked_thrice, &a};
+    mesh.stop = &stop;
+    assert_int_equal(tri_lengths_new(&lengths, &sizes, &mesh, NULL, &error), TRI_STOPPED);
+    assert_int_equal(a.calls, 3);
+    tri_mesh_free(&mesh);
+}
+
 /* --- what is refused */
 
 static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
@@ -264,19 +465,33 @@ static void test_what_is_no_field_is_refused(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(1, 10, 1);
-    const double values[4] = {NAN, 0, -1, -HUGE_VAL};
+    const double values[4] = {NAN, 0, -1, -HUGE_VAL}, odd[6] = {0, 0, 1, HUGE_VAL, 0, 1}, xy[6] = {0, 0, 1, 0, 0, 1};
+    const int32_t corners[3] = {0, 1, 2}, wrong[3] = {0, 1, 3};
+    const struct tri_reals three = tri_reals_of(values, 3, 1);
     const struct tri_size_field fields[] = {
         {.kind = TRI_SIZE_NUMBER, .length = 0},
         {.kind = TRI_SIZE_NEAR, .length = NAN, .growth = 1},
         {.kind = TRI_SIZE_RASTER, .step = {1, 1}},
         {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, 2, 2), .step = {1, 0}},
         {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(values, 2, 2), .step = {1, 1}},
+        {.kind = TRI_SIZE_MESH},
+        {.kind = TRI_SIZE_MESH, .points = {values, 2, 2, 2}, .triangles = {corners, 1, 3, 3}, .values = three},
+        {.kind = TRI_SIZE_MESH, .points = {odd, 3, 2, 2}, .triangles = {corners, 1, 3, 3}, .values = three},
+        {.kind = TRI_SIZE_MESH, .points = {xy, 3, 2, 2}, .triangles = {wrong, 1, 3, 3}, .values = three},
+        {.kind = TRI_SIZE_MESH, .points = {xy, 3, 2, 2}, .triangles = {corners, 1, 3, 3}, .values = three},
+        {.kind = TRI_SIZE_FUNCTION},
         {.kind = (enum tri_size_kind)99}};
     static const char *const texts[] = {"sizes[0], a number: its length is 0",
                                         "sizes[0], near segments: its length is nan, its growth 1",
                                         "sizes[0], a raster: it has no values",
                                         "sizes[0], a raster: its origin is (0, 0), its step (1, 0)",
-                                        "sizes[0], a raster: no value is a length", "sizes[0]: its kind is 99"};
+                                        "sizes[0], a raster: no value is a length",
+                                        "sizes[0], a mesh: it has no points, or no triangles",
+                                        "sizes[0], a mesh: it has 2 points and 3 values",
+                                        "sizes[0], a mesh: its point 1 is (1, inf)",
+                                        "sizes[0], a mesh: its triangle 0 has the corner 3, of 3 points",
+                                        "sizes[0], a mesh: no value of a triangle is a length",
+                                        "sizes[0], a function: it is NULL", "sizes[0]: its kind is 99"};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
         refuse(&mesh, &(struct tri_sizes){.fields = &fields[k], .n = 1}, texts[k]);
     refuse(&mesh, &(struct tri_sizes){.gradation = -1}, "gradation is -1");
@@ -309,8 +524,8 @@ static void test_settings_take_fields(void **state)
     settings.sizes = &f;
     settings.n_sizes = 1;
     assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_OK);
-    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (0, 0) to (1, 0), the mesh (0, 0) to (1, 1): outside, the"
-                                              " nearest lengths count");
+    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (0, 0) to (1, 0), the mesh (0, 0) to (1, 1):"
+                                              " outside, the nearest lengths count");
     f.values.n = 0;
     assert_int_equal(tri_mesh_refine(mesh, &settings, &error), TRI_BAD_INPUT);
     assert_string_equal(error.text, "sizes[0], a raster: it has no values");
@@ -326,6 +541,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
+        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_functions_are_kept),
         cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,7 +114,7 @@ static inline struct tri_figure tri_no_figure(void)
 enum tri_size_kind {
     TRI_SIZE_NUMBER = 1, /* `length` everywhere */
     TRI_SIZE_RASTER,     /* `values` at the nodes of a grid, bilinear between them; outside that of the nearest node */
-    TRI_SIZE_MESH,       /* `values` at `points`, linear in each of the `triangles`; outside that of the nearest place */
+    TRI_SIZE_MESH,       /* `values` at `points`, linear in each of the `triangles`; else that of the nearest place */
     TRI_SIZE_FUNCTION,   /* `function` */
     TRI_SIZE_NEAR        /* `length` at the segments with this marker, growing by `growth` for a distance of 1 */
 };

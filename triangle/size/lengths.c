@@ -14,8 +14,10 @@ struct tri_lengths {
     double number;         /* the least that holds everywhere; infinity: none */
     double min_size;       /* 0: none */
     struct tri_near near;  /* all segments that have lengths */
-    struct tri_raster *raster;
-    int64_t n_rasters;
+    struct tri_raster *raster; /* [n_rasters] */
+    struct tri_background *background; /* [n_backgrounds] */
+    struct tri_sampled *sampled; /* [n_sampled] */
+    int64_t n_rasters, n_backgrounds, n_sampled;
     char note[NOTE];
 };
 
@@ -37,6 +39,30 @@ static enum tri_status check_raster(const struct tri_size_field *f, struct tri_e
     return TRI_OK;
 }
 
+static enum tri_status check_mesh(const struct tri_size_field *f, struct tri_error *error)
+{
+    const struct tri_reals *p = &f->points, *v = &f->values;
+    const struct tri_ints *t = &f->triangles;
+    if (!p->at || p->n < 1 || p->width != 2 || p->stride < 2 || !t->at || t->n < 1 || t->width != 3 || t->stride < 3)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no points, or no triangles");
+    if (!v->at || v->n != p->n || v->width != 1 || v->stride < 1)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has %lld points and %lld values", (long long)p->n,
+                        (long long)v->n);
+    if (p->n > TRI_MAX_VERTICES || t->n > TRI_MAX_TRIANGLES)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "it has %lld triangles", (long long)t->n);
+    for (int64_t i = 0; i < p->n; i++)
+        if (!isfinite(p->at[i * p->stride]) || !isfinite(p->at[i * p->stride + 1]))
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its point %lld is (%g, %g)", (long long)i,
+                            p->at[i * p->stride], p->at[i * p->stride + 1]);
+    for (int64_t i = 0; i < 3 * t->n; i++) {
+        const int32_t corner = t->at[i / 3 * t->stride + i % 3];
+        if (corner < 0 || corner >= p->n)
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its triangle %lld has the corner %d, of %lld points",
+                            (long long)(i / 3), corner, (long long)p->n);
+    }
+    return TRI_OK;
+}
+
 static enum tri_status check_field(const struct tri_size_field *f, struct tri_error *error)
 {
     switch (f->kind) {
@@ -47,8 +73,9 @@ static enum tri_status check_field(const struct tri_size_field *f, struct tri_er
                    ? TRI_OK
                    : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its length is %g, its growth %g", f->length, f->growth);
     case TRI_SIZE_RASTER: return check_raster(f, error);
-    case TRI_SIZE_MESH:
-    case TRI_SIZE_FUNCTION: break;
+    case TRI_SIZE_MESH: return check_mesh(f, error);
+    case TRI_SIZE_FUNCTION:
+        return f->function ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it is NULL");
     }
     return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its kind is %d", (int)f->kind);
 }
@@ -155,6 +182,34 @@ static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error
     return TRI_OK;
 }
 
+static enum tri_status take_background(struct making *m, int64_t k, struct tri_error *error)
+{
+    struct tri_background *b = &m->out->background[m->out->n_backgrounds];
+    const enum tri_status status = tri_background_make(b, &m->sizes->fields[k], &m->frame, error);
+    if (status)
+        return status;
+    m->out->n_backgrounds++;
+    struct tri_point low = b->at[b->corner[0]], high = low;
+    for (int64_t i = 0; i < 3 * (int64_t)b->n_triangles; i++) {
+        const struct tri_point p = b->at[b->corner[i]];
+        low = (struct tri_point){tri_lesser(low.x, p.x), tri_lesser(low.y, p.y)};
+        high = (struct tri_point){tri_larger(high.x, p.x), tri_larger(high.y, p.y)};
+    }
+    note_uncovered(m, k, low, high);
+    return TRI_OK;
+}
+
+static enum tri_status take_function(struct making *m, int64_t k, struct tri_error *error)
+{
+    struct tri_sampled *s = &m->out->sampled[m->out->n_sampled];
+    const enum tri_status status = tri_sampled_make(s, &m->sizes->fields[k], &m->frame, error);
+    m->out->n_sampled += !status;
+    if (!status && s->is_coarse && !m->out->note[0])
+        snprintf(m->out->note, sizeof m->out->note, "sizes[%lld] varies too much for %d places: between these, lengths"
+                 " are bilinear", (long long)k, TRI_SAMPLES);
+    return status;
+}
+
 static enum tri_status take(struct making *m, int64_t k, struct tri_error *error)
 {
     const struct tri_size_field *f = &m->sizes->fields[k];
@@ -162,8 +217,8 @@ static enum tri_status take(struct making *m, int64_t k, struct tri_error *error
     case TRI_SIZE_NUMBER: m->out->number = fmin(m->out->number, f->length / m->frame.mesh->unit); return TRI_OK;
     case TRI_SIZE_NEAR: return take_near(m, f, error);
     case TRI_SIZE_RASTER: return take_raster(m, k, error);
-    case TRI_SIZE_MESH:
-    case TRI_SIZE_FUNCTION: break;
+    case TRI_SIZE_MESH: return take_background(m, k, error);
+    case TRI_SIZE_FUNCTION: return take_function(m, k, error);
     }
     return TRI_OK;
 }
@@ -174,7 +229,11 @@ static enum tri_status take_all(struct making *m, struct tri_error *error)
     const double unit = m->frame.mesh->unit;
     l->min_size = m->sizes->min_size / unit;
     l->number = m->sizes->max_size > 0 ? m->sizes->max_size / unit : HUGE_VAL;
-    if (!(l->raster = calloc((size_t)m->sizes->n + 1, sizeof *l->raster)))
+    const size_t n = (size_t)m->sizes->n + 1;
+    l->raster = calloc(n, sizeof *l->raster);
+    l->background = calloc(n, sizeof *l->background);
+    l->sampled = calloc(n, sizeof *l->sampled);
+    if (!l->raster || !l->background || !l->sampled)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     for (int64_t k = 0; k < m->sizes->n; k++) {
         struct tri_error own;
@@ -210,8 +269,14 @@ void tri_lengths_free(struct tri_lengths *l)
         return;
     for (int64_t k = 0; k < l->n_rasters; k++)
         tri_raster_clear(&l->raster[k]);
+    for (int64_t k = 0; k < l->n_backgrounds; k++)
+        tri_background_clear(&l->background[k]);
+    for (int64_t k = 0; k < l->n_sampled; k++)
+        tri_sampled_clear(&l->sampled[k]);
     tri_near_clear(&l->near);
     free(l->raster);
+    free(l->background);
+    free(l->sampled);
     free(l);
 }
 
@@ -224,12 +289,17 @@ double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
         h = tri_lesser(h, tri_near_at(&l->near, p));
     for (int64_t k = 0; k < l->n_rasters; k++)
         h = tri_lesser(h, tri_raster_at(&l->raster[k], p));
+    for (int64_t k = 0; k < l->n_backgrounds; k++)
+        h = tri_lesser(h, tri_background_at(&l->background[k], p));
+    for (int64_t k = 0; k < l->n_sampled; k++)
+        h = tri_lesser(h, tri_sampled_at(&l->sampled[k], p));
     return tri_larger(h, l->min_size);
 }
 
 double tri_lengths_uniform(const struct tri_lengths *l)
 {
-    return l->n_rasters == 0 && l->near.n == 0 && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
+    const bool is_number = l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled == 0;
+    return is_number && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
 }
 
 const char *tri_lengths_note(const struct tri_lengths *l) { return l ? l->note : ""; }
@@ -242,5 +312,9 @@ uint64_t tri_lengths_hash(const struct tri_lengths *l)
     uint64_t hash = tri_near_hash(&l->near, tri_hash(1, kept, sizeof kept));
     for (int64_t k = 0; k < l->n_rasters; k++)
         hash = tri_raster_hash(&l->raster[k], hash);
+    for (int64_t k = 0; k < l->n_backgrounds; k++)
+        hash = tri_background_hash(&l->background[k], hash);
+    for (int64_t k = 0; k < l->n_sampled; k++)
+        hash = tri_sampled_hash(&l->sampled[k], hash);
     return hash;
 }

@@ -25,13 +25,9 @@ struct tri_cell {
     int depth;
 };
 
-/* The leaf, or -1 - it never happens to be none - and its cell. A place outside the root has that of the nearest place
- * in it. */
-static inline int32_t tri_quadtree_find(const struct tri_quadtree *tree, struct tri_point p, struct tri_cell *cell)
+/* The leaf, and its cell, in which a cell of the largest depth lies. */
+static inline int32_t tri_quadtree_leaf(const struct tri_quadtree *tree, uint32_t x, uint32_t y, struct tri_cell *cell)
 {
-    const double most = (double)((1U << TRI_QUADTREE_DEEPEST) - 1);
-    const uint32_t x = (uint32_t)tri_lesser(tri_larger((p.x - tree->low.x) * tree->scale, 0), most);
-    const uint32_t y = (uint32_t)tri_lesser(tri_larger((p.y - tree->low.y) * tree->scale, 0), most);
     int32_t at = tree->child[0];
     int bit = TRI_QUADTREE_DEEPEST;
     while (at >= 0) {
@@ -40,6 +36,15 @@ static inline int32_t tri_quadtree_find(const struct tri_quadtree *tree, struct 
     }
     *cell = (struct tri_cell){x >> bit, y >> bit, TRI_QUADTREE_DEEPEST - bit};
     return ~at;
+}
+
+/* The same for a place; outside the root for the nearest place in it. */
+static inline int32_t tri_quadtree_find(const struct tri_quadtree *tree, struct tri_point p, struct tri_cell *cell)
+{
+    const double most = (double)((1U << TRI_QUADTREE_DEEPEST) - 1);
+    const double x = tri_lesser(tri_larger((p.x - tree->low.x) * tree->scale, 0), most);
+    const double y = tri_lesser(tri_larger((p.y - tree->low.y) * tree->scale, 0), most);
+    return tri_quadtree_leaf(tree, (uint32_t)x, (uint32_t)y, cell);
 }
 
 static inline double tri_cell_side(const struct tri_quadtree *tree, int depth)

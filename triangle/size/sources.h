@@ -83,4 +83,58 @@ double tri_raster_at(const struct tri_raster *raster, struct tri_point p);
 uint64_t tri_raster_hash(const struct tri_raster *raster, uint64_t hash);
 void tri_raster_clear(struct tri_raster *raster);
 
+/* --- spread.c: what spreads over nodes that are in cells together
+ *
+ * least[v] becomes the least of base[w] + slope * |vw| over all nodes w that can be reached, and from[v] that w; an
+ * infinite base spreads nothing. */
+struct tri_spreading {
+    const struct tri_point *at; /* [n] places of the nodes */
+    int32_t n;
+    const int32_t *cell;        /* [n_cells][corners] nodes */
+    int32_t n_cells, corners;
+};
+
+/* TRI_NO_MEMORY, TRI_STOPPED. */
+enum tri_status tri_spread(const struct tri_spreading *cells, const double *base, double slope, double *least,
+                           int32_t *from, const struct tri_stop *stop, struct tri_error *error);
+
+/* Gives nodes whose length is 0, no data, that of the nearest with data, and limits the slope. False in *has_data:
+ * there are no data at all; lengths that cannot be reached from any stay 0. */
+enum tri_status tri_spread_lengths(const struct tri_spreading *cells, double *length, double gradation, bool *has_data,
+                                   const struct tri_stop *stop, struct tri_error *error);
+
+/* --- sampled.c: a function of the caller, kept in a quadtree: asked for about so many places at most */
+enum { TRI_SAMPLES = 3000000 };
+
+struct tri_sampled {
+    struct tri_quadtree tree; /* leaves are numbered from 0 */
+    double scale;             /* of the values, a power of two */
+    float *value;             /* [n][9] of a leaf, at the corners of its quarters, the lowest row first */
+    int32_t n;
+    bool is_coarse;           /* it varies too much for what is kept of it */
+};
+
+/* Asks the function, by this thread. It says nowhere how long: TRI_BAD_INPUT. Else TRI_NO_MEMORY, TRI_STOPPED. */
+enum tri_status tri_sampled_make(struct tri_sampled *sampled, const struct tri_size_field *field,
+                                 const struct tri_size_frame *frame, struct tri_error *error);
+double tri_sampled_at(const struct tri_sampled *sampled, struct tri_point p);
+uint64_t tri_sampled_hash(const struct tri_sampled *sampled, uint64_t hash);
+void tri_sampled_clear(struct tri_sampled *sampled);
+
+/* --- background.c: values at the vertices of a background mesh */
+struct tri_background {
+    struct tri_point *at; /* [n] vertices */
+    double *length;       /* [n] limited */
+    int32_t *corner;      /* [n_triangles][3] counter-clockwise */
+    int32_t n, n_triangles;
+    struct tri_candidates candidates; /* triangles */
+};
+
+/* The field's numbers are in range. No data: TRI_BAD_INPUT. Else TRI_NO_MEMORY, TRI_STOPPED. */
+enum tri_status tri_background_make(struct tri_background *background, const struct tri_size_field *field,
+                                    const struct tri_size_frame *frame, struct tri_error *error);
+double tri_background_at(const struct tri_background *background, struct tri_point p);
+uint64_t tri_background_hash(const struct tri_background *background, uint64_t hash);
+void tri_background_clear(struct tri_background *background);
+
 #endif

@@ -1,0 +1,161 @@
+/* Lengths at the vertices of a background mesh, linear in its triangles.
+ *
+ * The triangles compete for a place by their distance from it (candidates.h): inside it is 0, outside the nearest
+ * place of the nearest triangle counts. So they may leave gaps, overlap, be flat, and turn either way. The lengths are
+ * limited along the edges (spread.c). */
+#include "triangle/size/sources.h"
+
+#include "triangle/base/hash.h"
+
+/* In cells with a side of this much of h, the nearest triangle may be so much of h too far off. */
+static const double SMALL = 0.5, TOLERANCE = 0.01;
+
+/* The length at the nearest place of an edge, if it is nearer than *nearest2. */
+static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, double *nearest2,
+                     double *length)
+{
+    const struct tri_point a = b->at[from], along = {b->at[to].x - a.x, b->at[to].y - a.y};
+    const double l2 = along.x * along.x + along.y * along.y;
+    const double dot = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
+    const double t = dot > 0 ? tri_lesser(dot / l2, 1) : 0; /* l2 is above 0 then */
+    const double d2 = tri_distance2((struct tri_point){a.x + t * along.x, a.y + t * along.y}, p);
+    if (d2 < *nearest2) {
+        *nearest2 = d2;
+        *length = b->length[from] + t * (b->length[to] - b->length[from]);
+    }
+}
+
+static double twice_area(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+}
+
+/* The length at the place of a triangle that is nearest to p, if it is nearer than *nearest2. */
+static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, double *nearest2,
+                         double *length)
+{
+    const int32_t *v = b->corner + 3 * (size_t)t;
+    const double w0 = twice_area(p, b->at[v[1]], b->at[v[2]]), w1 = twice_area(p, b->at[v[2]], b->at[v[0]]);
+    const double w2 = twice_area(p, b->at[v[0]], b->at[v[1]]), sum = w0 + w1 + w2;
+    if (w0 >= 0 && w1 >= 0 && w2 >= 0 && sum > 0) {
+        *length = (w0 * b->length[v[0]] + w1 * b->length[v[1]] + w2 * b->length[v[2]]) / sum;
+        *nearest2 = 0;
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        ask_edge(b, v[k], v[tri_next[k]], p, nearest2, length);
+}
+
+static double key(const void *user, int32_t triangle, struct tri_point p, double *slope)
+{
+    double nearest2 = HUGE_VAL, length;
+    *slope = 1;
+    ask_triangle(user, triangle, p, &nearest2, &length);
+    return sqrt(nearest2);
+}
+
+static double allowed(const void *user, int32_t winner, struct tri_point centre, double distance, double side)
+{
+    double nearest2 = HUGE_VAL, length = 0;
+    (void)distance;
+    ask_triangle(user, winner, centre, &nearest2, &length);
+    return side <= SMALL * length ? TOLERANCE * length : 0;
+}
+
+/* Leaves out triangles where no data could reach, and turns the others counter-clockwise. */
+static void settle_triangles(struct tri_background *b)
+{
+    int32_t n = 0;
+    for (int32_t t = 0; t < b->n_triangles; t++) {
+        const int32_t *v = b->corner + 3 * (size_t)t;
+        const bool is_turned = twice_area(b->at[v[0]], b->at[v[1]], b->at[v[2]]) < 0;
+        const int32_t turned[3] = {v[0], v[is_turned ? 2 : 1], v[is_turned ? 1 : 2]};
+        if (b->length[v[0]] > 0 && b->length[v[1]] > 0 && b->length[v[2]] > 0)
+            memcpy(b->corner + 3 * (size_t)n++, turned, sizeof turned);
+    }
+    b->n_triangles = n;
+}
+
+static bool take(struct tri_background *b, const struct tri_size_field *f, const struct tri_size_frame *frame)
+{
+    const double unit = frame->mesh->unit;
+    b->n = (int32_t)f->points.n;
+    b->n_triangles = (int32_t)f->triangles.n;
+    b->at = malloc((size_t)b->n * sizeof *b->at);
+    b->length = malloc((size_t)b->n * sizeof *b->length);
+    b->corner = malloc(3 * (size_t)b->n_triangles * sizeof *b->corner);
+    if (!b->at || !b->length || !b->corner)
+        return false;
+    for (int64_t v = 0; v < b->n; v++) {
+        const double *p = f->points.at + v * f->points.stride;
+        b->at[v] = (struct tri_point){p[0] / unit, p[1] / unit};
+        b->length[v] = tri_size_of(frame, f->values.at[v * f->values.stride]);
+    }
+    for (int64_t t = 0; t < b->n_triangles; t++)
+        memcpy(b->corner + 3 * t, f->triangles.at + t * f->triangles.stride, 3 * sizeof *b->corner);
+    return true;
+}
+
+/* The lengths of vertices that no triangle has say nothing. */
+static enum tri_status forget_unused(struct tri_background *b, struct tri_error *error)
+{
+    bool *used = calloc((size_t)b->n, sizeof *used);
+    if (!used)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    for (int64_t k = 0; k < 3 * (int64_t)b->n_triangles; k++)
+        used[b->corner[k]] = true;
+    for (int32_t v = 0; v < b->n; v++)
+        b->length[v] = used[v] ? b->length[v] : 0;
+    free(used);
+    return TRI_OK;
+}
+
+enum tri_status tri_background_make(struct tri_background *background, const struct tri_size_field *field,
+                                    const struct tri_size_frame *frame, struct tri_error *error)
+{
+    struct tri_background *b = background;
+    const struct tri_stop *stop = frame->mesh->stop;
+    const struct tri_contest contest = {key, allowed, b};
+    bool has_data;
+    *b = (struct tri_background){0};
+    enum tri_status status = take(b, field, frame) ? forget_unused(b, error)
+                                                   : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    const struct tri_spreading cells = {b->at, b->n, b->corner, b->n_triangles, 3};
+    if (!status)
+        status = tri_spread_lengths(&cells, b->length, frame->gradation, &has_data, stop, error);
+    if (!status && !has_data)
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value of a triangle is a length");
+    if (!status) {
+        settle_triangles(b);
+        status = tri_candidates_make(&b->candidates, &contest, b->n_triangles, frame->low, frame->high, stop, error);
+    }
+    if (status)
+        tri_background_clear(b);
+    return status;
+}
+
+double tri_background_at(const struct tri_background *b, struct tri_point p)
+{
+    int32_t n;
+    const int32_t *list = tri_candidates_at(&b->candidates, p, &n);
+    double nearest2 = HUGE_VAL, length = HUGE_VAL;
+    for (int32_t i = 0; i < n && nearest2 > 0; i++)
+        ask_triangle(b, list[i], p, &nearest2, &length);
+    return length;
+}
+
+uint64_t tri_background_hash(const struct tri_background *b, uint64_t hash)
+{
+    hash = tri_hash(hash, b->at, (size_t)b->n * sizeof *b->at);
+    hash = tri_hash(hash, b->length, (size_t)b->n * sizeof *b->length);
+    return tri_hash(hash, b->corner, 3 * (size_t)b->n_triangles * sizeof *b->corner);
+}
+
+void tri_background_clear(struct tri_background *b)
+{
+    free(b->at);
+    free(b->length);
+    free(b->corner);
+    tri_candidates_clear(&b->candidates);
+    *b = (struct tri_background){0};
+}
