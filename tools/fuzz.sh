@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the fuzz targets (preset fuzz) and runs each for so many seconds, as many at a time as there are
 # processors; what they find is written to build/fuzz/found.
-# Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read triangulate mesh schedule
+# Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read sizes triangulate mesh schedule
 # Again, with one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
 # PTRIANGLE_FUZZ_IGNORE="area,angle" lets kinds of faults of the mesh pass (see tests/fuzz/fuzz_mesh.c).
 # PTRIANGLE_FUZZ_SEED=N makes runs alike, so that a failure speaks of the change; default: another seed each time.
@@ -10,7 +10,7 @@ set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [ $# -eq 0 ] || shift
-[ $# -gt 0 ] || set -- read triangulate mesh schedule
+[ $# -gt 0 ] || set -- read sizes triangulate mesh schedule
 folder=${PTRIANGLE_BUILD:-build}/fuzz
 
 probe=$(mktemp -d)

@@ -216,8 +216,12 @@ void size_options_name(const struct size_options *options, const char *sentence,
     const char *const end = sentence + strlen(sentence);
     const char *at = strncmp(sentence, "sizes[", 6) == 0 ? tri_scan_integer(sentence + 6, end, &k) : sentence;
     const bool is_source = k >= 0 && k < options->n && *at == ']';
-    const char *given = is_source ? options->source[k].given : "";
-    snprintf(text, SIZE_OPTIONS_TEXT, "%.200s%s", given, is_source ? at + 1 : sentence);
+    const struct size_source *source = is_source ? &options->source[k] : NULL;
+    if (source)
+        snprintf(text, SIZE_OPTIONS_TEXT, "--size%s %.200s%s", source->field.kind == TRI_SIZE_NEAR ? "-near" : "",
+                 source->given, at + 1);
+    else
+        snprintf(text, SIZE_OPTIONS_TEXT, "%s", sentence);
 }
 
 /* --- the fields */
