@@ -28,6 +28,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/mesh/cavity.c
     triangle/mesh/surface.c
     triangle/refine/place.c
+    triangle/refine/front.c
     triangle/refine/petal.c
     triangle/base/size_text.c
     triangle/size/feature_size.c

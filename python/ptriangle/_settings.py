@@ -16,7 +16,7 @@ Size = Union[float, Callable[[float, float], float], SizeFunction]
 Place = Tuple[float, float]
 Unsuitable = Callable[[Place, Place, Place, float], Any]
 Progress = Union[bool, Callable[[float, int], Any]]
-PLACEMENTS = ("lattice", "classic")  # enum tri_placement
+PLACEMENTS = ("lattice", "classic", "front")  # enum tri_placement
 
 
 def number(who: str, name: str, given: Any) -> float:

@@ -336,6 +336,8 @@ static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id
     mesh->on[to] = mesh->on[from];
     mesh->vertex_markers[to] = mesh->vertex_markers[from];
     mesh->feature[to] = mesh->feature[from];
+    if (mesh->has_lengths)
+        mesh->length[to] = mesh->length[from];
     mesh->on[from] = to;
 }
 

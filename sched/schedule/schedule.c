@@ -659,6 +659,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
     enum tri_status status = tri_refine_prepare(mesh, &run.asked.executor, error);
+    status = status ? status : tri_ask_lengths(mesh, quality->lengths, &run.asked.executor, error);
     status = status || can_sweep ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);
     status = check_ranks(&run, status, error);
     if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* else a sweep keeps the bound */

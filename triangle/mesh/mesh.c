@@ -71,6 +71,8 @@ static struct array array_of(const struct tri_mesh *m, enum tri_array which)
     case TRI_MARKERS:
         return (struct array){m->vertex_markers, sizeof *m->vertex_markers, m->n_vertices, m->vertex_capacity};
     case TRI_FEATURE: return (struct array){m->feature, sizeof *m->feature, m->n_vertices, m->vertex_capacity};
+    case TRI_LENGTH:
+        return (struct array){m->length, m->has_lengths ? sizeof *m->length : 0, m->n_vertices, m->vertex_capacity};
     case TRI_ATTRIBUTES: return (struct array){m->attributes, attributes, m->n_vertices, m->vertex_capacity};
     case TRI_TRIANGLES: return (struct array){m->tri, sizeof *m->tri, m->n_triangles, m->triangle_capacity};
     default: return (struct array){m->sub, sizeof *m->sub, m->n_subs, m->sub_capacity};
@@ -84,6 +86,7 @@ static void set_array(struct tri_mesh *m, enum tri_array which, void *at)
     case TRI_ON: m->on = at; break;
     case TRI_MARKERS: m->vertex_markers = at; break;
     case TRI_FEATURE: m->feature = at; break;
+    case TRI_LENGTH: m->length = at; break;
     case TRI_ATTRIBUTES: m->attributes = at; break;
     case TRI_TRIANGLES: m->tri = at; break;
     default: m->sub = at;
@@ -224,7 +227,7 @@ static bool fill_array(struct tri_mesh *to, enum tri_array which, const void *fr
 static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const struct tri_storage *storage)
 {
     bool memory = true;
-    *to = (struct tri_mesh){.n_attributes = from->n_attributes, .storage = storage};
+    *to = (struct tri_mesh){.n_attributes = from->n_attributes, .has_lengths = from->has_lengths, .storage = storage};
     for (enum tri_array which = TRI_XY; memory && which < TRI_ARRAYS; which++) {
         struct array a = array_of(from, which);
         memory = a.capacity == 0 || grow_array(to, which, a.capacity);
@@ -251,6 +254,19 @@ enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *s
     tri_mesh_swap(mesh, &there);
     tri_mesh_drop(&there);
     return TRI_OK;
+}
+
+enum tri_status tri_mesh_have_lengths(struct tri_mesh *mesh, bool has, struct tri_error *error)
+{
+    if (!has && !mesh->storage)
+        free(mesh->length);
+    if (!has)
+        mesh->length = NULL;
+    mesh->has_lengths = has;
+    if (!has || mesh->length || mesh->vertex_capacity == 0 || grow_array(mesh, TRI_LENGTH, mesh->vertex_capacity))
+        return TRI_OK;
+    mesh->has_lengths = false;
+    return no_memory(error, "lengths", mesh->n_vertices);
 }
 
 /* The arrays that one count belongs to. */
@@ -442,10 +458,11 @@ static void bring_share(void *context, size_t share)
 void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const tri_vertex_id *from, int32_t n,
                               void *scratch, const struct tri_executor *executor)
 {
-    void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->feature, mesh->attributes};
+    void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->feature, mesh->length, mesh->attributes};
     const size_t item[] = {sizeof *mesh->xy, sizeof *mesh->on, sizeof *mesh->vertex_markers, sizeof *mesh->feature,
+                           mesh->has_lengths ? sizeof *mesh->length : 0,
                            (size_t)mesh->n_attributes * sizeof *mesh->attributes};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 6; k++) {
         if (n == 0 || item[k] == 0)
             continue;
         struct gathering g = {(char *)array[k] + (size_t)first * item[k], scratch, array[k], item[k], from, n};

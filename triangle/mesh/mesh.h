@@ -88,7 +88,9 @@ struct tri_region {
 };
 
 /* The arrays that grow with refinement. */
-enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
+enum tri_array {
+    TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_LENGTH, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS
+};
 
 /* Where these arrays are, if not in memory from malloc. */
 struct tri_storage {
@@ -126,9 +128,12 @@ struct tri_mesh {
     int32_t *vertex_markers;  /* [n_vertices] */
     double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h):
                                  what each new vertex inherits, and takes along wherever it goes */
+    double *length;           /* [n_vertices] of edges that is asked for there, in the units of the mesh (size/quality.h);
+                                 below 0: of a vertex that was made for a coarser mesh. NULL: lengths are not asked for */
     double *attributes;       /* [n_vertices][n_attributes]; those of new vertices are set last */
     struct tri_surface *surface; /* where they come from (surface.h); NULL: no attributes, or nothing refined yet */
     int32_t n_attributes;
+    bool has_lengths;         /* length is kept */
     int32_t n_vertices, vertex_capacity;
     int32_t n_input;          /* the first n_input vertices are the caller's points, in the caller's order .. */
     int32_t *origin;          /* [n_input] .. unless this is set: the caller's index of each (triangle/cdt/spatial.h) */
@@ -224,6 +229,9 @@ void tri_mesh_drop(struct tri_mesh *mesh);
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
 enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
+
+/* From here on the mesh has `length`, or no longer. What is in it is the caller's to set. */
+enum tri_status tri_mesh_have_lengths(struct tri_mesh *mesh, bool has, struct tri_error *error);
 
 /* Takes over points, attributes and markers of the PSLG as vertices 0 .. n_points - 1, and chooses mesh->unit so that
  * all coordinates lie in the range of the exact predicates; what is smaller than 2^-216 units is rounded to multiples

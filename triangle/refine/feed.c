@@ -36,7 +36,7 @@ static bool encroaches_opposite(const struct tri_refiner *r, const struct tri_tr
     return false;
 }
 
-static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest)
+bool tri_push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     assert(triangle >= 0 && tri_is_live(t));
@@ -48,7 +48,7 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
 {
     struct tri_entry entry = {triangle, r->mesh->tri[triangle].life};
     assert(badness != TRI_GOOD && tri_is_live(&r->mesh->tri[triangle]));
-    return badness == TRI_BAD_ANGLE ? push_angle(r, triangle, shortest)
+    return badness == TRI_BAD_ANGLE ? tri_push_angle(r, triangle, shortest)
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
@@ -77,8 +77,10 @@ static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const 
     const struct tri_relative a = edge[0].a->r, b = edge[1].a->r;
     double area2 = edge->area2, x = a.x - b.x, y = a.y - b.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(a.l, b.l, l))
-        return push_angle(r, triangle, tri_lesser(a.l, tri_lesser(b.l, l)));
+        return tri_push_angle(r, triangle, tri_lesser(a.l, tri_lesser(b.l, l)));
     bool is_bad = area2 > tri_area2_bound(&r->criterion.asked, edge->region);
+    if (r->quality->lengths)
+        is_bad = is_bad || tri_is_too_long(&r->criterion.asked, t->v, a.l, b.l, l, area2);
     if (tri_asks_caller(r->quality))
         is_bad = is_bad || tri_is_unsuitable(&r->criterion.asked, t->v);
     return tri_bad_queue_push_size(&r->queue, (struct tri_entry){triangle, t->life}, is_bad);
@@ -90,6 +92,8 @@ bool tri_feed_fan(struct tri_refiner *r)
     const struct tri_cavity *c = &r->cavity;
     if (r->hooks->urgent)
         return judge_urgent(r);
+    if (r->stage == FRONT_STAGE)
+        return tri_front_feed(r);
     for (int32_t i = 0; i < c->n_edges; i++)
         if (!judge(r, c->tri[i], &c->edge[i]))
             return false;
@@ -99,9 +103,9 @@ bool tri_feed_fan(struct tri_refiner *r)
 /* The fan is whole, even where there is no memory for what waits. */
 bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
 {
-    if (r->hooks->urgent) {
+    if (r->hooks->urgent || r->stage == FRONT_STAGE) {
         tri_cavity_fill(&r->cavity, r->mesh, v);
-        return judge_urgent(r);
+        return tri_feed_fan(r);
     }
     tri_cavity_take(&r->cavity, r->mesh);
     const int32_t n = r->cavity.n_edges;
@@ -117,7 +121,7 @@ bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
 
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
 {
-    assert(s >= 0 && r->quality->conforming);
+    assert(s >= 0);
     if (!tri_grow(&r->encroached, &r->encroached_capacity, r->n_encroached + 1, sizeof *r->encroached))
         return false;
     r->encroached[r->n_encroached++] = s;

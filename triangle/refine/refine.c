@@ -22,6 +22,8 @@
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
+    if (r->stage == FRONT_STAGE)
+        return tri_front_next(r);
     return r->step <= ALL_ANGLES ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
                                  : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
@@ -105,15 +107,16 @@ static bool refine_worklist(struct tri_refiner *r)
 static void begin_stages(struct tri_refiner *r)
 {
     bool easy = !r->hooks->fence && !r->hooks->worklist && tri_sizes_come_first(r->mesh, r->quality, NULL);
-    r->stage = easy ? EASY_STAGE : USUAL_STAGE;
+    const bool front = r->quality->lengths && r->quality->front && !r->hooks->urgent;
+    r->stage = front ? FRONT_STAGE : easy ? EASY_STAGE : USUAL_STAGE;
     r->criterion.bounds = tri_bounds_of(r->quality, easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality));
 }
 
 /* Resumable, as refine_worklist. */
 static bool refine_in_stages(struct tri_refiner *r)
 {
-    for (; r->stage != LAST_STAGE; r->stage++) {
-        if (!refine_worklist(r))
+    for (; r->stage != LAST_STAGE; r->stage = r->stage == USUAL_STAGE ? LAST_STAGE : USUAL_STAGE) {
+        if (r->stage == FRONT_STAGE ? !tri_front_begin(r) || !work_off(r) : !refine_worklist(r))
             return false;
         r->step = NOT_BEGUN;
         r->criterion.bounds = tri_bounds_of(r->quality, tri_worked_angle(r->quality));
@@ -181,6 +184,7 @@ void tri_refiner_free(struct tri_refiner *r)
     tri_fill_free(r);
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
+    tri_front_free(&r->front);
     free(r->encroached);
     free(r);
 }
@@ -191,6 +195,7 @@ enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality 
 {
     struct tri_refiner *refiner = NULL;
     enum tri_status status = tri_refine_prepare(mesh, NULL, error);
+    status = status ? status : tri_ask_lengths(mesh, quality->lengths, NULL, error);
     status = status ? status : tri_refiner_new(&refiner, mesh, quality, hooks, report, error);
     status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);

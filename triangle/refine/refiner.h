@@ -5,12 +5,13 @@
 
 #include "triangle/mesh/cavity.h"
 #include "triangle/refine/bad_queue.h"
+#include "triangle/refine/front.h"
 #include "triangle/refine/refine.h"
 #include "triangle/size/quality.h"
 
-enum tri_bound_stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
+enum tri_bound_stage { FRONT_STAGE, EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
-enum tri_step { NOT_BEGUN, FIRST_PASS, ALL_ANGLES, FILLING, SECOND_PASS };
+enum tri_step { NOT_BEGUN, FIRST_PASS, ALL_ANGLES, FILLING, SECOND_PASS, DIVIDING, ADVANCING };
 
 struct tri_fill;
 struct tri_lattice;
@@ -27,6 +28,7 @@ struct tri_refiner {
     struct tri_bad_queue queue;
     bool lattice;     /* points lie in a lattice where they can */
     struct tri_fill *fill; /* cells of the lattice at work (lattice_fill.c); NULL: none */
+    struct tri_front front; /* what waits in FRONT_STAGE */
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
     enum tri_step step;
     int limit;        /* buckets from here on wait for the second pass */
@@ -35,15 +37,17 @@ struct tri_refiner {
     enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
-    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
+    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only), or to divide (front.c) */
     int32_t n_encroached, encroached_capacity;
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-/* A bad angle counts before a bad size; what is not urgent (tri_refine_hooks) is good. */
+/* A bad angle counts before a bad size, but in FRONT_STAGE not at all; what is not urgent (tri_refine_hooks) is good. */
 static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
                                                  const struct tri_shape *shape)
 {
+    if (r->stage == FRONT_STAGE)
+        return tri_is_too_large(&r->criterion.asked, t, shape) ? TRI_BAD_SIZE : TRI_GOOD;
     enum tri_badness badness = tri_judge(&r->criterion, t, shape);
     bool counts = !r->hooks->urgent || r->hooks->urgent(r->hooks->urgent_user, r->mesh->xy, t->v);
     return counts ? badness : TRI_GOOD;
@@ -67,6 +71,9 @@ enum tri_outcome {
 
 /* --- feed.c. False: no memory. */
 
+/* Queues the triangle, whose shortest edge squared this is, for its angle. */
+bool tri_push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest);
+
 /* Queues the triangle if it is bad, by its size or by its angle. */
 bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes);
 
@@ -80,6 +87,20 @@ bool tri_feed_fan(struct tri_refiner *r);
 bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
 bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
 bool tri_feed_walls(struct tri_refiner *r);
+
+/* --- front.c */
+
+/* Makes ready what the stage works off. Resumable: false means that something failed, or that there was no room. */
+bool tri_front_begin(struct tri_refiner *r);
+
+/* Takes the next triangle into the hand; false: none waits. */
+bool tri_front_next(struct tri_refiner *r);
+
+/* Queues what is too large, or on the front, among the new triangles and beside them. False: no memory. */
+bool tri_front_feed(struct tri_refiner *r);
+
+/* The point of a triangle that is too large. */
+struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* --- lattice_fill.c */
 
@@ -106,6 +127,9 @@ enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2]
  * too near to it, or the fence. */
 enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p,
                                        const struct tri_lattice *lattice);
+
+/* Splits a subsegment there, and tells nobody where that cannot be. */
+enum tri_outcome tri_divide_at(struct tri_refiner *r, tri_sub_id s, double fraction);
 
 /* Treats one bad triangle until it is gone, given up or deferred. FAILED: it is as it was. */
 enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry);

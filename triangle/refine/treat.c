@@ -57,6 +57,8 @@ tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t 
     m->xy[v] = p;
     m->on[v] = on;
     m->vertex_markers[v] = marker;
+    if (m->has_lengths)
+        m->length[v] = tri_lengths_at(r->quality->lengths, p) * (tri_area_scale(r->quality) > 1 ? -1 : 1);
     return v;
 }
 
@@ -82,6 +84,15 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
     tell_changes(r);
     r->report->inserted_free++;
     return room && tri_feed_walls(r) ? DONE : FAILED;
+}
+
+static bool at_limit(struct tri_refiner *r)
+{
+    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
+    assert(r->quality->max_steiner < 0 || inserted <= r->quality->max_steiner);
+    if (r->quality->max_steiner < 0 || inserted < r->quality->max_steiner)
+        return false;
+    return r->report->hit_limit = true;
 }
 
 /* TRI_NONE: a point that stands for no triangle. */
@@ -211,6 +222,12 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     if (room && r->quality->conforming)
         room = tri_feed_subsegment(r, s) && tri_feed_subsegment(r, second);
     return room ? DONE : FAILED;
+}
+
+enum tri_outcome tri_divide_at(struct tri_refiner *r, tri_sub_id s, double fraction)
+{
+    r->sized = true;
+    return at_limit(r) ? REFUSED : split_at(r, s, (struct tri_disk_split){fraction, TRI_NONE}, TRI_NONE);
 }
 
 static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
@@ -359,7 +376,8 @@ static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle,
     if (outcome == REFUSED && badness == TRI_BAD_ANGLE && !r->sized && !r->hooks->urgent)
         outcome = find_best(r, triangle, shape, &p);
     if (outcome == REFUSED) {
-        p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+        p = r->stage == FRONT_STAGE ? tri_front_place(r, triangle, shape)
+                                    : tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
         outcome = find_cavity(r, triangle, p);
     }
     return outcome == DONE ? insert_or_split(r, p, triangle, shape, most, triangle) : outcome;
@@ -397,15 +415,6 @@ static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id tr
         return refuse(r, TRI_EXCUSE_PROTECTED);
     outcome = find_cavity(r, triangle, p);
     return outcome == DONE ? insert_free(r, p, triangle, shape, HUGE_VAL) : outcome;
-}
-
-static bool at_limit(struct tri_refiner *r)
-{
-    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
-    assert(r->quality->max_steiner < 0 || inserted <= r->quality->max_steiner);
-    if (r->quality->max_steiner < 0 || inserted < r->quality->max_steiner)
-        return false;
-    return r->report->hit_limit = true;
 }
 
 /* Somebody asks for the end: between two points the mesh is in order. */

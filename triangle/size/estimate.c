@@ -95,7 +95,7 @@ static double asked_in(const struct estimator *e, tri_region_id region, const st
 {
     const double mean = tri_mean_over_bound(e->asked.quality);
     double work = tri_area_of(p[0], p[1], p[2]) * 2 / (mean * tri_area2_bound(&e->asked, region));
-    if (tri_asks_caller(e->asked.quality))
+    if (tri_sizes_vary(e->asked.quality))
         work = fmax(work, wished_in(e, p));
     return work < MOST_WORK ? work : MOST_WORK;
 }
@@ -130,9 +130,9 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
     struct estimator e = {.asked = tri_asked_of(mesh, quality), .crowd = tri_crowd_for(mesh, quality),
                           .budget = budget, .large = HUGE_VAL};
     double all = 0;
-    for (tri_triangle_id t = 0; tri_asks_caller(quality) && t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; tri_sizes_vary(quality) && t < mesh->n_triangles; t++)
         all += tri_is_live(&mesh->tri[t]) ? 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2 : 0;
-    if (tri_asks_caller(quality))
+    if (tri_sizes_vary(quality))
         e.large = all / TRI_WISH_PIECES;
     return e;
 }
@@ -243,7 +243,7 @@ bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality 
                           const struct tri_executor *executor)
 {
     double ignored = 0;
-    if (!may_come_first(quality) || tri_asks_caller(quality))
+    if (!may_come_first(quality) || tri_sizes_vary(quality))
         return may_come_first(quality);
     const struct estimator e = estimator_for(mesh, quality, NULL);
     return outweighs_angles(&e, sum_of(asked_works(&e), executor, &ignored), executor);
@@ -253,7 +253,7 @@ bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality 
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
-    const bool asks = tri_asks_caller(quality);
+    const bool asks = tri_sizes_vary(quality);
     struct budget budget = budget_for(mesh, MOST_ASKED);
     struct estimator e = estimator_for(mesh, quality, &budget);
     double urgent = 0, ignored = 0, again = 0;
@@ -293,7 +293,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_q
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "the %s ask for at least %s triangles, and a mesh holds %s",
-                    quality->edge_length ? "sizes" : "area bounds",
+                    quality->edge_length || quality->lengths ? "sizes" : "area bounds",
                     tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
@@ -314,7 +314,7 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
     for (int i = 0; i < 4; i++) {
         struct tri_point piece[3];
         quarter(p, i, piece);
-        const bool asks = tri_asks_caller(e->asked.quality) && e->budget->left > 0;
+        const bool asks = tri_sizes_vary(e->asked.quality) && e->budget->left > 0;
         double inside = asks ? asked_in(e, region, piece) : work / 4;
         if (!sample_triangle(to, e, region, piece, inside, grain, depth - 1))
             return false;

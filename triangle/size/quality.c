@@ -17,7 +17,7 @@ double tri_worked_angle(const struct tri_quality *quality)
 
 bool tri_wants_lattice(const struct tri_quality *quality)
 {
-    return quality->lattice && tri_has_sizes(quality) && !tri_asks_caller(quality) &&
+    return quality->lattice && tri_has_sizes(quality) && !tri_sizes_vary(quality) &&
            tri_worked_angle(quality) <= TRI_LATTICE_ANGLE;
 }
 
@@ -79,7 +79,7 @@ static double to_area2(const struct tri_asked *a, double bound)
 
 struct tri_asked tri_asked_of(const struct tri_mesh *mesh, const struct tri_quality *quality)
 {
-    struct tri_asked a = {.mesh = mesh, .quality = quality, .area2 = HUGE_VAL};
+    struct tri_asked a = {mesh, quality, HUGE_VAL, sqrt(tri_area_scale(quality))};
     if (quality->max_area > 0)
         a.area2 = to_area2(&a, quality->max_area);
     return a;
@@ -140,6 +140,8 @@ bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3])
 bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     return shape->area2 > tri_area2_bound(asked, t->region) ||
+           (asked->quality->lengths &&
+            tri_is_too_long(asked, t->v, shape->l[0], shape->l[1], shape->l[2], shape->area2)) ||
            (tri_asks_caller(asked->quality) && tri_is_unsuitable(asked, t->v));
 }
 
@@ -157,15 +159,40 @@ static double probe(const struct tri_asked *asked, const struct tri_point triang
 double tri_asked_length(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at)
 {
     const struct tri_quality *quality = asked->quality;
-    const double coarser = sqrt(tri_area_scale(quality)), unit = asked->mesh->unit;
+    const double unit = asked->mesh->unit;
     double length = ANY_LENGTH;
+    if (quality->lengths)
+        length = tri_lesser(length, tri_lengths_at(quality->lengths, at) / sqrt(TRI_MEAN_OVER_BOUND));
     if (quality->edge_length) {
         const double p[2] = {at.x * unit, at.y * unit}, here = quality->edge_length(quality->edge_length_user, p);
         length = here > 0 ? tri_lesser(length, here / unit) : length;
     }
     if (quality->unsuitable)
         length = tri_lesser(length, probe(asked, triangle, at));
-    return length < ANY_LENGTH ? coarser * length : length;
+    return length < ANY_LENGTH ? asked->coarser * length : length;
+}
+
+struct asking {
+    const struct tri_mesh *mesh;
+    const struct tri_lengths *lengths;
+};
+
+static void ask_share(void *context, size_t share)
+{
+    const struct asking *asking = context;
+    const struct tri_range range = tri_share(share, asking->mesh->n_vertices);
+    for (tri_vertex_id v = range.first; v < range.last; v++)
+        asking->mesh->length[v] = tri_lengths_at(asking->lengths, asking->mesh->xy[v]);
+}
+
+enum tri_status tri_ask_lengths(struct tri_mesh *mesh, const struct tri_lengths *lengths,
+                                const struct tri_executor *executor, struct tri_error *error)
+{
+    struct asking asking = {mesh, lengths};
+    enum tri_status status = tri_mesh_have_lengths(mesh, lengths, error);
+    if (!status && lengths)
+        tri_execute(executor, tri_shares(mesh->n_vertices), ask_share, &asking);
+    return status;
 }
 
 /* --- judging triangles */

@@ -10,6 +10,7 @@
 #include "triangle/geometry/shape.h"
 #include "triangle/mesh/mesh.h"
 #include "triangle/size/lengths.h"
+#include "triangle/tunables.h"
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule/schedule.h). */
@@ -26,7 +27,8 @@ struct tri_quality {
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
                                      its corners and centroid */
     void *edge_length_user;
-    const struct tri_lengths *lengths; /* edges shall be so long (lengths.h); borrowed; NULL: nothing is asked for */
+    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: nothing is asked for */
+    bool front;            /* points for lengths are placed over a front (front.h) */
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
     double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
@@ -61,10 +63,16 @@ double tri_worked_angle(const struct tri_quality *quality);
 enum { TRI_ANGLE_NOTE = 160 };
 bool tri_note_lowered_angle(const struct tri_quality *quality, char note[TRI_ANGLE_NOTE]);
 
+/* Do sizes depend on the place by functions, of the caller or frozen ones? */
+static inline bool tri_sizes_vary(const struct tri_quality *quality)
+{
+    return quality->lengths || tri_asks_caller(quality);
+}
+
 /* Is there any bound on sizes? */
 static inline bool tri_has_sizes(const struct tri_quality *quality)
 {
-    return quality->max_area > 0 || quality->region_areas || tri_asks_caller(quality);
+    return quality->max_area > 0 || quality->region_areas || tri_sizes_vary(quality);
 }
 
 static inline double tri_area_scale(const struct tri_quality *quality)
@@ -95,6 +103,7 @@ struct tri_asked {
     const struct tri_mesh *mesh;
     const struct tri_quality *quality;
     double area2; /* twice the bound for all areas, in the mesh's units; infinity: none */
+    double coarser; /* lengths count so many times: more than once on behalf of a coarser mesh */
 };
 
 struct tri_asked tri_asked_of(const struct tri_mesh *mesh, const struct tri_quality *quality);
@@ -119,10 +128,43 @@ bool tri_is_unsuitable(const struct tri_asked *asked, const tri_vertex_id v[3]);
 /* The longest edge that the caller's functions accept about a place in a triangle, in the mesh's units, at
  * quality->area_scale. The size test is asked about the triangle shrunk about the place, from the whole down to a
  * 65,536th of its lengths; an edge is that of an equilateral triangle of the same area, to a factor of 1.5. A test that
- * accepts the first, or refuses all, asks for nothing: 1e100. */
+ * accepts the first, or refuses all, asks for nothing: 1e100. Edges that lengths ask for are met on the average: they
+ * count as the longer ones that would be accepted where triangles of such a mean area are made. */
 double tri_asked_length(const struct tri_asked *asked, const struct tri_point triangle[3], struct tri_point at);
 
-/* Does the triangle break a bound on areas, or do the caller's functions refuse it? */
+/* --- lengths: h is asked for once for each vertex, and kept in mesh->length
+ *
+ * For all vertices that there are; refinement does it for those that it makes. Without lengths the mesh has none from
+ * here on. O(vertices). */
+enum tri_status tri_ask_lengths(struct tri_mesh *mesh, const struct tri_lengths *lengths,
+                                const struct tri_executor *executor, struct tri_error *error);
+
+/* h at a place, and at a vertex. */
+static inline double tri_wanted_at(const struct tri_asked *asked, struct tri_point p)
+{
+    return tri_lengths_at(asked->quality->lengths, p) * asked->coarser;
+}
+
+static inline double tri_wanted_of(const struct tri_asked *asked, tri_vertex_id v)
+{
+    return fabs(asked->mesh->length[v]) * asked->coarser;
+}
+
+/* Is a triangle of these corners, squared edges and twice this area too large for the lengths? It is if its circumradius
+ * is above TRI_FRONT_ACCEPT of the mean h of its corners. A thin one has a large circumcircle at any size: that is the
+ * angle's affair, and of lengths only its longest edge counts. */
+static inline bool tri_is_too_long(const struct tri_asked *asked, const tri_vertex_id v[3], double a, double b, double c,
+                                   double area2)
+{
+    const double h = (tri_wanted_of(asked, v[0]) + tri_wanted_of(asked, v[1]) + tri_wanted_of(asked, v[2])) / 3;
+    const double most = 2 * TRI_FRONT_ACCEPT * h * area2, longest = TRI_FRONT_LONGEST * h;
+    if (a * b * c <= most * most)
+        return false;
+    return area2 * area2 >= TRI_FRONT_THIN * tri_longer_product(a, b, c) ||
+           tri_larger(a, tri_larger(b, c)) > longest * longest;
+}
+
+/* Does the triangle break a bound on areas or lengths, or do the caller's functions refuse it? */
 bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *t, const struct tri_shape *shape);
 
 /* --- which triangles are bad: the criterion that the refinement loop works for, and its census counts */

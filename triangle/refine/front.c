@@ -1,0 +1,272 @@
+/* A stage before the usual one: segments are divided, then all that is too large for the lengths is worked off.
+ *
+ * Segments are divided into equal parts of the integral of ds / h, in halves of a whole number of parts, or by shells
+ * beside an acute vertex (split.h). In a block of a schedule, free vertices of the coarser mesh go then, if their star
+ * lies in the fence: they stand where nobody wants them now. */
+#include "triangle/refine/refiner.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/base/grow.h"
+#include "triangle/geometry/predicates.h"
+#include "triangle/refine/split.h"
+#include "triangle/tunables.h"
+
+void tri_front_free(struct tri_front *front)
+{
+    free(front->on.item);
+    free(front->off.item);
+    free(front->large);
+}
+
+/* --- what waits */
+
+static bool is_large(const struct tri_refiner *r, tri_triangle_id triangle)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    const struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+    return tri_is_too_large(&r->criterion.asked, t, &shape);
+}
+
+static bool push(struct tri_refiner *r, struct tri_front_stack *to, tri_triangle_id t)
+{
+    if (!tri_grow(&to->item, &to->capacity, to->n + 1, sizeof *to->item))
+        return false;
+    to->item[to->n++] = (struct tri_entry){t, r->mesh->tri[t].life};
+    return true;
+}
+
+/* Is the new triangle on an edge of the cavity too large? If it is not, it may be bad for its angle, and waits for the
+ * usual stage; *room: false if there is no memory. */
+static bool judge(struct tri_refiner *r, int32_t i, bool *room)
+{
+    const struct tri_cavity_edge *edge = &r->cavity.edge[i];
+    const struct tri_relative a = edge[0].a->r, b = edge[1].a->r;
+    const tri_triangle_id id = r->cavity.tri[i];
+    const struct tri_triangle *t = &r->mesh->tri[id];
+    const double x = a.x - b.x, y = a.y - b.y, l = x * x + y * y, area2 = edge->area2;
+    const struct tri_asked *asked = &r->criterion.asked;
+    if (tri_is_too_long(asked, t->v, a.l, b.l, l, area2) || area2 > tri_area2_bound(asked, edge->region) ||
+        (tri_asks_caller(r->quality) && tri_is_unsuitable(asked, t->v)))
+        return true;
+    if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(a.l, b.l, l))
+        *room = tri_push_angle(r, id, tri_lesser(a.l, tri_lesser(b.l, l))) && *room;
+    return false;
+}
+
+/* What is too large waits, and so does what has come to lie on the front beside new triangles. */
+bool tri_front_feed(struct tri_refiner *r)
+{
+    const struct tri_cavity *c = &r->cavity;
+    struct tri_front *f = &r->front;
+    const int32_t n = c->n_edges;
+    bool room = tri_grow(&f->large, &f->capacity, n, sizeof *f->large);
+    for (int32_t i = 0; room && i < n; i++)
+        f->large[i] = judge(r, i, &room);
+    for (int32_t i = 0; room && i < n; i++) {
+        const struct tri_triangle *t = &r->mesh->tri[c->tri[i]];
+        const tri_link outer = c->edge[i].outer;
+        const bool between = f->large[i > 0 ? i - 1 : n - 1] && f->large[i + 1 < n ? i + 1 : 0] && t->n[1] >= 0 &&
+                             t->n[2] >= 0;
+        if (f->large[i])
+            room = push(r, between && outer >= 0 && is_large(r, tri_of(outer)) ? &f->off : &f->on, c->tri[i]);
+        else if (outer >= 0 && is_large(r, tri_of(outer)))
+            room = push(r, &f->on, tri_of(outer));
+    }
+    return room;
+}
+
+bool tri_front_next(struct tri_refiner *r)
+{
+    struct tri_front_stack *from = r->front.on.n > 0 ? &r->front.on : &r->front.off;
+    if (from->n == 0)
+        return false;
+    r->hand = from->item[--from->n];
+    return true;
+}
+
+/* --- places */
+
+/* The edge of the front on which the triangle shall stand, the one whose length is nearest to what is asked for; none:
+ * -1. h: at the corners. */
+static int best_edge(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
+                     const double h[3])
+{
+    double least = HUGE_VAL;
+    int best = -1;
+    for (int e = 0; e < 3; e++) {
+        const double mean = 0.5 * (h[tri_next[e]] + h[tri_prev[e]]), ratio = shape->l[e] / (mean * mean);
+        const double off = ratio > 1 ? ratio : 1 / ratio;
+        if (off < least && (t->n[e] < 0 || !is_large(r, tri_of(t->n[e])))) {
+            least = off;
+            best = e;
+        }
+    }
+    return best;
+}
+
+/* A triangle with its circumcentre, as seen from the first end a of its edge ab. */
+struct stand {
+    struct tri_point a;
+    double x, y;       /* from a to b, of length 1 */
+    double length;
+    double cx, cy;     /* from a to the circumcentre, along the edge and across */
+    double ha, hb;     /* what is asked for at either end */
+};
+
+static struct stand stand_on(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
+                             int e, const double h[3])
+{
+    const struct tri_point a = r->mesh->xy[t->v[tri_next[e]]], b = r->mesh->xy[t->v[tri_prev[e]]],
+                           c = r->mesh->xy[t->v[e]];
+    const double length = sqrt(shape->l[e]), x = (b.x - a.x) / length, y = (b.y - a.y) / length;
+    const double along = (c.x - a.x) * x + (c.y - a.y) * y, up = shape->area2 / length;
+    const double cy = 0.5 * (up + along * (along - length) / up);
+    return (struct stand){a, x, y, length, 0.5 * length, cy, h[tri_next[e]], h[tri_prev[e]]};
+}
+
+static struct tri_point point_at(const struct stand *s, double along, double up)
+{
+    return (struct tri_point){s->a.x + along * s->x - up * s->y, s->a.y + along * s->y + up * s->x};
+}
+
+/* The apex with legs of the mean of h at either end of the edge and h at the apex itself, which is found in three
+ * steps. False: it does not lie well below the circumcentre. */
+static bool find_apex(const struct tri_refiner *r, const struct stand *s, double *along, double *up)
+{
+    const double mean = 0.5 * (s->ha + s->hb);
+    double leg = mean;
+    for (int step = 0; step < 3; step++) {
+        const double a = leg + 0.5 * (s->ha - mean), b = leg + 0.5 * (s->hb - mean);
+        const double least = 0.25 * leg * leg, up2 = leg * leg - 0.25 * s->length * s->length;
+        *along = 0.5 * s->length + 0.5 * (a * a - b * b) / s->length;
+        *up = sqrt(tri_larger(up2, least));
+        if (*up * TRI_FRONT_CUSHION >= s->cy)
+            return false;
+        leg = 0.5 * (mean + tri_wanted_at(&r->criterion.asked, point_at(s, *along, *up)));
+    }
+    const double radius = sqrt(s->cx * s->cx + s->cy * s->cy), x = *along - s->cx, y = *up - s->cy;
+    return radius - sqrt(x * x + y * y) >= TRI_FRONT_APART * mean;
+}
+
+struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    double h[3], along, up;
+    for (int k = 0; k < 3; k++)
+        h[k] = tri_wanted_of(&r->criterion.asked, t->v[k]);
+    const int e = best_edge(r, t, shape, h);
+    const struct stand s = stand_on(r, t, shape, e >= 0 ? e : shape->shortest, h);
+    const bool is_apex = find_apex(r, &s, &along, &up);
+    const struct tri_point p = is_apex ? point_at(&s, along, up) : point_at(&s, s.cx, s.cy);
+    return (struct tri_point){tri_round_coordinate(p.x), tri_round_coordinate(p.y)};
+}
+
+/* --- segments */
+
+/* Walks along a subsegment until the integral of ds / h is `count`; returns how far it got, and where, as a fraction of
+ * the whole. By so many steps at most: a longer one is halved before. */
+static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, double count, double *fraction)
+{
+    enum { MOST_STEPS = 1 << 16 };
+    const struct tri_point a = r->mesh->xy[s->v[0]], b = r->mesh->xy[s->v[1]];
+    const double length = sqrt(tri_distance2(a, b));
+    double at = 0, sum = 0;
+    for (int i = 0; i < MOST_STEPS && at < length; i++) {
+        const double step = tri_lesser(0.25 * tri_wanted_at(&r->criterion.asked, tri_point_between(a, b, at / length)),
+                                       length - at);
+        const double h = tri_wanted_at(&r->criterion.asked, tri_point_between(a, b, (at + 0.5 * step) / length));
+        if (sum + step / h >= count) {
+            *fraction = (at + (count - sum) * h) / length;
+            return count;
+        }
+        sum += step / h;
+        at += step;
+    }
+    *fraction = at < length ? 0.5 : 1;
+    return sum;
+}
+
+/* Where the subsegment is to be divided; false: it is short enough. */
+static bool find_division(const struct tri_refiner *r, const struct tri_subsegment *s, double *fraction)
+{
+    const double all = walk(r, s, HUGE_VAL, fraction);
+    const int parts = (int)(all + 0.5);
+    if (parts < 2 || tri_is_protected(r->quality, s))
+        return false;
+    if (r->mesh->on[s->v[0]] == TRI_VERTEX_ACUTE || r->mesh->on[s->v[1]] == TRI_VERTEX_ACUTE)
+        *fraction = tri_split_fraction(r->mesh, s);
+    else if (*fraction == 1)
+        walk(r, s, all * (parts / 2) / parts, fraction);
+    return *fraction > 0.01 && *fraction < 0.99;
+}
+
+/* Divides the subsegments that wait, and their parts. */
+static bool divide(struct tri_refiner *r)
+{
+    while (r->n_encroached > 0) {
+        if (tri_refiner_must_stop(r))
+            return false;
+        const tri_sub_id s = r->encroached[r->n_encroached - 1];
+        const tri_sub_id second = r->mesh->n_subs;
+        double fraction;
+        if (!find_division(r, &r->mesh->sub[s], &fraction)) {
+            r->n_encroached--;
+            continue;
+        }
+        const enum tri_outcome outcome = tri_divide_at(r, s, fraction);
+        if (outcome == FAILED)
+            return false;
+        r->n_encroached -= outcome != DONE;
+        if (outcome == DONE && !tri_feed_subsegment(r, second))
+            return false;
+    }
+    return true;
+}
+
+static bool divide_all(struct tri_refiner *r)
+{
+    for (; divide(r); r->next_listed++) {
+        if (r->next_listed == r->n_worklist)
+            return true;
+        if (!tri_feed_beside(r, tri_listed(r, r->next_listed)))
+            return false;
+    }
+    return false;
+}
+
+/* --- the stage */
+
+/* Of the worklist, what is too large. */
+static bool take_all(struct tri_refiner *r)
+{
+    for (int32_t i = r->n_worklist - 1; i >= 0; i--) {
+        const tri_triangle_id id = tri_listed(r, i);
+        const struct tri_triangle *t = &r->mesh->tri[id];
+        if (!tri_is_live(t) || !is_large(r, id))
+            continue;
+        bool is_on = false;
+        for (int e = 0; e < 3; e++)
+            is_on = is_on || t->n[e] < 0 || !is_large(r, tri_of(t->n[e]));
+        if (!push(r, is_on ? &r->front.on : &r->front.off, id))
+            return false;
+    }
+    return true;
+}
+
+bool tri_front_begin(struct tri_refiner *r)
+{
+    if (r->step == NOT_BEGUN) {
+        r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+        r->next_listed = 0;
+        r->step = DIVIDING;
+    }
+    if (r->step == ADVANCING)
+        return true;
+    if (!r->quality->conforming && !divide_all(r))
+        return false;
+    r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+    r->step = ADVANCING;
+    return take_all(r);
+}
