@@ -52,8 +52,9 @@ static void test_values(void **state)
     assert_true(take(&t, "--gradation", "inf") && t.options.gradation == HUGE_VAL);
     assert_true(take(&t, "--min-size", "3") && t.options.min_size == 3);
     assert_true(take(&t, "--max-size", "30") && t.options.max_size == 30);
-    assert_true(take(&t, "--placement", "classic") && t.switches.classic);
-    assert_true(take(&t, "--placement=lattice", NULL) && !t.switches.classic);
+    assert_true(take(&t, "--placement", "classic") && t.switches.placement == TRI_PLACEMENT_CLASSIC);
+    assert_true(take(&t, "--placement=front", NULL) && t.switches.placement == TRI_PLACEMENT_FRONT);
+    assert_true(take(&t, "--placement=lattice", NULL) && t.switches.placement == TRI_PLACEMENT_LATTICE);
     assert_false(take(&t, "--sizes", "3") || take(&t, "--siz", "3") || take(&t, "-size", "3"));
     char text[SIZE_OPTIONS_TEXT];
     size_options_print(&t.options, text);

@@ -187,7 +187,7 @@ static void test_options(void **state)
     assert_true(o.quality.min_angle == 28.6 && o.quality.max_area == 0.5 && o.quality.region_areas);
     assert_true(o.quality.conforming && o.quality.protect == 1 && o.quality.max_steiner == 7);
     assert_true(o.quality.lattice);
-    s.classic = true;
+    s.placement = TRI_PLACEMENT_CLASSIC;
     assert_false(tri_switches_options(&s).quality.lattice);
     s = parsed("A"); /* regions belong to segments */
     assert_false(tri_switches_options(&s).spread_regions);

@@ -549,7 +549,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     help_usage(PROGRAM);
     puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
          "  --numbering curve|blocks"
-         "  --placement lattice|classic\n"
+         "  --placement lattice|front|classic\n"
          "  --size H|FILE  --size-near MARKER:H[,GROWTH]  --gradation G  --min-size H  --max-size H\n"
          "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
          "  --help");

@@ -24,7 +24,7 @@ static const struct kind {
     {"gradation", GRADATION, "not a number above 0, or inf"},
     {"min-size", MIN_SIZE, "not a length above 0"},
     {"max-size", MAX_SIZE, "not a length above 0"},
-    {"placement", PLACEMENT, "neither lattice nor classic"},
+    {"placement", PLACEMENT, "neither front, lattice nor classic"},
 };
 
 static const struct kind *find_kind(const char *word)
@@ -106,8 +106,14 @@ static bool take_source(struct size_options *options, enum id id, const char *te
 
 static bool take_placement(struct tri_switches *switches, const char *text)
 {
-    switches->classic = strcmp(text, "classic") == 0;
-    return switches->classic || strcmp(text, "lattice") == 0;
+    static const char *const names[] = {[TRI_PLACEMENT_LATTICE] = "lattice", [TRI_PLACEMENT_CLASSIC] = "classic",
+                                        [TRI_PLACEMENT_FRONT] = "front"};
+    for (int k = 0; k < (int)(sizeof names / sizeof *names); k++)
+        if (strcmp(text, names[k]) == 0) {
+            switches->placement = (enum tri_placement)k;
+            return true;
+        }
+    return false;
 }
 
 static bool take_value(struct size_options *options, struct tri_switches *switches, enum id id, const char *text)

@@ -24,7 +24,7 @@ done
 for words in "--placement hexagons" --placement=hexagons --placement= "--placement Classic"; do
     # shellcheck disable=SC2086 # one word or two
     run 1 -pq30 letter $words
-    complains '^triangle: --placement: "[A-Za-z]*" is neither lattice nor classic$'
+    complains '^triangle: --placement: "[A-Za-z]*" is neither front, lattice nor classic$'
     check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
 done
 run 1 -pq30 letter --placement

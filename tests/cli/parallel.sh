@@ -98,7 +98,7 @@ done
 for words in "--placement hexagons" --placement=; do
     # shellcheck disable=SC2086 # one word or two
     program 1 -pq30 letter $words
-    complains '^ptriangle: --placement: "[a-z]*" is neither lattice nor classic$'
+    complains '^ptriangle: --placement: "[a-z]*" is neither front, lattice nor classic$'
     check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
 done
 program 1 --output= letter

@@ -166,6 +166,15 @@ program 0 -p letter --size 0.05 --dry-run
 told=$(awk '/^  Triangles:/ { gsub(/[^0-9.]/, "", $2); print $2 * ($3 == "thousand" ? 1e3 : 1) }' .out)
 echo "$told $made" | awk '{ exit !($1 > 0.7 * $2 && $1 < 1.4 * $2) }' || fault "$told triangles are estimated, $made made"
 
+grep -q '"placement": "lattice"' report.json || grep -q '"placement": "front"' report.json || fault "which placement?"
+program 0 -p letter --size-near 1:0.05 --report report.json
+check "the report says so" grep -q '"placement": "front"' report.json
+check "the report says so" grep -q '"marker": 1' report.json
+front=$(triangles letter.1)
+program 0 -p letter --size-near 1:0.05 --report report.json --placement classic
+check "the report says so" grep -q '"placement": "classic"' report.json
+[ "$(triangles letter.1)" -ne "$front" ] || fault "classic makes the mesh of the front"
+
 # --- threads make no difference; nor do blocks that are swept
 fields
 for words in "--size 0.1" "--size raster.asc --size-near 1:0.05,0.3 --max-size 0.4"; do

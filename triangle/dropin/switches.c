@@ -236,7 +236,8 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     options.quality.min_angle = s->angle && s->min_angle < 180 ? s->min_angle : 0;
     options.quality.max_area = s->area ? s->max_area : 0;
     options.quality.region_areas = (s->segments || s->mesh) && s->area_lists;
-    options.quality.lattice = !s->mesh && !s->classic;
+    options.quality.lattice = !s->mesh && s->placement == TRI_PLACEMENT_LATTICE;
+    options.quality.front = s->placement != TRI_PLACEMENT_CLASSIC;
     options.quality.conforming = s->conforming;
     options.quality.protect = s->protect;
     options.quality.max_steiner = s->max_steiner;
