@@ -19,9 +19,9 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
     const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, tri_asks_caller(q),
                               q->lattice};
+    const uint64_t lengths[] = {q->lengths ? tri_lengths_hash(q->lengths) : 0, q->front};
     hash = tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
-    const uint64_t lengths = q->lengths ? tri_lengths_hash(q->lengths) : 0;
-    return q->lengths ? tri_hash(hash, &lengths, sizeof lengths) : hash;
+    return q->lengths ? tri_hash(hash, lengths, sizeof lengths) : hash;
 }
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
@@ -152,6 +152,8 @@ static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
     par_carry(f, m->on, v * sizeof *m->on);
     par_carry(f, m->vertex_markers, v * sizeof *m->vertex_markers);
     par_carry(f, m->feature, v * sizeof *m->feature);
+    if (m->has_lengths)
+        par_carry(f, m->length, v * sizeof *m->length);
     par_carry(f, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
     par_carry(f, m->sub, (size_t)m->n_subs * sizeof *m->sub);
 }

@@ -498,7 +498,7 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
             if (word[w] >> bit & 1) {
                 assert(64 * w + bit >= r->n_common); /* these all ranks keep */
                 mesh->on[64 * w + bit] = TRI_VERTEX_NONE;
-                memory = par_release(r->run, PAR_VERTICES, 64 * w + bit);
+                memory = par_room_release(&r->run->spare, PAR_VERTICES, 64 * w + bit);
             }
     return memory;
 }
@@ -525,7 +525,7 @@ static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word
             memory = leave_sub(r->run, ~triangle->n[k], tri_code(t, k));
     }
     triangle->v[0] = TRI_NONE;
-    return memory && par_release(r->run, PAR_TRIANGLES, t);
+    return memory && par_room_release(&r->run->spare, PAR_TRIANGLES, t);
 }
 
 /* A triangle that stays beside one that has gone shares an edge without an own end with it: it is a straddler. */
@@ -578,13 +578,30 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
     return memory;
 }
 
+/* Keeps the live ones first; returns how many: the others were erased. */
+static int32_t sort_erased(const struct tri_mesh *mesh, struct par_ids *changed)
+{
+    int32_t n = 0;
+    for (int32_t i = 0; i < changed->n; i++) {
+        const tri_triangle_id t = changed->item[i];
+        changed->item[i] = changed->item[n];
+        changed->item[n] = t;
+        n += tri_is_live(&mesh->tri[t]);
+    }
+    return n;
+}
+
 enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
     struct par_triangle_set set;
     bool memory = par_triangle_set_of(&set, changed, r->run->mesh->n_triangles);
     if (memory)
         list_set(changed, &set, r->run->mesh->n_triangles);
+    const int32_t all = changed->n;
+    changed->n = sort_erased(r->run->mesh, changed);
     memory = memory && give_all(r, changed, &set) && drop_all(r, changed, &set);
+    for (int32_t i = changed->n; memory && i < all; i++)
+        memory = par_room_release(&r->run->spare, PAR_TRIANGLES, changed->item[i]);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }

@@ -48,6 +48,17 @@ static int64_t count_triangles(const struct handing *h)
     return n;
 }
 
+/* Whoever erased a vertex of the coarse mesh told only of triangles: where none has it, it is no more. */
+static void find_erased(struct tri_mesh *mesh)
+{
+    for (tri_triangle_id t = 0; mesh->has_lengths && t < mesh->n_triangles; t++)
+        for (int k = 0; tri_is_live(&mesh->tri[t]) && k < 3; k++)
+            mesh->length[mesh->tri[t].v[k]] = fabs(mesh->length[mesh->tri[t].v[k]]);
+    for (tri_vertex_id v = 0; mesh->has_lengths && v < mesh->n_vertices; v++)
+        if (mesh->length[v] < 0)
+            mesh->on[v] = TRI_VERTEX_NONE;
+}
+
 /* What belongs to tiles of others is not there, as far as the own ones are concerned; returns how many new vertices
  * there are. */
 static int64_t count_vertices(struct handing *h)
@@ -55,6 +66,7 @@ static int64_t count_vertices(struct handing *h)
     struct tri_mesh *mesh = h->mesh;
     struct par_tiles *tiles = h->tiles;
     int64_t n = 0;
+    find_erased(mesh);
     for (tri_vertex_id v = 0; v < tiles->n_kept; v++)
         if (tiles->kept_tile[v] >= h->end_tile)
             tiles->kept_tile[v] = INT32_MAX;

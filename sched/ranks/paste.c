@@ -89,19 +89,6 @@ static int32_t take_id(struct par_run *run, enum par_kind kind)
     return (*count_of(run->mesh, kind))++;
 }
 
-bool par_release(struct par_run *run, enum par_kind kind, int32_t id)
-{
-    struct par_ranges *spare = &run->spare.ranges[kind];
-    if (spare->n > 0 && spare->item[spare->n - 1].end == id && spare->item[spare->n - 1].next < id) {
-        spare->item[spare->n - 1].end++;
-        return true;
-    }
-    if (!par_ranges_reserve(spare, spare->n + spare->dealt + 1))
-        return false;
-    spare->item[spare->n++] = (struct par_range){id, id + 1};
-    return true;
-}
-
 bool par_remove_triangle(struct par_run *run, tri_triangle_id t)
 {
     struct tri_mesh *mesh = run->mesh;
@@ -116,13 +103,13 @@ bool par_remove_triangle(struct par_run *run, tri_triangle_id t)
                 mesh->sub[~link].side[side] = TRI_BEYOND;
     }
     triangle->v[0] = TRI_NONE;
-    return par_release(run, PAR_TRIANGLES, t);
+    return par_room_release(&run->spare, PAR_TRIANGLES, t);
 }
 
 bool par_remove_sub(struct par_run *run, tri_sub_id s)
 {
     par_room_mark_sub(run->mesh, s);
-    return par_release(run, PAR_SUBS, s);
+    return par_room_release(&run->spare, PAR_SUBS, s);
 }
 
 /* --- what is known */
@@ -224,6 +211,8 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
     mesh->xy[v] = told->xy;
     mesh->feature[v] = told->feature;
     mesh->on[v] = told->on;
+    if (mesh->has_lengths)
+        mesh->length[v] = tri_lengths_at(p->ranks->run->asked.quality->lengths, told->xy);
     mesh->vertex_markers[v] = told->marker;
     p->is_new[i] = true;
     return v;

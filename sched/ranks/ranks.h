@@ -148,10 +148,9 @@ bool par_index_straddlers(struct par_ranks *ranks);
 /* A message's entries join the worklist. False: no memory. */
 bool par_merge_entries(struct par_run *run, const struct par_message *message, const struct par_talk *talk);
 
-/* A triangle goes, a subsegment that has no triangle any more, a vertex: what leads to it leads beyond. */
+/* A triangle goes, or a subsegment that has no triangle any more: what leads to it leads beyond. */
 bool par_remove_triangle(struct par_run *run, tri_triangle_id t);
 bool par_remove_sub(struct par_run *run, tri_sub_id s);
-bool par_release(struct par_run *run, enum par_kind kind, int32_t id);
 
 static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
 

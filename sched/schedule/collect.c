@@ -180,6 +180,19 @@ static bool report_block(const struct par_phase_run *p, const struct par_task *t
     return true;
 }
 
+/* The places of what was erased. Ranks keep vertices that all have, and give back what they have borrowed first. */
+static bool release_erased(const struct par_phase_run *p, const struct par_task *task)
+{
+    struct par_run *run = p->run;
+    bool memory = true;
+    for (int32_t i = 0; memory && i < task->erased.n; i++) {
+        const enum par_kind kind = i % 3 == 0 ? PAR_VERTICES : PAR_TRIANGLES;
+        if (kind == PAR_VERTICES ? !run->ranks : !task->hooks.part)
+            memory = par_room_release(&run->spare, kind, task->erased.item[i]);
+    }
+    return memory;
+}
+
 enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -193,6 +206,8 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
         par_add_up(&p->run->report->total, &task->report);
         memory = memory && (task->progress == PAR_READY || report_block(p, task));
         par_room_return(&task->view.room, &p->run->spare);
+        memory = release_erased(p, task) && memory;
+        free(task->erased.item);
         free(task->left.item);
         free(task->given_up.item);
         free(task->changed.item);

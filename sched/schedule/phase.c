@@ -26,6 +26,13 @@ static void note_given_up(void *user, tri_triangle_id triangle)
     task->lost |= !par_ids_add(&task->given_up, triangle);
 }
 
+static void note_erased(void *user, tri_vertex_id v, const tri_triangle_id triangle[2])
+{
+    struct par_task *task = user;
+    const int32_t gone[3] = {v, triangle[0], triangle[1]};
+    task->lost |= !par_ids_add_all(&task->erased, gone, 3);
+}
+
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct par_task *task = user;
@@ -188,6 +195,8 @@ static void set_up(struct par_phase_run *p, struct par_task *task)
         .deferred_user = task,
         .given_up = run->remain.is_on ? note_given_up : NULL,
         .given_up_user = task,
+        .erased = note_erased,
+        .erased_user = task,
         .more_room = par_view_more_room,
         .more_room_user = &task->view,
     };

@@ -27,6 +27,7 @@ struct par_task {
     struct tri_refiner *refiner;
     struct par_ids left;  /* what gate and fence left */
     struct par_ids given_up;
+    struct par_ids erased; /* a vertex and two triangles each */
     struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
     bool lost;              /* no memory for one of these lists */
     struct tri_part part;

@@ -232,6 +232,19 @@ void par_room_return(struct par_room *room, struct par_room *spare)
     par_room_free(room);
 }
 
+bool par_room_release(struct par_room *spare, enum par_kind kind, int32_t id)
+{
+    struct par_ranges *ranges = &spare->ranges[kind];
+    if (ranges->n > 0 && ranges->item[ranges->n - 1].end == id && ranges->item[ranges->n - 1].next < id) {
+        ranges->item[ranges->n - 1].end++;
+        return true;
+    }
+    if (!par_ranges_reserve(ranges, ranges->n + ranges->dealt + 1))
+        return false;
+    ranges->item[ranges->n++] = (struct par_range){id, id + 1};
+    return true;
+}
+
 void par_room_free(struct par_room *room)
 {
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)

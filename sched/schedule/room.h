@@ -71,6 +71,9 @@ void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);
 
+/* An item that is no more is unused from now on. False: no memory. */
+bool par_room_release(struct par_room *spare, enum par_kind kind, int32_t id);
+
 /* Marks what `spare` lists as free in the shared arrays, as par_number wants it; spare is as before. O(gaps). */
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor);
 

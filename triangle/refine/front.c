@@ -37,8 +37,14 @@ static bool push(struct tri_refiner *r, struct tri_front_stack *to, tri_triangle
     return true;
 }
 
-/* Is the new triangle on an edge of the cavity too large? If it is not, it may be bad for its angle, and waits for the
- * usual stage; *room: false if there is no memory. */
+/* A triangle that is not too large may be bad for its angle: then it waits for the usual stage. */
+static bool push_angle(struct tri_refiner *r, tri_triangle_id id, double a, double b, double c, double area2)
+{
+    return area2 * area2 >= r->criterion.bounds.sin2 * tri_longer_product(a, b, c) ||
+           tri_push_angle(r, id, tri_lesser(a, tri_lesser(b, c)));
+}
+
+/* Is the new triangle on an edge of the cavity too large? *room: false if there is no memory. */
 static bool judge(struct tri_refiner *r, int32_t i, bool *room)
 {
     const struct tri_cavity_edge *edge = &r->cavity.edge[i];
@@ -50,8 +56,7 @@ static bool judge(struct tri_refiner *r, int32_t i, bool *room)
     if (tri_is_too_long(asked, t->v, a.l, b.l, l, area2) || area2 > tri_area2_bound(asked, edge->region) ||
         (tri_asks_caller(r->quality) && tri_is_unsuitable(asked, t->v)))
         return true;
-    if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(a.l, b.l, l))
-        *room = tri_push_angle(r, id, tri_lesser(a.l, tri_lesser(b.l, l))) && *room;
+    *room = push_angle(r, id, a.l, b.l, l, area2) && *room;
     return false;
 }
 
@@ -209,7 +214,6 @@ static bool divide(struct tri_refiner *r)
         if (tri_refiner_must_stop(r))
             return false;
         const tri_sub_id s = r->encroached[r->n_encroached - 1];
-        const tri_sub_id second = r->mesh->n_subs;
         double fraction;
         if (!find_division(r, &r->mesh->sub[s], &fraction)) {
             r->n_encroached--;
@@ -219,7 +223,7 @@ static bool divide(struct tri_refiner *r)
         if (outcome == FAILED)
             return false;
         r->n_encroached -= outcome != DONE;
-        if (outcome == DONE && !tri_feed_subsegment(r, second))
+        if (outcome == DONE && !tri_feed_subsegment(r, r->mesh->n_subs - 1)) /* the second half */
             return false;
     }
     return true;
@@ -236,6 +240,157 @@ static bool divide_all(struct tri_refiner *r)
     return false;
 }
 
+/* --- vertices of the coarser mesh */
+
+enum { MOST_STAR = 64 };
+
+/* The triangles around a vertex. */
+struct star {
+    int n;
+    tri_triangle_id id[MOST_STAR];
+    tri_vertex_id rim[MOST_STAR];
+    tri_link outer[MOST_STAR]; /* behind the edge from rim[i] to rim[i + 1] */
+    int next[MOST_STAR], before[MOST_STAR]; /* of what is left of the rim */
+};
+
+/* DONE: all of the star of v may be changed. */
+static enum tri_outcome find_star(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v, struct star *star)
+{
+    const struct tri_mesh *m = r->mesh;
+    tri_triangle_id at = first;
+    star->n = 0;
+    do {
+        const struct tri_triangle *t = &m->tri[at];
+        const int k = tri_corner_of(t, v);
+        if (star->n == MOST_STAR || t->region != m->tri[first].region || !tri_fence_owns(r->hooks->fence, m, at))
+            return REFUSED;
+        for (int e = 0; e < 2; e++) { /* the outer edge, and the one to the next triangle */
+            const int edge = e == 0 ? k : tri_next[k];
+            if (t->n[edge] == TRI_BEYOND)
+                return tri_wait_for(r, (tri_vertex_id[2]){t->v[tri_next[edge]], t->v[tri_prev[edge]]});
+        }
+        if (t->n[tri_next[k]] < 0)
+            return REFUSED;
+        assert(tri_owners_claim(r->hooks->owners, at));
+        star->id[star->n] = at;
+        star->rim[star->n] = t->v[tri_next[k]];
+        star->outer[star->n++] = t->n[k];
+        at = tri_of(t->n[tri_next[k]]);
+    } while (at != first);
+    for (int i = 0; i < star->n; i++) {
+        star->next[i] = i + 1 < star->n ? i + 1 : 0;
+        star->before[i] = i > 0 ? i - 1 : star->n - 1;
+    }
+    return DONE;
+}
+
+/* Is the triangle at corner i of the rim one of its Delaunay triangulation? */
+static bool is_ear(const struct star *s, const struct tri_point *xy, int i)
+{
+    const int a = s->before[i], c = s->next[i];
+    const struct tri_point p[3] = {xy[s->rim[a]], xy[s->rim[i]], xy[s->rim[c]]};
+    bool is = tri_orient2d(p[0], p[1], p[2]) > 0;
+    for (int k = s->next[c]; is && k != a; k = s->next[k])
+        is = tri_incircle(p[0], p[1], p[2], xy[s->rim[k]]) <= 0;
+    return is;
+}
+
+/* Cuts ears off the rim until nothing is left of it: n - 2 corners, in order. False: rounding, and there is none. */
+static bool find_ears(struct star *s, const struct tri_point *xy, int ear[MOST_STAR][3])
+{
+    int i = 0, since = 0, n = 0;
+    for (int left = s->n; left > 2; since++) {
+        if (since > left)
+            return false;
+        if (!is_ear(s, xy, i)) {
+            i = s->next[i];
+            continue;
+        }
+        const int a = s->before[i], c = s->next[i];
+        ear[n][0] = a;
+        ear[n][1] = i;
+        ear[n++][2] = c;
+        s->next[a] = c;
+        s->before[c] = a;
+        i = a;
+        since = -1;
+        left--;
+    }
+    return true;
+}
+
+/* The first triangles of the star become the ears. */
+static void fill_star(struct tri_refiner *r, struct star *s, int ear[MOST_STAR][3])
+{
+    struct tri_mesh *m = r->mesh;
+    for (int k = 0; k < s->n - 2; k++) {
+        const int a = ear[k][0], b = ear[k][1], c = ear[k][2];
+        struct tri_triangle *t = &m->tri[s->id[k]];
+        *t = (struct tri_triangle){{s->rim[a], s->rim[b], s->rim[c]}, {s->outer[b], TRI_BEYOND, s->outer[a]},
+                                   t->region, t->life + 1};
+        tri_relink(m, s->outer[a], s->rim[a], tri_code(s->id[k], 2));
+        tri_relink(m, s->outer[b], s->rim[b], tri_code(s->id[k], 0));
+        if (k + 1 < s->n - 2) {
+            s->outer[a] = tri_code(s->id[k], 1);
+            continue;
+        }
+        t->n[1] = s->outer[c];
+        tri_relink(m, s->outer[c], s->rim[c], tri_code(s->id[k], 1));
+    }
+}
+
+/* The star of v becomes the Delaunay triangulation of its rim, if it may be changed. */
+static enum tri_outcome erase(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v)
+{
+    struct star star;
+    int ear[MOST_STAR][3];
+    const enum tri_outcome outcome = find_star(r, first, v, &star);
+    if (outcome != DONE || !find_ears(&star, r->mesh->xy, ear))
+        return outcome == DONE ? REFUSED : outcome;
+    fill_star(r, &star, ear);
+    for (int k = star.n - 2; k < star.n; k++) {
+        r->mesh->tri[star.id[k]].v[0] = TRI_NONE;
+        r->mesh->tri[star.id[k]].life++;
+    }
+    r->mesh->on[v] = TRI_VERTEX_NONE;
+    r->report->inserted_free--;
+    if (r->hooks->part)
+        r->hooks->part->changed(r->hooks->part->user, star.id, star.n);
+    r->hooks->erased(r->hooks->erased_user, v, &star.id[star.n - 2]);
+    bool room = true;
+    for (int k = 0; room && k < star.n - 2; k++) {
+        const struct tri_shape s = tri_shape_of(r->mesh->xy, r->mesh->tri[star.id[k]].v);
+        room = is_large(r, star.id[k]) ? push(r, &r->front.off, star.id[k])
+                                       : push_angle(r, star.id[k], s.l[0], s.l[1], s.l[2], s.area2);
+    }
+    return room ? DONE : FAILED;
+}
+
+/* Erases what may go of the corners of a triangle that is too large; a call that was interrupted does the rest. */
+static bool erase_corners(struct tri_refiner *r, tri_triangle_id id)
+{
+    const struct tri_mesh *m = r->mesh;
+    for (int k = 0; k < 3 && tri_is_live(&m->tri[id]) && is_large(r, id); k++) {
+        const tri_vertex_id v = m->tri[id].v[k];
+        if (m->on[v] != TRI_VERTEX_FREE || !(m->length[v] < 0))
+            continue;
+        const enum tri_outcome outcome = erase(r, id, v);
+        if (outcome == FAILED)
+            return false;
+        k = outcome == DONE ? -1 : k;
+    }
+    return true;
+}
+
+static bool erase_all(struct tri_refiner *r)
+{
+    const bool may = r->hooks->erased && r->hooks->fence && tri_area_scale(r->quality) <= 1;
+    for (; may && r->next_listed < r->n_worklist; r->next_listed++)
+        if (!erase_corners(r, tri_listed(r, r->next_listed)))
+            return false;
+    return true;
+}
+
 /* --- the stage */
 
 /* Of the worklist, what is too large. */
@@ -248,7 +403,8 @@ static bool take_all(struct tri_refiner *r)
             continue;
         bool is_on = false;
         for (int e = 0; e < 3; e++)
-            is_on = is_on || t->n[e] < 0 || !is_large(r, tri_of(t->n[e]));
+            is_on = is_on || t->n[e] < 0 || /* nobody lists a triangle with TRI_BEYOND beside it */
+                    !is_large(r, tri_of(t->n[e]));
         if (!push(r, is_on ? &r->front.on : &r->front.off, id))
             return false;
     }
@@ -262,9 +418,15 @@ bool tri_front_begin(struct tri_refiner *r)
         r->next_listed = 0;
         r->step = DIVIDING;
     }
+    if (r->step == DIVIDING) {
+        if (!r->quality->conforming && !divide_all(r))
+            return false;
+        r->next_listed = 0;
+        r->step = ERASING;
+    }
     if (r->step == ADVANCING)
         return true;
-    if (!r->quality->conforming && !divide_all(r))
+    if (!erase_all(r))
         return false;
     r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
     r->step = ADVANCING;

@@ -41,6 +41,9 @@ struct tri_part {
 /* Of the bad triangles only those with corners v that this says yes to are refined. */
 typedef bool tri_urgent(void *user, const struct tri_point *xy, const tri_vertex_id v[3]);
 
+/* Told of each vertex of a coarser mesh that was erased, and of the two triangles that are no more. */
+typedef void tri_erased(void *user, tri_vertex_id v, const tri_triangle_id triangle[2]);
+
 /* How a call is tied to what is around it. All zero: it has the whole mesh to itself. */
 struct tri_refine_hooks {
     tri_urgent *urgent;    /* for pre-refinement, at circumcentres; NULL: all are urgent */
@@ -56,6 +59,8 @@ struct tri_refine_hooks {
     void *deferred_user;
     tri_deferred *given_up; /* told of each triangle that is given up; it may be gone later. NULL: nobody */
     void *given_up_user;
+    tri_erased *erased;     /* NULL: vertices of a coarser mesh stay (front.c) */
+    void *erased_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
     const struct tri_part *part; /* NULL: all of the mesh is here */

@@ -11,7 +11,7 @@
 
 enum tri_bound_stage { FRONT_STAGE, EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
-enum tri_step { NOT_BEGUN, FIRST_PASS, ALL_ANGLES, FILLING, SECOND_PASS, DIVIDING, ADVANCING };
+enum tri_step { NOT_BEGUN, FIRST_PASS, ALL_ANGLES, FILLING, SECOND_PASS, DIVIDING, ERASING, ADVANCING };
 
 struct tri_fill;
 struct tri_lattice;
