@@ -143,16 +143,37 @@ static void share_elements(struct sharing *s, struct tri_elements *own, const st
     *own = e;
 }
 
+/* Fields of lengths; those that are no file have no arrays. */
+static void share_lengths(struct sharing *s, struct size_fields *own, const struct size_fields *told)
+{
+    for (int i = 0; i < SIZE_OPTIONS_MOST; i++) {
+        const struct tri_size_file *mine = &own->file[i], *first = &told->file[i];
+        const struct tri_size_field *f = &first->field;
+        struct tri_size_file file = {.field = *f};
+        file.values = array(s, mine->values, first->values, f->values.n * f->values.width, sizeof *file.values);
+        file.points = array(s, mine->points, first->points, 2 * f->points.n, sizeof *file.points);
+        file.triangles = array(s, mine->triangles, first->triangles, 3 * f->triangles.n, sizeof *file.triangles);
+        file.field.values.at = file.values;
+        file.field.points.at = file.points;
+        file.field.triangles.at = file.triangles;
+        own->file[i] = file;
+        own->field[i] = first->values ? file.field : told->field[i];
+    }
+}
+
 enum tri_status shared_input(struct par_carrier *carrier, struct run *run, enum tri_status status,
                              struct tri_error *error)
 {
     struct sharing s = {carrier, status, error};
     struct run_input told = run->input; /* what is more than numbers is another rank's: never followed here */
+    struct size_fields sizes = run->sizes;
     spread(&s, &told, sizeof told);
+    spread(&s, &sizes, sizeof sizes);
     if (s.status)
         return s.status;
     share_figure(&s, &run->input.pslg, &told.pslg);
     share_elements(&s, &run->input.elements, &told.elements);
+    share_lengths(&s, &run->sizes, &sizes);
     run->input.base = told.base;
     run->input.points_in_poly = told.points_in_poly;
     return par_agree(carrier, s.status, error);

@@ -159,7 +159,8 @@ enum tri_status run_read(struct run *r)
 {
     interrupt_stage("reading");
     enum tri_status status = r->settings.written_elsewhere ? TRI_OK : read_input(r);
-    status = status ? status : size_fields_read(&r->sizes, &r->arguments->sizes, r->settings.executor, r->error);
+    if (!status && !r->settings.written_elsewhere)
+        status = size_fields_read(&r->sizes, &r->arguments->sizes, r->settings.executor, r->error);
     return status || r->settings.n_ranks > 0 ? status : plan_check_input(r);
 }
 

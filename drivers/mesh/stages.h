@@ -98,7 +98,7 @@ struct run run_new(const char *program, const struct arguments *arguments, struc
 /* Starts the clock and the watch for signals, and checks the switches. */
 enum tri_status run_begin(struct run *run);
 
-/* Every rank reads the lengths of edges; all else unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
+/* Unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
 enum tri_status run_read(struct run *run);
 
 /* Makes the mesh, refined by options.refine_call. A dry run leaves it as it is before, and ends here: it says what the

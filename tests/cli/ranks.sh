@@ -91,6 +91,25 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
     rm -f one.* two.*
 done
 
+# --- nor do they see a field of lengths
+fresh letter.poly
+printf 'ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 14\n.3 .2\n.05 .1\n' >field.asc
+for case in "-p letter --size field.asc" "-p letter --size-near 1:0.05 --max-size 0.3"; do
+    # shellcheck disable=SC2086 # several words
+    program 0 -Q $case --output one
+    # shellcheck disable=SC2086
+    with_one 1 'cd /' 0 -Q $case --output two
+    # shellcheck disable=SC2086
+    ranks 0 3 -Q $case --output three
+    for file in one.*; do
+        check "the same but for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
+        check "the same of three: $case, $file" same_but_for_comments "$file" "three${file#one}"
+    done
+    rm -f one.* two.* three.*
+done
+ranks 1 2 -Qp letter --size absent.asc
+complains '^absent\.asc: cannot open'
+
 # --- points that no triangle uses are in no HDF5 file, and in Triangle's files
 fresh
 orphans >pair.poly

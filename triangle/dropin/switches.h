@@ -30,7 +30,7 @@ struct tri_switches {
     bool regions;        /* A */
     bool keep_hull;      /* c */
     bool even_odd;       /* --holes auto: no letter */
-    enum tri_placement placement; /* --placement: no letter; 0: new points lie in a lattice or over a front if they can */
+    enum tri_placement placement; /* --placement: no letter */
     bool conforming;     /* D */
     bool jettison;       /* j */
     bool edges, voronoi, neighbors, off; /* e v n g */
