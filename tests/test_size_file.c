@@ -152,8 +152,8 @@ static const char jigsaw[] =
     "mshid=3;euclidean-mesh\nndims=2\npoint=6\n0;-1;0\n2;-1;0\n4;-1;0\n0;0;0\n2;0;0\n4;0;0\nedge2=1\n0;1;0\n"
     "value=6;1\n.75\n1.75\n2.75\n1\n2\n3\ntria3=4\n0;1;4;0\n0;4;3;0\n1;2;5;0\n1;5;4;0\n";
 static const char view[] =
-    "View \"h { \\ of x\" {\n// a comment\nST(0,-1,0, 2,-1,0, 2,0,0){.75,1.75,2};\nST(0,-1,0,2,0,0,0,0,0){.75,2,1,9,9,9};\n"
-    "ST(2,-1,0,4,-1,0,4,0,0){1.75,2.75,3};\nST(2,-1,0,4,0,0,2,0,0){1.75,3,2};\n};\n";
+    "View \"h { \\ of x\" {\nSP(4,0,0){3};\nSL(0,0,0,2,0,0){1,2};\n// a comment\nST(0,-1,0, 2,-1,0, 2,0,0){.75,1.75,2};\nST(0,-1,0,2,0,0,0,0,0){.75,2,1,9,9,9};\n"
+    "SP(4,0,0){3};SL(0,0,0,2,0,0){1,2};ST(2,-1,0,4,-1,0,4,0,0){1.75,2.75,3};\nST(2,-1,0,4,0,0,2,0,0){1.75,3,2};\n};\n";
 
 static void test_meshes(void **state)
 {
@@ -254,7 +254,7 @@ static void test_refused(void **state)
                   "names point 5");
     check_refused("a.msh", "mshid=3;euclidean-grid\ncoord=1;2\n1\n1\n", 4, "do not rise");
     check_refused("a.pos", "View \"h\" { ST(0,0,0,1,0,0,0,1,0){1,2}; };\n", 1, "\",\" is missing");
-    check_refused("a.pos", "View \"h\" {\nSQ(0){1};\n};\n", 2, "neither a scalar triangle");
+    check_refused("a.pos", "View \"h\" {\nSQ(0){1};\n};\n", 2, "no scalar triangle");
     check_refused("a.pos", "View \"h\" {\nSP(0,0,0){1};\n", 3, "\"}\" is missing");
     check_refused("a.pos", "View \"h\" {\nSP(0,0,nan){1};\n};", 2, "not finite");
     write_text("a.ele", "0 3 0\n");

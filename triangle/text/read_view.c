@@ -324,6 +324,15 @@ static bool add_triangle(struct view *v)
     return true;
 }
 
+/* Nodes of an element by its name; 0: one that is not read. */
+static int nodes_of_view(const char *name, size_t length)
+{
+    static const char kinds[] = "PLT";
+    const char *found = length == 2 && name[0] == 'S' ? strchr(kinds, name[1]) : NULL;
+    return found ? 1 + (int)(found - kinds) : 0;
+}
+
+/* Points and lines count if there are no triangles: otherwise they lie at corners. */
 static bool read_element(struct view *v)
 {
     struct tri_words *w = v->words;
@@ -332,13 +341,17 @@ static bool read_element(struct view *v)
     while (*w->at >= 'A' && *w->at <= 'Z')
         w->at++;
     const size_t length = (size_t)(w->at - kind);
-    const int n = length != 2 || kind[0] != 'S' ? 0 : kind[1] == 'T' ? 3 : kind[1] == 'P' ? 1 : 0;
+    const int n = nodes_of_view(kind, length);
     if (n == 0)
-        return TRI_WORDS_FAIL(w, "neither a scalar triangle (ST) nor a scalar point (SP)");
-    if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n) || !add_points(v, xyz, h, n))
+        return TRI_WORDS_FAIL(w, "no scalar triangle (ST), line (SL) or point (SP)");
+    if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n))
         return false;
     pass_end(v);
-    return n == 1 || add_triangle(v);
+    if (n == 3 && w->to.elements->n == 0)
+        w->to.mesh->n_points = 0;
+    if (n < 3)
+        return w->to.elements->n > 0 || add_points(v, xyz, h, n);
+    return add_points(v, xyz, h, n) && add_triangle(v);
 }
 
 static bool read_view_head(struct view *v)
