@@ -458,6 +458,8 @@ static const struct way ways[] = {
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
     {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
     {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* blocks wait */
+    {{"section.poly", 25, -9000, 500, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
+    {{"letter.poly", 25, -9000, 300, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0},
 };
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
@@ -524,7 +526,7 @@ static enum tri_status refine_whole(struct whole_run *r)
     r->triangles = r->way->has_sink ? 0 : mesh.n_triangles;
     par_report_free(&report);
     tri_mesh_free(&mesh);
-    tri_pslg_free(&start.pslg);
+    trials_free(&start);
     return status;
 }
 

@@ -32,6 +32,8 @@ static const struct trial trials[] = {
     {"coast/norway_sea.poly", 34, 30000, 400, false, false, 0},
     {"letter.poly", 34, 20000, 500, false, false, 1},
     {"section.poly", 35, 10000, 500, true, true, 0},             /* and a sequential call behind them */
+    {"section.poly", 25, -15000, 300, false, true, 0},
+    {"letter.poly", 25, -20000, 300, false, false, 0}, /* coarse vertices are erased, also at borders */
 };
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 9 };
@@ -263,7 +265,7 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
                 free_member(&member[p]);
         }
         free_member(&alone);
-        tri_pslg_free(&start.pslg);
+        trials_free(&start);
     }
 }
 
@@ -284,7 +286,7 @@ static void test_a_block_leaves_what_reaches_beyond_its_box(void **state)
             free_member(&member[p]);
     }
     free_member(&alone);
-    tri_pslg_free(&start.pslg);
+    trials_free(&start);
 }
 
 /* A disk that is full on one rank: all say so, in its words. */
@@ -303,7 +305,7 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
             assert_string_equal(member[p].error.text, "no space left");
             free_member(&member[p]);
         }
-        tri_pslg_free(&start.pslg);
+        trials_free(&start);
     }
 }
 
@@ -378,7 +380,7 @@ static int run_in_steps(const struct member *alone, const struct start *start, c
 static void test_other_ranks_go_on(void **state)
 {
     (void)state;
-    static const int chosen[] = {5, 15, 10, 6};
+    static const int chosen[] = {5, 15, 10, 6, 20};
     struct support_random random = {11};
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i += (size_t)every(2)) {
         const struct trial *trial = &trials[chosen[i]];
@@ -391,7 +393,7 @@ static void test_other_ranks_go_on(void **state)
         print_message("  %-28s in %d runs\n", trial->file, runs);
         assert_true(runs > 2);
         free_member(&alone);
-        tri_pslg_free(&start.pslg);
+        trials_free(&start);
     }
 }
 
@@ -445,7 +447,7 @@ static void test_what_does_not_fit_is_refused(void **state)
     }
     expect_refusal(&other, &options, "of another run");
     remove_checkpoint();
-    tri_pslg_free(&start.pslg);
+    trials_free(&start);
     tri_pslg_free(&other.pslg);
 }
 

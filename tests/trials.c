@@ -1,6 +1,7 @@
 #include "trials.h"
 
 #include "triangle/refine/place.h"
+#include "triangle/size/lengths.h"
 
 static double total_area(const struct tri_mesh *mesh)
 {
@@ -8,6 +9,27 @@ static double total_area(const struct tri_mesh *mesh)
     for (int32_t t = 0; t < mesh->n_triangles; t++)
         sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
     return sum * mesh->unit * mesh->unit;
+}
+
+/* For about so many triangles, over a mesh. */
+static struct tri_lengths *lengths_for(const struct tri_mesh *mesh, double target)
+{
+    const double h = 0.55 * sqrt(total_area(mesh) / (TRI_EQUILATERAL * target)), value[] = {h, 3 * h, h, 3 * h};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
+        double at[2];
+        tri_mesh_place(mesh, v, at);
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+    }
+    const struct tri_size_field field = {.kind = TRI_SIZE_RASTER, .values = {value, 2, 2, 2},
+                                         .origin = {low[0], low[1]}, .step = {high[0] - low[0], high[1] - low[1]}};
+    const struct tri_sizes sizes = {.fields = &field, .n = 1, .gradation = HUGE_VAL};
+    struct tri_lengths *lengths;
+    assert_int_equal(tri_lengths_new(&lengths, &sizes, mesh, NULL, NULL), TRI_OK);
+    return lengths;
 }
 
 struct tri_mesh trials_coarse_mesh(const struct start *start)
@@ -28,8 +50,17 @@ struct start trials_start_of(const struct trial *trial)
     start.options.quality.conforming = trial->conforming;
     start.options.quality.protect = trial->protect;
     struct tri_mesh mesh = trials_coarse_mesh(&start);
+    if (trial->target < 0)
+        start.options.quality.lengths = lengths_for(&mesh, -trial->target);
+    start.options.quality.front = true;
     if (trial->target > 0)
         start.options.quality.max_area = total_area(&mesh) / (0.65 * trial->target);
     tri_mesh_free(&mesh);
     return start;
+}
+
+void trials_free(struct start *start)
+{
+    tri_lengths_free((struct tri_lengths *)start->options.quality.lengths); /* borrowed by all but this file */
+    tri_pslg_free(&start->pslg);
 }

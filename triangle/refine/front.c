@@ -229,15 +229,13 @@ static bool divide(struct tri_refiner *r)
     return true;
 }
 
-static bool divide_all(struct tri_refiner *r)
+/* All beside the worklist wait from the beginning: once one is divided, others lie beside other triangles. */
+static bool list_segments(struct tri_refiner *r)
 {
-    for (; divide(r); r->next_listed++) {
-        if (r->next_listed == r->n_worklist)
-            return true;
-        if (!tri_feed_beside(r, tri_listed(r, r->next_listed)))
-            return false;
-    }
-    return false;
+    bool room = true;
+    for (int32_t i = r->n_worklist - 1; room && i >= 0; i--)
+        room = tri_feed_beside(r, tri_listed(r, i));
+    return room;
 }
 
 /* --- vertices of the coarser mesh */
@@ -415,11 +413,12 @@ bool tri_front_begin(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
         r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
-        r->next_listed = 0;
         r->step = DIVIDING;
+        if (!r->quality->conforming && !list_segments(r))
+            return false;
     }
     if (r->step == DIVIDING) {
-        if (!r->quality->conforming && !divide_all(r))
+        if (!r->quality->conforming && !divide(r))
             return false;
         r->next_listed = 0;
         r->step = ERASING;
