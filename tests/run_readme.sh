@@ -18,7 +18,7 @@ fault() {
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work" || exit 2
-cp "$root"/data/*.poly .
+cp "$root"/data/*.poly "$root"/data/coast/*.poly .
 PATH=$build/bin:$PATH
 
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$root/README.md" >example.c
