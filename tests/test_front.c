@@ -111,7 +111,7 @@ static void test_sides_are_divided_by_the_integral(void **state)
 static void test_blocks_do_as_well(void **state)
 {
     (void)state;
-    static const struct trial trial = {"letter.poly", 25, -20000, 400, false, false, 0};
+    static const struct trial trial = {"letter.poly", 25, -100000, 60, false, false, 0};
     struct start start = trials_start_of(&trial);
     struct tri_mesh mesh[2];
     for (int i = 0; i < 2; i++) {
