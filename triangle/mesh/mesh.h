@@ -128,8 +128,8 @@ struct tri_mesh {
     int32_t *vertex_markers;  /* [n_vertices] */
     double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h):
                                  what each new vertex inherits, and takes along wherever it goes */
-    double *length;           /* [n_vertices] of edges that is asked for there, in the units of the mesh (size/quality.h);
-                                 below 0: of a vertex that was made for a coarser mesh. NULL: lengths are not asked for */
+    double *length;           /* [n_vertices] of edges that is asked for there, in the units of the mesh (quality.h);
+                                 below 0: of a vertex that was made for a coarser mesh. NULL: none is asked for */
     double *attributes;       /* [n_vertices][n_attributes]; those of new vertices are set last */
     struct tri_surface *surface; /* where they come from (surface.h); NULL: no attributes, or nothing refined yet */
     int32_t n_attributes;

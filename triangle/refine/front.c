@@ -2,7 +2,9 @@
  *
  * Segments are divided into equal parts of the integral of ds / h, in halves of a whole number of parts, or by shells
  * beside an acute vertex (split.h). In a block of a schedule, free vertices of the coarser mesh go then, if their star
- * lies in the fence: they stand where nobody wants them now. */
+ * lies in the fence: they stand where nobody wants them now. Each goes once, and refinement makes no more of them.
+ *
+ * INVARIANT. What is too large waits in one of the two stacks, or has been deferred or given up. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>

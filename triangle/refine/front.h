@@ -1,9 +1,9 @@
 /* Points over a front: near-equilateral triangles for sizes that are lengths of edges (triangle/size/quality.h).
  *
- * A triangle is settled where it is not too large. The front is the edges between settled triangles, or segments, and
- * triangles that are too large. One of these proposes the apex of a triangle on its best edge of the front, with legs of
- * the length that is asked for, where that lies well below its circumcentre; else it proposes the circumcentre. So rows
- * of near-equilateral triangles grow from the segments, and meet.
+ * The front is the edges between triangles that are too large and others, or segments. A triangle that is too large
+ * proposes the apex of a triangle on its best edge of the front, with legs of the length that is asked for, where that
+ * lies well below its circumcentre; else it proposes the circumcentre. So rows of near-equilateral triangles grow from
+ * the segments, and meet.
  *
  * THEOREM (end; docs/theory.md, the front). No point comes nearer to a vertex than half of the lengths asked for. */
 #ifndef TRIANGLE_REFINE_FRONT_H

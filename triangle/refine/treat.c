@@ -57,8 +57,10 @@ tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t 
     m->xy[v] = p;
     m->on[v] = on;
     m->vertex_markers[v] = marker;
-    if (m->has_lengths)
-        m->length[v] = tri_lengths_at(r->quality->lengths, p) * (tri_area_scale(r->quality) > 1 || r->hooks->urgent ? -1 : 1);
+    if (m->has_lengths) {
+        const bool is_coarse = r->hooks->urgent || tri_area_scale(r->quality) > 1;
+        m->length[v] = copysign(tri_lengths_at(r->quality->lengths, p), is_coarse ? -1 : 1);
+    }
     return v;
 }
 
