@@ -450,6 +450,156 @@ static void test_functions_are_kept(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* --- what the figure asks for */
+
+static struct tri_mesh mesh_of(struct tri_pslg *pslg, bool spread_regions)
+{
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    options.spread_regions = spread_regions;
+    struct tri_mesh mesh = support_generate(pslg, &options, NULL);
+    tri_pslg_free(pslg);
+    return mesh;
+}
+
+static double at_place(const struct tri_lengths *lengths, const struct tri_mesh *mesh, double x, double y)
+{
+    return tri_lengths_at(lengths, (struct tri_point){x / mesh->unit, y / mesh->unit}) * mesh->unit;
+}
+
+static void add_ring(struct tri_pslg *pslg, int n, double radius, double roughness)
+{
+    struct support_random random = {7};
+    const int32_t first = pslg->n_points;
+    for (int i = 0; i < n; i++) {
+        const double angle = 6.283185307179586 * i / n, r = radius * (1 + roughness * (support_unit(&random) - 0.5));
+        support_add_point(pslg, r * cos(angle), r * sin(angle));
+        support_add_segment(pslg, first + i, first + (i + 1) % n);
+    }
+}
+
+static void test_lengths_grow_from_regions(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(6, 7, 0, 2);
+    static const double xy[6][2] = {{0, 0}, {1, 0}, {4, 0}, {4, 2}, {1, 2}, {0, 2}};
+    const double regions[] = {0.5, 1, 1, 0.001, 3, 1, 2, 0.5};
+    for (int k = 0; k < 6; k++) {
+        support_add_point(&pslg, xy[k][0], xy[k][1]);
+        support_add_segment(&pslg, k, (k + 1) % 6);
+    }
+    support_add_segment(&pslg, 1, 4);
+    memcpy(pslg.regions, regions, sizeof regions);
+    pslg.n_regions = 2;
+    struct tri_mesh mesh = mesh_of(&pslg, true);
+    struct tri_sizes sizes = {.max_size = 0.4, .gradation = 0.1, .region_areas = true};
+    struct tri_lengths *lengths = lengths_of(&mesh, &sizes);
+    const double border = sqrt(0.001 / (sqrt(3) / 4));
+    for (double x = 0; x <= 4; x += 0.25) {
+        const double h = fmin(border + 0.1 * fabs(x - 1), 0.4);
+        assert_true(fabs(at_place(lengths, &mesh, x, 0.7) / h - 1) < 1e-9);
+    }
+    tri_lengths_free(lengths);
+    sizes.region_areas = false;
+    lengths = lengths_of(&mesh, &sizes);
+    assert_true(tri_lengths_uniform(lengths) * mesh.unit == 0.4);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+static void test_circles_have_so_many(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(68, 68, 0, 0);
+    add_ring(&pslg, 64, 3, 0);
+    for (int k = 0; k < 4; k++) { /* corners are no curve */
+        support_add_point(&pslg, k == 0 || k == 3 ? -1 : 1, k < 2 ? -1 : 1);
+        support_add_segment(&pslg, 64 + k, 64 + (k + 1) % 4);
+    }
+    struct tri_mesh mesh = mesh_of(&pslg, false);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.per_circle = 100, .gradation = 0.2});
+    const double around = 6.283185307179586 * 3 / 100;
+    for (int32_t k = 0; k < 64; k++)
+        assert_true(fabs(at_place(lengths, &mesh, 3 * cos(0.1 * k), 3 * sin(0.1 * k)) / around - 1) < 0.17);
+    assert_true(fabs(at_place(lengths, &mesh, 0, 0) / (around + 0.6) - 1) < 0.02);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+/* The lengths that are asked for over those that shall be, at places that `across` gives with the width there. */
+static void check_channel(struct tri_pslg *pslg, void (*across)(double s, double t, double out[3]), double least,
+                          double most)
+{
+    struct tri_mesh mesh = mesh_of(pslg, false);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.elements_across = 4, .gradation = 0.2});
+    double low = HUGE_VAL, high = 0;
+    for (double s = 0.005; s < 1; s += 0.01)
+        for (double t = 0; t <= 1; t += 0.125) {
+            double out[3];
+            across(s, t, out);
+            const double ratio = at_place(lengths, &mesh, out[0], out[1]) * 4 / out[2];
+            low = fmin(low, ratio);
+            high = fmax(high, ratio);
+        }
+    print_message("  h over width / 4: %.3f to %.3f\n", low, high);
+    assert_true(low >= least && high <= most);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+static void in_rectangle(double s, double t, double out[3])
+{
+    out[0] = 1 + 18 * s;
+    out[1] = t;
+    out[2] = 1;
+}
+
+static void in_annulus(double s, double t, double out[3])
+{
+    out[0] = (2 + t) * cos(6.283185307179586 * s);
+    out[1] = (2 + t) * sin(6.283185307179586 * s);
+    out[2] = 1;
+}
+
+/* Between lines that meet at 20 degrees, from 1 to 10 away from where they would: the ball that touches both in s has
+ * the diameter 2 s tan(10 degrees). */
+static void in_funnel(double s, double t, double out[3])
+{
+    const double from = 1.4 + 8 * s, angle = (20 * t - 10) * 3.141592653589793 / 180;
+    out[0] = from * cos(angle);
+    out[1] = from * sin(angle);
+    out[2] = 2 * from * tan(10 * 3.141592653589793 / 180);
+}
+
+static void test_channels_have_so_many_across(void **state)
+{
+    (void)state;
+    static const double corners[2][4][2] = {{{0, 0}, {20, 0}, {20, 1}, {0, 1}},
+                                            {{0.98480775, -0.17364818}, {9.8480775, -1.7364818}, {9.8480775, 1.7364818},
+                                             {0.98480775, 0.17364818}}};
+    for (int which = 0; which < 2; which++) {
+        struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
+        for (int k = 0; k < 4; k++) {
+            support_add_point(&pslg, corners[which][k][0], corners[which][k][1]);
+            support_add_segment(&pslg, k, (k + 1) % 4);
+        }
+        check_channel(&pslg, which ? in_funnel : in_rectangle, which ? 0.9 : 0.999, 1.2);
+    }
+    for (int rough = 0; rough < 2; rough++) {
+        struct tri_pslg pslg = support_pslg(1000, 1000, 1, 0);
+        add_ring(&pslg, 600, 3, rough ? 0.01 : 0);
+        add_ring(&pslg, 400, 2, rough ? 0.01 : 0);
+        pslg.n_holes = 1; /* at the origin */
+        check_channel(&pslg, in_annulus, rough ? 0.85 : 0.99, rough ? 1.15 : 1.05);
+    }
+    /* A square has no walls that face each other closer than its side. */
+    struct tri_mesh mesh = square_mesh(2, 0, 1);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.elements_across = 4});
+    assert_true(at_place(lengths, &mesh, 0, 0) >= 0.49);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
 /* --- what is refused */
 
 static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
@@ -542,6 +692,8 @@ int main(void)
         cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
         cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_functions_are_kept),
+        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
+        cmocka_unit_test(test_channels_have_so_many_across),
         cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -217,6 +217,9 @@ struct tri_settings {
     double gradation;   /* lengths grow by no more than this for a distance of 1; 0: 0.2; infinite: no limit */
     double min_size;    /* shorter lengths count as this; 0: none is too short */
     double max_size;    /* > 0: no length is longer, also where no field says anything */
+    double elements_across; /* > 0: between boundaries, or borders of regions, that face each other there is room for so
+                               many lengths: channels and walls */
+    double per_circle;  /* > 0: where segments follow a curve, so many lengths go around a circle of its curvature */
 };
 
 static inline struct tri_settings tri_no_settings(void)

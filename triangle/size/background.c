@@ -10,19 +10,23 @@
 /* In cells with a side of this much of h, the nearest triangle may be so much of h too far off. */
 static const double SMALL = 0.5, TOLERANCE = 0.01;
 
-/* The length at the nearest place of an edge, if it is nearer than *nearest2. */
-static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, double *nearest2,
-                     double *length)
+/* The nearest place so far. */
+struct nearest {
+    double distance2; /* infinite: there is none yet */
+    double length;    /* there */
+    struct tri_point away; /* how far that is */
+};
+
+static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, struct nearest *near)
 {
     const struct tri_point a = b->at[from], along = {b->at[to].x - a.x, b->at[to].y - a.y};
     const double l2 = along.x * along.x + along.y * along.y;
     const double dot = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
     const double t = dot > 0 ? tri_lesser(dot / l2, 1) : 0; /* l2 is above 0 then */
-    const double d2 = tri_distance2((struct tri_point){a.x + t * along.x, a.y + t * along.y}, p);
-    if (d2 < *nearest2) {
-        *nearest2 = d2;
-        *length = b->length[from] + t * (b->length[to] - b->length[from]);
-    }
+    const struct tri_point away = {a.x + t * along.x - p.x, a.y + t * along.y - p.y};
+    const double d2 = away.x * away.x + away.y * away.y;
+    if (d2 < near->distance2)
+        *near = (struct nearest){d2, b->length[from] + t * (b->length[to] - b->length[from]), away};
 }
 
 static double twice_area(struct tri_point a, struct tri_point b, struct tri_point c)
@@ -30,36 +34,35 @@ static double twice_area(struct tri_point a, struct tri_point b, struct tri_poin
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
 }
 
-/* The length at the place of a triangle that is nearest to p, if it is nearer than *nearest2. */
-static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, double *nearest2,
-                         double *length)
+/* *near becomes the nearest place in a triangle, if that is nearer. */
+static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, struct nearest *near)
 {
     const int32_t *v = b->corner + 3 * (size_t)t;
     const double w0 = twice_area(p, b->at[v[1]], b->at[v[2]]), w1 = twice_area(p, b->at[v[2]], b->at[v[0]]);
     const double w2 = twice_area(p, b->at[v[0]], b->at[v[1]]), sum = w0 + w1 + w2;
     if (w0 >= 0 && w1 >= 0 && w2 >= 0 && sum > 0) {
-        *length = (w0 * b->length[v[0]] + w1 * b->length[v[1]] + w2 * b->length[v[2]]) / sum;
-        *nearest2 = 0;
+        const double length = (w0 * b->length[v[0]] + w1 * b->length[v[1]] + w2 * b->length[v[2]]) / sum;
+        *near = (struct nearest){0, length, {0, 0}};
         return;
     }
     for (int k = 0; k < 3; k++)
-        ask_edge(b, v[k], v[tri_next[k]], p, nearest2, length);
+        ask_edge(b, v[k], v[tri_next[k]], p, near);
 }
 
-static double key(const void *user, int32_t triangle, struct tri_point p, double *slope)
+static struct tri_key key(const void *user, int32_t triangle, struct tri_point p)
 {
-    double nearest2 = HUGE_VAL, length;
-    *slope = 1;
-    ask_triangle(user, triangle, p, &nearest2, &length);
-    return sqrt(nearest2);
+    struct nearest near = {.distance2 = HUGE_VAL};
+    ask_triangle(user, triangle, p, &near);
+    return tri_key_of_distance(0, 1, near.away);
 }
 
-static double allowed(const void *user, int32_t winner, struct tri_point centre, double distance, double side)
+static double allowed(const void *user, int32_t winner, double distance, double side)
 {
-    double nearest2 = HUGE_VAL, length = 0;
+    const struct tri_background *b = user;
+    const int32_t *v = b->corner + 3 * (size_t)winner;
+    const double least = tri_lesser(tri_lesser(b->length[v[0]], b->length[v[1]]), b->length[v[2]]);
     (void)distance;
-    ask_triangle(user, winner, centre, &nearest2, &length);
-    return side <= SMALL * length ? TOLERANCE * length : 0;
+    return side <= SMALL * least ? TOLERANCE * least : 0;
 }
 
 /* Leaves out triangles where no data could reach, and turns the others counter-clockwise. */
@@ -138,10 +141,10 @@ double tri_background_at(const struct tri_background *b, struct tri_point p)
 {
     int32_t n;
     const int32_t *list = tri_candidates_at(&b->candidates, p, &n);
-    double nearest2 = HUGE_VAL, length = HUGE_VAL;
-    for (int32_t i = 0; i < n && nearest2 > 0; i++)
-        ask_triangle(b, list[i], p, &nearest2, &length);
-    return length;
+    struct nearest near = {.distance2 = HUGE_VAL};
+    for (int32_t i = 0; i < n && near.distance2 > 0; i++)
+        ask_triangle(b, list[i], p, &near);
+    return near.length;
 }
 
 uint64_t tri_background_hash(const struct tri_background *b, uint64_t hash)

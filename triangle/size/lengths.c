@@ -103,12 +103,22 @@ enum tri_status tri_sizes_check(const struct tri_sizes *s, struct tri_error *err
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "max_size is %g", s->max_size);
     if (s->max_size > 0 && s->min_size > s->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "min_size %g is above max_size %g", s->min_size, s->max_size);
+    if (!(s->elements_across >= 0 && s->elements_across < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "elements_across is %g", s->elements_across);
+    if (!(s->per_circle >= 0 && s->per_circle < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "per_circle is %g", s->per_circle);
     if (s->n < 0 || (s->n > 0 && !s->fields))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "sizes is NULL, and n_sizes %lld", (long long)s->n);
     for (int64_t k = 0; k < s->n; k++)
         if (check_field(&s->fields[k], &own))
             return blame(s, k, &own, error);
     return TRI_OK;
+}
+
+/* Sources that are no number. */
+static int64_t count_sources(const struct tri_lengths *l)
+{
+    return l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled;
 }
 
 /* --- made */
@@ -223,6 +233,19 @@ static enum tri_status take(struct making *m, int64_t k, struct tri_error *error
     return TRI_OK;
 }
 
+/* What the figure asks for. */
+static enum tri_status take_figure(struct making *m, struct tri_error *error)
+{
+    const struct tri_sizes *s = m->sizes;
+    struct tri_near *near = &m->out->near;
+    enum tri_status status = s->region_areas ? tri_near_regions(near, &m->frame, error) : TRI_OK;
+    if (!status && s->per_circle > 0)
+        status = tri_near_curves(near, &m->frame, s->per_circle, error);
+    if (!status && s->elements_across > 0)
+        status = tri_near_channels(near, &m->frame, s->elements_across, error);
+    return status ? status : tri_near_settle(near, &m->frame, error);
+}
+
 static enum tri_status take_all(struct making *m, struct tri_error *error)
 {
     struct tri_lengths *l = m->out;
@@ -240,7 +263,7 @@ static enum tri_status take_all(struct making *m, struct tri_error *error)
         if (take(m, k, &own))
             return blame(m->sizes, k, &own, error);
     }
-    return tri_near_settle(&l->near, &m->frame, error);
+    return take_figure(m, error);
 }
 
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
@@ -250,13 +273,13 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
     (void)executor;
     *lengths = NULL;
     enum tri_status status = tri_sizes_check(sizes, error);
-    if (status || (sizes->n == 0 && !(sizes->max_size > 0)))
+    if (status || (sizes->n == 0 && !(sizes->max_size > 0 || sizes->elements_across > 0 || sizes->per_circle > 0)))
         return status;
     struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
     if (!m.out)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     status = take_all(&m, error);
-    if (status)
+    if (status || (count_sources(m.out) == 0 && !(m.out->number < HUGE_VAL)))
         tri_lengths_free(m.out);
     else
         *lengths = m.out;
@@ -298,8 +321,7 @@ double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
 
 double tri_lengths_uniform(const struct tri_lengths *l)
 {
-    const bool is_number = l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled == 0;
-    return is_number && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
+    return count_sources(l) == 0 && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
 }
 
 const char *tri_lengths_note(const struct tri_lengths *l) { return l ? l->note : ""; }
