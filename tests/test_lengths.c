@@ -230,7 +230,7 @@ static void check_raster(int64_t w, int64_t h, double gaps, double gradation, ui
     }
     print_message("  %d x %d: %g\n", (int)w, (int)h, worst);
     assert_true(worst < 3e-3);
-    assert_non_null(strstr(tri_lengths_note(lengths), "sizes[0] covers (100, -50) to ("));
+    assert_non_null(strstr(tri_lengths_note(lengths), "sizes[0] covers ("));
     tri_lengths_free(lengths);
     free(values);
     free(limited);
@@ -363,6 +363,57 @@ static void test_meshes_are_as_all_triangles_say(void **state)
     check_background(200, 0, 0.2, SUPPORT_LATTICE, 5);
     check_background(200, 0, 0.2, SUPPORT_RING, 6);
     check_background(60, 0, 0.2, SUPPORT_NEAR_LINE, 7);
+}
+
+/* Points alone, and triangles that share no corners. */
+static void test_loose_points_and_triangles(void **state)
+{
+    (void)state;
+    enum { POINTS = 50 };
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    struct support_random random = {3};
+    double at[2 * POINTS], value[POINTS];
+    for (int k = 0; k < POINTS; k++) {
+        at[2 * k] = 4 * support_unit(&random);
+        at[2 * k + 1] = 4 * support_unit(&random);
+        value[k] = 0.01 + support_unit(&random);
+    }
+    struct tri_size_field f = {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, POINTS, 2),
+                               .values = tri_reals_of(value, POINTS, 1)};
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = 0.2});
+    for (int i = 0; i < 1000; i++) {
+        const struct tri_point p = place(&random, 4);
+        double nearest = HUGE_VAL, h = HUGE_VAL, least = HUGE_VAL;
+        for (int k = 0; k < POINTS; k++) {
+            const double d = hypot(p.x - at[2 * k], p.y - at[2 * k + 1]);
+            h = d < nearest ? value[k] : h;
+            nearest = fmin(nearest, d);
+            least = fmin(least, value[k] + 0.2 * d);
+        }
+        assert_true(fabs(tri_lengths_at(lengths, (struct tri_point){p.x / mesh.unit, p.y / mesh.unit}) * mesh.unit /
+                             fmin(h, least) - 1) < 0.02);
+    }
+    tri_lengths_free(lengths);
+    /* Two triangles on the square, the short length at a corner of one: it reaches the far corner of the other. */
+    const double square[] = {0, 0, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4}, given[] = {0.1, 9, 9, 9, 9, 9};
+    const int32_t corners[] = {0, 1, 2, 3, 4, 5};
+    f = (struct tri_size_field){.kind = TRI_SIZE_MESH, .points = tri_reals_of(square, 6, 2),
+                                .values = tri_reals_of(given, 6, 1), .triangles = tri_ints_of(corners, 2, 3)};
+    lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = 0.2});
+    const double far = tri_lengths_at(lengths, (struct tri_point){4 / mesh.unit, 4 / mesh.unit}) * mesh.unit;
+    assert_true(fabs(far - (0.1 + 0.2 * sqrt(32))) < 1e-9);
+    tri_lengths_free(lengths);
+    /* Values far apart: what is between them stays above 0. */
+    const double apart[] = {5.5e-17, 9.6e8, 1.8e31, 5.5e-17, 1, 2};
+    f = (struct tri_size_field){.kind = TRI_SIZE_RASTER, .values = tri_reals_of(apart, 3, 2), .step = {4, 2}};
+    lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = HUGE_VAL});
+    for (int i = 0; i < 1000; i++) {
+        struct tri_point p = place(&random, 4);
+        p = (struct tri_point){i % 2 ? 4 : p.x, i % 3 ? 2 : p.y};
+        assert_true(tri_lengths_at(lengths, (struct tri_point){p.x / mesh.unit, p.y / mesh.unit}) > 0);
+    }
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
 }
 
 /* --- functions */
@@ -636,7 +687,7 @@ static void test_what_is_no_field_is_refused(void **state)
                                         "sizes[0], a raster: it has no values",
                                         "sizes[0], a raster: its origin is (0, 0), its step (1, 0)",
                                         "sizes[0], a raster: no value is a length",
-                                        "sizes[0], a mesh: it has no points, or no triangles",
+                                        "sizes[0], a mesh: it has no points",
                                         "sizes[0], a mesh: it has 2 points and 3 values",
                                         "sizes[0], a mesh: its point 1 is (1, inf)",
                                         "sizes[0], a mesh: its triangle 0 has the corner 3, of 3 points",
@@ -674,7 +725,7 @@ static void test_settings_take_fields(void **state)
     settings.sizes = &f;
     settings.n_sizes = 1;
     assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_OK);
-    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (0, 0) to (1, 0), the mesh (0, 0) to (1, 1):"
+    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (-0.5, -0.5) to (1.5, 0.5), the mesh (0, 0) to (1, 1):"
                                               " outside, the nearest lengths count");
     f.values.n = 0;
     assert_int_equal(tri_mesh_refine(mesh, &settings, &error), TRI_BAD_INPUT);
@@ -691,7 +742,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
-        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_functions_are_kept),
+        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_loose_points_and_triangles),
+        cmocka_unit_test(test_functions_are_kept),
         cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
         cmocka_unit_test(test_channels_have_so_many_across),
         cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};

@@ -130,7 +130,7 @@ struct tri_size_field {
     double origin[2];        /* RASTER: the place of the first value .. */
     double step[2];          /* .. and the distance of columns and of rows, above 0 */
     struct tri_reals points; /* MESH: [n][2] */
-    struct tri_ints triangles; /* MESH: [n][3] points */
+    struct tri_ints triangles; /* MESH: [n][3] points; not given: the nearest point counts */
     /* FUNCTION: writes the lengths at n places. Asked by the calling thread alone, for some million places in a few
      * dozen calls, before anything is meshed: what it says is kept in a quadtree, bilinear to 2%. */
     void (*function)(void *user, int64_t n, const double (*at)[2], double *length);

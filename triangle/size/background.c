@@ -6,6 +6,7 @@
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
+#include "triangle/base/heap_sort.h"
 
 /* In cells with a side of this much of h, the nearest triangle may be so much of h too far off. */
 static const double SMALL = 0.5, TOLERANCE = 0.01;
@@ -26,7 +27,7 @@ static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, s
     const struct tri_point away = {a.x + t * along.x - p.x, a.y + t * along.y - p.y};
     const double d2 = away.x * away.x + away.y * away.y;
     if (d2 < near->distance2)
-        *near = (struct nearest){d2, b->length[from] + t * (b->length[to] - b->length[from]), away};
+        *near = (struct nearest){d2, (1 - t) * b->length[from] + t * b->length[to], away};
 }
 
 static double twice_area(struct tri_point a, struct tri_point b, struct tri_point c)
@@ -83,7 +84,7 @@ static bool take(struct tri_background *b, const struct tri_size_field *f, const
 {
     const double unit = frame->mesh->unit;
     b->n = (int32_t)f->points.n;
-    b->n_triangles = (int32_t)f->triangles.n;
+    b->n_triangles = f->triangles.n > 0 ? (int32_t)f->triangles.n : b->n;
     b->at = malloc((size_t)b->n * sizeof *b->at);
     b->length = malloc((size_t)b->n * sizeof *b->length);
     b->corner = malloc(3 * (size_t)b->n_triangles * sizeof *b->corner);
@@ -95,22 +96,49 @@ static bool take(struct tri_background *b, const struct tri_size_field *f, const
         b->length[v] = tri_size_of(frame, f->values.at[v * f->values.stride]);
     }
     for (int64_t t = 0; t < b->n_triangles; t++)
-        memcpy(b->corner + 3 * t, f->triangles.at + t * f->triangles.stride, 3 * sizeof *b->corner);
+        for (int k = 0; k < 3; k++) /* points alone: flat triangles */
+            b->corner[3 * t + k] = f->triangles.n > 0 ? f->triangles.at[t * f->triangles.stride + k] : (int32_t)t;
     return true;
 }
 
+static bool is_before(const void *background, int32_t v, int32_t w)
+{
+    const struct tri_background *b = background;
+    const int order = tri_compare_places(b->at[v], b->at[w]);
+    return order < 0 || (order == 0 && v < w);
+}
+
+/* Points at one place become one corner, with the least length: triangles of some formats share none, and lengths must
+ * spread between them. */
+static bool weld(struct tri_background *b)
+{
+    int32_t *order = malloc(2 * (size_t)b->n * sizeof *order), *first = order + b->n;
+    for (int32_t i = 0; order && i < b->n; i++)
+        order[i] = i;
+    if (order)
+        tri_heap_sort(order, b->n, is_before, b);
+    for (int32_t i = 0; order && i < b->n; i++) {
+        const int32_t v = order[i], before = i > 0 ? first[order[i - 1]] : v;
+        first[v] = tri_compare_places(b->at[before], b->at[v]) == 0 ? before : v;
+        double *least = &b->length[first[v]];
+        *least = *least > 0 && !(b->length[v] > 0 && b->length[v] < *least) ? *least : b->length[v];
+    }
+    for (int64_t k = 0; order && k < 3 * (int64_t)b->n_triangles; k++)
+        b->corner[k] = first[b->corner[k]];
+    free(order);
+    return order;
+}
+
 /* The lengths of vertices that no triangle has say nothing. */
-static enum tri_status forget_unused(struct tri_background *b, struct tri_error *error)
+static bool forget_unused(struct tri_background *b)
 {
     bool *used = calloc((size_t)b->n, sizeof *used);
-    if (!used)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
-    for (int64_t k = 0; k < 3 * (int64_t)b->n_triangles; k++)
+    for (int64_t k = 0; used && k < 3 * (int64_t)b->n_triangles; k++)
         used[b->corner[k]] = true;
-    for (int32_t v = 0; v < b->n; v++)
+    for (int32_t v = 0; used && v < b->n; v++)
         b->length[v] = used[v] ? b->length[v] : 0;
     free(used);
-    return TRI_OK;
+    return used;
 }
 
 enum tri_status tri_background_make(struct tri_background *background, const struct tri_size_field *field,
@@ -121,8 +149,9 @@ enum tri_status tri_background_make(struct tri_background *background, const str
     const struct tri_contest contest = {key, allowed, b};
     bool has_data;
     *b = (struct tri_background){0};
-    enum tri_status status = take(b, field, frame) ? forget_unused(b, error)
-                                                   : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    enum tri_status status = take(b, field, frame) && forget_unused(b) && weld(b)
+                                 ? TRI_OK
+                                 : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     const struct tri_spreading cells = {b->at, b->n, b->corner, b->n_triangles, 3};
     if (!status)
         status = tri_spread_lengths(&cells, b->length, frame->gradation, &has_data, stop, error);

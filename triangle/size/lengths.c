@@ -43,8 +43,10 @@ static enum tri_status check_mesh(const struct tri_size_field *f, struct tri_err
 {
     const struct tri_reals *p = &f->points, *v = &f->values;
     const struct tri_ints *t = &f->triangles;
-    if (!p->at || p->n < 1 || p->width != 2 || p->stride < 2 || !t->at || t->n < 1 || t->width != 3 || t->stride < 3)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no points, or no triangles");
+    if (!p->at || p->n < 1 || p->width != 2 || p->stride < 2)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no points");
+    if (t->n < 0 || (t->n > 0 && (!t->at || t->width != 3 || t->stride < 3)))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its triangles have %lld corners", (long long)t->width);
     if (!v->at || v->n != p->n || v->width != 1 || v->stride < 1)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has %lld points and %lld values", (long long)p->n,
                         (long long)v->n);
@@ -186,9 +188,10 @@ static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error
     if (status)
         return status;
     m->out->n_rasters++;
-    note_uncovered(m, k, (struct tri_point){r->origin[0], r->origin[1]},
-                   (struct tri_point){r->origin[0] + (double)(r->n[0] - 1) / r->inverse[0],
-                                      r->origin[1] + (double)(r->n[1] - 1) / r->inverse[1]});
+    const double x = 0.5 / r->inverse[0], y = 0.5 / r->inverse[1]; /* a value speaks for a cell around its node */
+    const double width = (double)(2 * r->n[0] - 1) * x, height = (double)(2 * r->n[1] - 1) * y;
+    note_uncovered(m, k, (struct tri_point){r->origin[0] - x, r->origin[1] - y},
+                   (struct tri_point){r->origin[0] + width, r->origin[1] + height});
     return TRI_OK;
 }
 
@@ -205,6 +208,9 @@ static enum tri_status take_background(struct making *m, int64_t k, struct tri_e
         low = (struct tri_point){tri_lesser(low.x, p.x), tri_lesser(low.y, p.y)};
         high = (struct tri_point){tri_larger(high.x, p.x), tri_larger(high.y, p.y)};
     }
+    for (int32_t v = 0; m->sizes->fields[k].triangles.n == 0 && m->frame.gradation < HUGE_VAL && v < b->n; v++)
+        if (b->length[v] > 0 && !tri_near_add(&m->out->near, b->at[v], b->at[v], b->length[v], m->frame.gradation))
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     note_uncovered(m, k, low, high);
     return TRI_OK;
 }

@@ -124,7 +124,8 @@ double tri_sampled_at(const struct tri_sampled *sampled, struct tri_point p);
 uint64_t tri_sampled_hash(const struct tri_sampled *sampled, uint64_t hash);
 void tri_sampled_clear(struct tri_sampled *sampled);
 
-/* --- background.c: values at the vertices of a background mesh */
+/* --- background.c: values at the vertices of a background mesh; without triangles at points, of which the nearest
+ * counts, and which are not limited */
 struct tri_background {
     struct tri_point *at; /* [n] vertices */
     double *length;       /* [n] limited */
