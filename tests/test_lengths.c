@@ -137,9 +137,10 @@ static void test_segments_with_a_marker(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 60, 8);
+    static const double growth[4] = {0, -1, 0.05, 3}; /* the last is limited */
     for (int32_t marker = 1; marker <= 3; marker++) {
         const struct tri_size_field fields[] = {
-            {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = -1, .marker = marker},
+            {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = growth[marker], .marker = marker},
             {.kind = TRI_SIZE_NUMBER, .length = 0.2}};
         const struct tri_sizes sizes = {.fields = fields, .n = 2, .gradation = 0.1, .min_size = 0.015};
         struct tri_lengths *lengths = lengths_of(&mesh, &sizes);
@@ -153,7 +154,8 @@ static void test_segments_with_a_marker(void **state)
                 if (mesh.sub[s].marker == marker || (marker == 1 && tri_is_boundary(&mesh.sub[s])))
                     nearest = fmin(nearest, distance(a, b, p));
             }
-            const double h = fmax(fmin(0.01 * marker + 0.1 * nearest, 0.2), 0.015);
+            const double grown = 0.01 * marker + (marker == 2 ? 0.05 : 0.1) * nearest;
+            const double h = fmax(fmin(grown, 0.2), 0.015);
             const double got = tri_lengths_at(lengths, p);
             assert_true(got > h * (1 - 1e-12) && got < h * 1.02);
         }
@@ -651,6 +653,48 @@ static void test_channels_have_so_many_across(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* --- the number of a field */
+
+static void ask_constant(void *user, int64_t n, const double (*at)[2], double *length)
+{
+    (void)at;
+    for (int64_t i = 0; i < n; i++)
+        length[i] = *(const double *)user;
+}
+
+static void test_other_fields_have_other_numbers(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    double values[2][4] = {{1, 2, 3, 4}, {1, 2, 3, 4.0000005}}, constant[2] = {0.1, 0.1000001};
+    const double at[] = {0, 0, 4, 0, 0, 4};
+    const int32_t corners[] = {0, 1, 2};
+    uint64_t hash[12];
+    for (int k = 0; k < 12; k++) {
+        const double *v = values[k % 2];
+        const struct tri_size_field of[6] = {
+            {.kind = TRI_SIZE_NUMBER, .length = v[3]},
+            {.kind = TRI_SIZE_NEAR, .length = v[3], .marker = 1},
+            {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(v, 2, 2), .step = {4, 4}},
+            {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, 3, 2), .values = tri_reals_of(v + 1, 3, 1),
+             .triangles = tri_ints_of(corners, 1, 3)},
+            {.kind = TRI_SIZE_FUNCTION, .function = ask_constant, .user = &constant[k % 2]},
+            {.kind = TRI_SIZE_NUMBER, .length = 1}};
+        const struct tri_sizes sizes = {.fields = &of[k / 2], .n = 1, .gradation = HUGE_VAL,
+                                        .min_size = k / 2 == 5 ? 0.001 * (1 + k) : 0};
+        const struct tri_sizes near_sizes = {.fields = &of[k / 2], .n = 1};
+        struct tri_lengths *one = lengths_of(&mesh, k / 2 == 1 ? &near_sizes : &sizes);
+        struct tri_lengths *same = lengths_of(&mesh, k / 2 == 1 ? &near_sizes : &sizes);
+        hash[k] = tri_lengths_hash(one);
+        assert_true(hash[k] == tri_lengths_hash(same) && hash[k] != 0);
+        for (int i = 0; i < k; i++)
+            assert_true(hash[i] != hash[k]);
+        tri_lengths_free(one);
+        tri_lengths_free(same);
+    }
+    tri_mesh_free(&mesh);
+}
+
 /* --- what is refused */
 
 static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
@@ -746,6 +790,7 @@ int main(void)
         cmocka_unit_test(test_functions_are_kept),
         cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
         cmocka_unit_test(test_channels_have_so_many_across),
+        cmocka_unit_test(test_other_fields_have_other_numbers),
         cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
