@@ -50,6 +50,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/spread.c
     triangle/size/sampled.c
     triangle/size/background.c
+    triangle/size/figure_sizes.c
     triangle/size/lengths.c
     triangle/size/quality.c
     triangle/size/estimate.c

@@ -137,9 +137,10 @@ static void test_segments_with_a_marker(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 60, 8);
+    static const double growth[4] = {0, -1, 0.05, 3}; /* the last is limited */
     for (int32_t marker = 1; marker <= 3; marker++) {
         const struct tri_size_field fields[] = {
-            {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = -1, .marker = marker},
+            {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = growth[marker], .marker = marker},
             {.kind = TRI_SIZE_NUMBER, .length = 0.2}};
         const struct tri_sizes sizes = {.fields = fields, .n = 2, .gradation = 0.1, .min_size = 0.015};
         struct tri_lengths *lengths = lengths_of(&mesh, &sizes);
@@ -153,7 +154,8 @@ static void test_segments_with_a_marker(void **state)
                 if (mesh.sub[s].marker == marker || (marker == 1 && tri_is_boundary(&mesh.sub[s])))
                     nearest = fmin(nearest, distance(a, b, p));
             }
-            const double h = fmax(fmin(0.01 * marker + 0.1 * nearest, 0.2), 0.015);
+            const double grown = 0.01 * marker + (marker == 2 ? 0.05 : 0.1) * nearest;
+            const double h = fmax(fmin(grown, 0.2), 0.015);
             const double got = tri_lengths_at(lengths, p);
             assert_true(got > h * (1 - 1e-12) && got < h * 1.02);
         }
@@ -230,7 +232,7 @@ static void check_raster(int64_t w, int64_t h, double gaps, double gradation, ui
     }
     print_message("  %d x %d: %g\n", (int)w, (int)h, worst);
     assert_true(worst < 3e-3);
-    assert_non_null(strstr(tri_lengths_note(lengths), "sizes[0] covers (100, -50) to ("));
+    assert_non_null(strstr(tri_lengths_note(lengths), "sizes[0] covers ("));
     tri_lengths_free(lengths);
     free(values);
     free(limited);
@@ -365,6 +367,57 @@ static void test_meshes_are_as_all_triangles_say(void **state)
     check_background(60, 0, 0.2, SUPPORT_NEAR_LINE, 7);
 }
 
+/* Points alone, and triangles that share no corners. */
+static void test_loose_points_and_triangles(void **state)
+{
+    (void)state;
+    enum { POINTS = 50 };
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    struct support_random random = {3};
+    double at[2 * POINTS], value[POINTS];
+    for (int k = 0; k < POINTS; k++) {
+        at[2 * k] = 4 * support_unit(&random);
+        at[2 * k + 1] = 4 * support_unit(&random);
+        value[k] = 0.01 + support_unit(&random);
+    }
+    struct tri_size_field f = {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, POINTS, 2),
+                               .values = tri_reals_of(value, POINTS, 1)};
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = 0.2});
+    for (int i = 0; i < 1000; i++) {
+        const struct tri_point p = place(&random, 4);
+        double nearest = HUGE_VAL, h = HUGE_VAL, least = HUGE_VAL;
+        for (int k = 0; k < POINTS; k++) {
+            const double d = hypot(p.x - at[2 * k], p.y - at[2 * k + 1]);
+            h = d < nearest ? value[k] : h;
+            nearest = fmin(nearest, d);
+            least = fmin(least, value[k] + 0.2 * d);
+        }
+        assert_true(fabs(tri_lengths_at(lengths, (struct tri_point){p.x / mesh.unit, p.y / mesh.unit}) * mesh.unit /
+                             fmin(h, least) - 1) < 0.02);
+    }
+    tri_lengths_free(lengths);
+    /* Two triangles on the square, the short length at a corner of one: it reaches the far corner of the other. */
+    const double square[] = {0, 0, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4}, given[] = {0.1, 9, 9, 9, 9, 9};
+    const int32_t corners[] = {0, 1, 2, 3, 4, 5};
+    f = (struct tri_size_field){.kind = TRI_SIZE_MESH, .points = tri_reals_of(square, 6, 2),
+                                .values = tri_reals_of(given, 6, 1), .triangles = tri_ints_of(corners, 2, 3)};
+    lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = 0.2});
+    const double far = tri_lengths_at(lengths, (struct tri_point){4 / mesh.unit, 4 / mesh.unit}) * mesh.unit;
+    assert_true(fabs(far - (0.1 + 0.2 * sqrt(32))) < 1e-9);
+    tri_lengths_free(lengths);
+    /* Values far apart: what is between them stays above 0. */
+    const double apart[] = {5.5e-17, 9.6e8, 1.8e31, 5.5e-17, 1, 2};
+    f = (struct tri_size_field){.kind = TRI_SIZE_RASTER, .values = tri_reals_of(apart, 3, 2), .step = {4, 2}};
+    lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = HUGE_VAL});
+    for (int i = 0; i < 1000; i++) {
+        struct tri_point p = place(&random, 4);
+        p = (struct tri_point){i % 2 ? 4 : p.x, i % 3 ? 2 : p.y};
+        assert_true(tri_lengths_at(lengths, (struct tri_point){p.x / mesh.unit, p.y / mesh.unit}) > 0);
+    }
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
 /* --- functions */
 
 struct asked {
@@ -450,6 +503,198 @@ static void test_functions_are_kept(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* --- what the figure asks for */
+
+static struct tri_mesh mesh_of(struct tri_pslg *pslg, bool spread_regions)
+{
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    options.spread_regions = spread_regions;
+    struct tri_mesh mesh = support_generate(pslg, &options, NULL);
+    tri_pslg_free(pslg);
+    return mesh;
+}
+
+static double at_place(const struct tri_lengths *lengths, const struct tri_mesh *mesh, double x, double y)
+{
+    return tri_lengths_at(lengths, (struct tri_point){x / mesh->unit, y / mesh->unit}) * mesh->unit;
+}
+
+static void add_ring(struct tri_pslg *pslg, int n, double radius, double roughness)
+{
+    struct support_random random = {7};
+    const int32_t first = pslg->n_points;
+    for (int i = 0; i < n; i++) {
+        const double angle = 6.283185307179586 * i / n, r = radius * (1 + roughness * (support_unit(&random) - 0.5));
+        support_add_point(pslg, r * cos(angle), r * sin(angle));
+        support_add_segment(pslg, first + i, first + (i + 1) % n);
+    }
+}
+
+static void test_lengths_grow_from_regions(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(6, 7, 0, 2);
+    static const double xy[6][2] = {{0, 0}, {1, 0}, {4, 0}, {4, 2}, {1, 2}, {0, 2}};
+    const double regions[] = {0.5, 1, 1, 0.001, 3, 1, 2, 0.5};
+    for (int k = 0; k < 6; k++) {
+        support_add_point(&pslg, xy[k][0], xy[k][1]);
+        support_add_segment(&pslg, k, (k + 1) % 6);
+    }
+    support_add_segment(&pslg, 1, 4);
+    memcpy(pslg.regions, regions, sizeof regions);
+    pslg.n_regions = 2;
+    struct tri_mesh mesh = mesh_of(&pslg, true);
+    struct tri_sizes sizes = {.max_size = 0.4, .gradation = 0.1, .region_areas = true};
+    struct tri_lengths *lengths = lengths_of(&mesh, &sizes);
+    const double border = sqrt(0.001 / (sqrt(3) / 4));
+    for (double x = 0; x <= 4; x += 0.25) {
+        const double h = fmin(border + 0.1 * fabs(x - 1), 0.4);
+        assert_true(fabs(at_place(lengths, &mesh, x, 0.7) / h - 1) < 1e-9);
+    }
+    tri_lengths_free(lengths);
+    sizes.region_areas = false;
+    lengths = lengths_of(&mesh, &sizes);
+    assert_true(tri_lengths_uniform(lengths) * mesh.unit == 0.4);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+static void test_circles_have_so_many(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(68, 68, 0, 0);
+    add_ring(&pslg, 64, 3, 0);
+    for (int k = 0; k < 4; k++) { /* corners are no curve */
+        support_add_point(&pslg, k == 0 || k == 3 ? -1 : 1, k < 2 ? -1 : 1);
+        support_add_segment(&pslg, 64 + k, 64 + (k + 1) % 4);
+    }
+    struct tri_mesh mesh = mesh_of(&pslg, false);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.per_circle = 100, .gradation = 0.2});
+    const double around = 6.283185307179586 * 3 / 100;
+    for (int32_t k = 0; k < 64; k++)
+        assert_true(fabs(at_place(lengths, &mesh, 3 * cos(0.1 * k), 3 * sin(0.1 * k)) / around - 1) < 0.17);
+    assert_true(fabs(at_place(lengths, &mesh, 0, 0) / (around + 0.6) - 1) < 0.02);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+/* The lengths that are asked for over those that shall be, at places that `across` gives with the width there. */
+static void check_channel(struct tri_pslg *pslg, void (*across)(double s, double t, double out[3]), double least,
+                          double most)
+{
+    struct tri_mesh mesh = mesh_of(pslg, false);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.elements_across = 4, .gradation = 0.2});
+    double low = HUGE_VAL, high = 0;
+    for (double s = 0.005; s < 1; s += 0.01)
+        for (double t = 0; t <= 1; t += 0.125) {
+            double out[3];
+            across(s, t, out);
+            const double ratio = at_place(lengths, &mesh, out[0], out[1]) * 4 / out[2];
+            low = fmin(low, ratio);
+            high = fmax(high, ratio);
+        }
+    print_message("  h over width / 4: %.3f to %.3f\n", low, high);
+    assert_true(low >= least && high <= most);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+static void in_rectangle(double s, double t, double out[3])
+{
+    out[0] = 1 + 18 * s;
+    out[1] = t;
+    out[2] = 1;
+}
+
+static void in_annulus(double s, double t, double out[3])
+{
+    out[0] = (2 + t) * cos(6.283185307179586 * s);
+    out[1] = (2 + t) * sin(6.283185307179586 * s);
+    out[2] = 1;
+}
+
+/* Between lines that meet at 20 degrees, from 1 to 10 away from where they would: the ball that touches both in s has
+ * the diameter 2 s tan(10 degrees). */
+static void in_funnel(double s, double t, double out[3])
+{
+    const double from = 1.4 + 8 * s, angle = (20 * t - 10) * 3.141592653589793 / 180;
+    out[0] = from * cos(angle);
+    out[1] = from * sin(angle);
+    out[2] = 2 * from * tan(10 * 3.141592653589793 / 180);
+}
+
+static void test_channels_have_so_many_across(void **state)
+{
+    (void)state;
+    static const double corners[2][4][2] = {{{0, 0}, {20, 0}, {20, 1}, {0, 1}},
+                                            {{0.98480775, -0.17364818}, {9.8480775, -1.7364818}, {9.8480775, 1.7364818},
+                                             {0.98480775, 0.17364818}}};
+    for (int which = 0; which < 2; which++) {
+        struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
+        for (int k = 0; k < 4; k++) {
+            support_add_point(&pslg, corners[which][k][0], corners[which][k][1]);
+            support_add_segment(&pslg, k, (k + 1) % 4);
+        }
+        check_channel(&pslg, which ? in_funnel : in_rectangle, which ? 0.9 : 0.999, 1.2);
+    }
+    for (int rough = 0; rough < 2; rough++) {
+        struct tri_pslg pslg = support_pslg(1000, 1000, 1, 0);
+        add_ring(&pslg, 600, 3, rough ? 0.01 : 0);
+        add_ring(&pslg, 400, 2, rough ? 0.01 : 0);
+        pslg.n_holes = 1; /* at the origin */
+        check_channel(&pslg, in_annulus, rough ? 0.85 : 0.99, rough ? 1.15 : 1.05);
+    }
+    /* A square has no walls that face each other closer than its side. */
+    struct tri_mesh mesh = square_mesh(2, 0, 1);
+    struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.elements_across = 4});
+    assert_true(at_place(lengths, &mesh, 0, 0) >= 0.49);
+    tri_lengths_free(lengths);
+    tri_mesh_free(&mesh);
+}
+
+/* --- the number of a field */
+
+static void ask_constant(void *user, int64_t n, const double (*at)[2], double *length)
+{
+    (void)at;
+    for (int64_t i = 0; i < n; i++)
+        length[i] = *(const double *)user;
+}
+
+static void test_other_fields_have_other_numbers(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = square_mesh(4, 10, 1);
+    double values[2][4] = {{1, 2, 3, 4}, {1, 2, 3, 4.0000005}}, constant[2] = {0.1, 0.1000001};
+    const double at[] = {0, 0, 4, 0, 0, 4};
+    const int32_t corners[] = {0, 1, 2};
+    uint64_t hash[12];
+    for (int k = 0; k < 12; k++) {
+        const double *v = values[k % 2];
+        const struct tri_size_field of[6] = {
+            {.kind = TRI_SIZE_NUMBER, .length = v[3]},
+            {.kind = TRI_SIZE_NEAR, .length = v[3], .marker = 1},
+            {.kind = TRI_SIZE_RASTER, .values = tri_reals_of(v, 2, 2), .step = {4, 4}},
+            {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, 3, 2), .values = tri_reals_of(v + 1, 3, 1),
+             .triangles = tri_ints_of(corners, 1, 3)},
+            {.kind = TRI_SIZE_FUNCTION, .function = ask_constant, .user = &constant[k % 2]},
+            {.kind = TRI_SIZE_NUMBER, .length = 1}};
+        const struct tri_sizes sizes = {.fields = &of[k / 2], .n = 1, .gradation = HUGE_VAL,
+                                        .min_size = k / 2 == 5 ? 0.001 * (1 + k) : 0};
+        const struct tri_sizes near_sizes = {.fields = &of[k / 2], .n = 1};
+        struct tri_lengths *one = lengths_of(&mesh, k / 2 == 1 ? &near_sizes : &sizes);
+        struct tri_lengths *same = lengths_of(&mesh, k / 2 == 1 ? &near_sizes : &sizes);
+        hash[k] = tri_lengths_hash(one);
+        assert_true(hash[k] == tri_lengths_hash(same) && hash[k] != 0);
+        for (int i = 0; i < k; i++)
+            assert_true(hash[i] != hash[k]);
+        tri_lengths_free(one);
+        tri_lengths_free(same);
+    }
+    tri_mesh_free(&mesh);
+}
+
 /* --- what is refused */
 
 static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
@@ -486,7 +731,7 @@ static void test_what_is_no_field_is_refused(void **state)
                                         "sizes[0], a raster: it has no values",
                                         "sizes[0], a raster: its origin is (0, 0), its step (1, 0)",
                                         "sizes[0], a raster: no value is a length",
-                                        "sizes[0], a mesh: it has no points, or no triangles",
+                                        "sizes[0], a mesh: it has no points",
                                         "sizes[0], a mesh: it has 2 points and 3 values",
                                         "sizes[0], a mesh: its point 1 is (1, inf)",
                                         "sizes[0], a mesh: its triangle 0 has the corner 3, of 3 points",
@@ -524,7 +769,7 @@ static void test_settings_take_fields(void **state)
     settings.sizes = &f;
     settings.n_sizes = 1;
     assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_OK);
-    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (0, 0) to (1, 0), the mesh (0, 0) to (1, 1):"
+    assert_string_equal(tri_mesh_notes(mesh), "sizes[0] covers (-0.5, -0.5) to (1.5, 0.5), the mesh (0, 0) to (1, 1):"
                                               " outside, the nearest lengths count");
     f.values.n = 0;
     assert_int_equal(tri_mesh_refine(mesh, &settings, &error), TRI_BAD_INPUT);
@@ -541,7 +786,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
-        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_functions_are_kept),
+        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_loose_points_and_triangles),
+        cmocka_unit_test(test_functions_are_kept),
+        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
+        cmocka_unit_test(test_channels_have_so_many_across),
+        cmocka_unit_test(test_other_fields_have_other_numbers),
         cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,7 +130,7 @@ struct tri_size_field {
     double origin[2];        /* RASTER: the place of the first value .. */
     double step[2];          /* .. and the distance of columns and of rows, above 0 */
     struct tri_reals points; /* MESH: [n][2] */
-    struct tri_ints triangles; /* MESH: [n][3] points */
+    struct tri_ints triangles; /* MESH: [n][3] points; not given: the nearest point counts */
     /* FUNCTION: writes the lengths at n places. Asked by the calling thread alone, for some million places in a few
      * dozen calls, before anything is meshed: what it says is kept in a quadtree, bilinear to 2%. */
     void (*function)(void *user, int64_t n, const double (*at)[2], double *length);
@@ -220,6 +220,9 @@ struct tri_settings {
     double gradation;   /* lengths grow by no more than this for a distance of 1; 0: 0.2; infinite: no limit */
     double min_size;    /* shorter lengths count as this; 0: none is too short */
     double max_size;    /* > 0: no length is longer, also where no field says anything */
+    double elements_across; /* > 0: between boundaries, or borders of regions, that face each other there is room for so
+                               many lengths: channels and walls */
+    double per_circle;  /* > 0: where segments follow a curve, so many lengths go around a circle of its curvature */
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -20,7 +20,9 @@
 
 static struct tri_sizes sizes_of(const struct tri_settings *s)
 {
-    return (struct tri_sizes){s->sizes, s->n_sizes, s->gradation, s->min_size, s->max_size};
+    return (struct tri_sizes){.fields = s->sizes, .n = s->n_sizes, .gradation = s->gradation, .min_size = s->min_size,
+                              .max_size = s->max_size, .elements_across = s->elements_across,
+                              .per_circle = s->per_circle};
 }
 
 enum tri_status tri_api_settings_take(struct tri_settings *settings, const struct tri_settings *given,
@@ -72,7 +74,7 @@ static double ask_length(void *user, const double at[2])
 static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *s)
 {
     return s->min_angle > 0 || s->max_area > 0 || s->conforming || s->edge_length || s->unsuitable || m->has_areas ||
-           s->n_sizes > 0 || s->max_size > 0;
+           s->n_sizes > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
 }
 
 static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes *sizes)
@@ -260,7 +262,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
     struct tri_lengths *lengths;
-    const struct tri_sizes asked = sizes_of(s);
+    struct tri_sizes asked = sizes_of(s);
+    asked.region_areas = how.region_areas;
     enum tri_status status = tri_lengths_new(&lengths, &asked, mesh, refiner->way->executor, error);
     how.lengths = lengths;
     snprintf(refiner->m->uncovered, sizeof refiner->m->uncovered, "%s", tri_lengths_note(lengths));

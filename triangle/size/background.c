@@ -6,23 +6,28 @@
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
+#include "triangle/base/heap_sort.h"
 
 /* In cells with a side of this much of h, the nearest triangle may be so much of h too far off. */
 static const double SMALL = 0.5, TOLERANCE = 0.01;
 
-/* The length at the nearest place of an edge, if it is nearer than *nearest2. */
-static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, double *nearest2,
-                     double *length)
+/* The nearest place so far. */
+struct nearest {
+    double distance2; /* infinite: there is none yet */
+    double length;    /* there */
+    struct tri_point away; /* how far that is */
+};
+
+static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, struct nearest *near)
 {
     const struct tri_point a = b->at[from], along = {b->at[to].x - a.x, b->at[to].y - a.y};
     const double l2 = along.x * along.x + along.y * along.y;
     const double dot = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
     const double t = dot > 0 ? tri_lesser(dot / l2, 1) : 0; /* l2 is above 0 then */
-    const double d2 = tri_distance2((struct tri_point){a.x + t * along.x, a.y + t * along.y}, p);
-    if (d2 < *nearest2) {
-        *nearest2 = d2;
-        *length = b->length[from] + t * (b->length[to] - b->length[from]);
-    }
+    const struct tri_point away = {a.x + t * along.x - p.x, a.y + t * along.y - p.y};
+    const double d2 = away.x * away.x + away.y * away.y;
+    if (d2 < near->distance2)
+        *near = (struct nearest){d2, (1 - t) * b->length[from] + t * b->length[to], away};
 }
 
 static double twice_area(struct tri_point a, struct tri_point b, struct tri_point c)
@@ -30,36 +35,35 @@ static double twice_area(struct tri_point a, struct tri_point b, struct tri_poin
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
 }
 
-/* The length at the place of a triangle that is nearest to p, if it is nearer than *nearest2. */
-static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, double *nearest2,
-                         double *length)
+/* *near becomes the nearest place in a triangle, if that is nearer. */
+static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, struct nearest *near)
 {
     const int32_t *v = b->corner + 3 * (size_t)t;
     const double w0 = twice_area(p, b->at[v[1]], b->at[v[2]]), w1 = twice_area(p, b->at[v[2]], b->at[v[0]]);
     const double w2 = twice_area(p, b->at[v[0]], b->at[v[1]]), sum = w0 + w1 + w2;
     if (w0 >= 0 && w1 >= 0 && w2 >= 0 && sum > 0) {
-        *length = (w0 * b->length[v[0]] + w1 * b->length[v[1]] + w2 * b->length[v[2]]) / sum;
-        *nearest2 = 0;
+        const double length = (w0 * b->length[v[0]] + w1 * b->length[v[1]] + w2 * b->length[v[2]]) / sum;
+        *near = (struct nearest){0, length, {0, 0}};
         return;
     }
     for (int k = 0; k < 3; k++)
-        ask_edge(b, v[k], v[tri_next[k]], p, nearest2, length);
+        ask_edge(b, v[k], v[tri_next[k]], p, near);
 }
 
-static double key(const void *user, int32_t triangle, struct tri_point p, double *slope)
+static struct tri_key key(const void *user, int32_t triangle, struct tri_point p)
 {
-    double nearest2 = HUGE_VAL, length;
-    *slope = 1;
-    ask_triangle(user, triangle, p, &nearest2, &length);
-    return sqrt(nearest2);
+    struct nearest near = {.distance2 = HUGE_VAL};
+    ask_triangle(user, triangle, p, &near);
+    return tri_key_of_distance(0, 1, near.away);
 }
 
-static double allowed(const void *user, int32_t winner, struct tri_point centre, double distance, double side)
+static double allowed(const void *user, int32_t winner, double distance, double side)
 {
-    double nearest2 = HUGE_VAL, length = 0;
+    const struct tri_background *b = user;
+    const int32_t *v = b->corner + 3 * (size_t)winner;
+    const double least = tri_lesser(tri_lesser(b->length[v[0]], b->length[v[1]]), b->length[v[2]]);
     (void)distance;
-    ask_triangle(user, winner, centre, &nearest2, &length);
-    return side <= SMALL * length ? TOLERANCE * length : 0;
+    return side <= SMALL * least ? TOLERANCE * least : 0;
 }
 
 /* Leaves out triangles where no data could reach, and turns the others counter-clockwise. */
@@ -80,7 +84,7 @@ static bool take(struct tri_background *b, const struct tri_size_field *f, const
 {
     const double unit = frame->mesh->unit;
     b->n = (int32_t)f->points.n;
-    b->n_triangles = (int32_t)f->triangles.n;
+    b->n_triangles = f->triangles.n > 0 ? (int32_t)f->triangles.n : b->n;
     b->at = malloc((size_t)b->n * sizeof *b->at);
     b->length = malloc((size_t)b->n * sizeof *b->length);
     b->corner = malloc(3 * (size_t)b->n_triangles * sizeof *b->corner);
@@ -92,22 +96,49 @@ static bool take(struct tri_background *b, const struct tri_size_field *f, const
         b->length[v] = tri_size_of(frame, f->values.at[v * f->values.stride]);
     }
     for (int64_t t = 0; t < b->n_triangles; t++)
-        memcpy(b->corner + 3 * t, f->triangles.at + t * f->triangles.stride, 3 * sizeof *b->corner);
+        for (int k = 0; k < 3; k++) /* points alone: flat triangles */
+            b->corner[3 * t + k] = f->triangles.n > 0 ? f->triangles.at[t * f->triangles.stride + k] : (int32_t)t;
     return true;
 }
 
+static bool is_before(const void *background, int32_t v, int32_t w)
+{
+    const struct tri_background *b = background;
+    const int order = tri_compare_places(b->at[v], b->at[w]);
+    return order < 0 || (order == 0 && v < w);
+}
+
+/* Points at one place become one corner, with the least length: triangles of some formats share none, and lengths must
+ * spread between them. */
+static bool weld(struct tri_background *b)
+{
+    int32_t *order = malloc(2 * (size_t)b->n * sizeof *order), *first = order + b->n;
+    for (int32_t i = 0; order && i < b->n; i++)
+        order[i] = i;
+    if (order)
+        tri_heap_sort(order, b->n, is_before, b);
+    for (int32_t i = 0; order && i < b->n; i++) {
+        const int32_t v = order[i], before = i > 0 ? first[order[i - 1]] : v;
+        first[v] = tri_compare_places(b->at[before], b->at[v]) == 0 ? before : v;
+        double *least = &b->length[first[v]];
+        *least = *least > 0 && !(b->length[v] > 0 && b->length[v] < *least) ? *least : b->length[v];
+    }
+    for (int64_t k = 0; order && k < 3 * (int64_t)b->n_triangles; k++)
+        b->corner[k] = first[b->corner[k]];
+    free(order);
+    return order;
+}
+
 /* The lengths of vertices that no triangle has say nothing. */
-static enum tri_status forget_unused(struct tri_background *b, struct tri_error *error)
+static bool forget_unused(struct tri_background *b)
 {
     bool *used = calloc((size_t)b->n, sizeof *used);
-    if (!used)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
-    for (int64_t k = 0; k < 3 * (int64_t)b->n_triangles; k++)
+    for (int64_t k = 0; used && k < 3 * (int64_t)b->n_triangles; k++)
         used[b->corner[k]] = true;
-    for (int32_t v = 0; v < b->n; v++)
+    for (int32_t v = 0; used && v < b->n; v++)
         b->length[v] = used[v] ? b->length[v] : 0;
     free(used);
-    return TRI_OK;
+    return used;
 }
 
 enum tri_status tri_background_make(struct tri_background *background, const struct tri_size_field *field,
@@ -118,8 +149,9 @@ enum tri_status tri_background_make(struct tri_background *background, const str
     const struct tri_contest contest = {key, allowed, b};
     bool has_data;
     *b = (struct tri_background){0};
-    enum tri_status status = take(b, field, frame) ? forget_unused(b, error)
-                                                   : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
+    enum tri_status status = take(b, field, frame) && forget_unused(b) && weld(b)
+                                 ? TRI_OK
+                                 : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     const struct tri_spreading cells = {b->at, b->n, b->corner, b->n_triangles, 3};
     if (!status)
         status = tri_spread_lengths(&cells, b->length, frame->gradation, &has_data, stop, error);
@@ -138,10 +170,10 @@ double tri_background_at(const struct tri_background *b, struct tri_point p)
 {
     int32_t n;
     const int32_t *list = tri_candidates_at(&b->candidates, p, &n);
-    double nearest2 = HUGE_VAL, length = HUGE_VAL;
-    for (int32_t i = 0; i < n && nearest2 > 0; i++)
-        ask_triangle(b, list[i], p, &nearest2, &length);
-    return length;
+    struct nearest near = {.distance2 = HUGE_VAL};
+    for (int32_t i = 0; i < n && near.distance2 > 0; i++)
+        ask_triangle(b, list[i], p, &near);
+    return near.length;
 }
 
 uint64_t tri_background_hash(const struct tri_background *b, uint64_t hash)

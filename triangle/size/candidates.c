@@ -1,11 +1,11 @@
 /* Lists of candidates for the cells of a quadtree.
  *
- * INVARIANT. The list of a cell holds every item that wins anywhere in it. For let r be the distance of the corners of
- * a quarter from its centre c: an item whose key at c, less r times its slope, is above what another's can be at most,
- * wins nowhere in the quarter. What is no candidate in a cell is none in its parts, so that a list is chosen from that
- * of the cell around. A cell is cut until its list is short. Where many items tie - inside a circle, at the tips of a
- * fan - it is not for long: there a small cell keeps those who win at nine places, if with these keys are nearly right
- * at 16 other places too. */
+ * INVARIANT. The list of a cell holds every item that wins anywhere in it. Keys are convex, so that from the centre of
+ * a part of the cell each is bounded from below by its gradient, and the winner's from above by its gradient and bend:
+ * an item whose lower bound is above that all over the part, or above what some item's key is at most, wins nowhere in
+ * it. What is no candidate in a cell is none in its parts, so that a list is chosen from that of the cell around. A
+ * cell is cut until its list is short. Where many items tie - inside a circle, at the tips of a fan - it is not for
+ * long: there a small cell keeps those who win at nine places, if with these keys are nearly right at 16 others. */
 #include "triangle/size/candidates.h"
 
 enum { SHORT = 8, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
@@ -13,22 +13,27 @@ enum { SHORT = 8, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
 /* Rounding must not lose a candidate at the border of two cells. */
 static const double CUSHION = 1 + 0x1p-20;
 
+/* An item from the centre of a quarter of a cell. */
+struct sight {
+    double value;
+    struct tri_point gradient;
+};
+
 struct making {
     struct tri_candidates *out;
     const struct tri_contest *contest;
     const struct tri_stop *stop;
     int32_t *stack; /* the lists of the cells around the one that is worked on, the outermost first */
     int64_t n, capacity;
-    double *bound;  /* [QUARTERS] for each in a list: the least that its key can be in the quarters of a cell */
+    struct sight *sight; /* [QUARTERS] for each in a list */
     uint32_t steps;
     enum tri_status status; /* the first failure */
 };
 
-/* What is known of a cell's list at its centre. */
+/* Of a cell's list. */
 struct verdict {
-    struct tri_point centre;
-    int32_t winner;
-    double key, slope; /* the winner's key; the steepest slope */
+    int32_t winner;    /* who has the least key at the centres of the quarters */
+    double key, slope; /* that; the steepest slope */
 };
 
 static bool reserve(struct making *m, int64_t more)
@@ -41,11 +46,10 @@ static bool reserve(struct making *m, int64_t more)
 /* Who has the least key at a place, and that. */
 static int32_t winner_at(const struct making *m, const int32_t *list, int64_t n, struct tri_point p, double *least)
 {
-    double slope;
     int32_t winner = list[0];
     *least = HUGE_VAL;
     for (int64_t i = 0; i < n; i++) {
-        const double key = m->contest->key(m->contest->user, list[i], p, &slope);
+        const double key = m->contest->key(m->contest->user, list[i], p).value;
         winner = key < *least ? list[i] : winner;
         *least = tri_lesser(*least, key);
     }
@@ -105,7 +109,7 @@ static bool settle(const struct making *m, int32_t *list, int64_t *n, struct tri
     if (*n <= SHORT)
         return true;
     const double side = tri_cell_side(&m->out->tree, cell.depth);
-    const double allowed = m->contest->allowed(m->contest->user, v->winner, v->centre, v->key, side);
+    const double allowed = m->contest->allowed(m->contest->user, v->winner, v->key, side);
     const bool is_last = cell.depth == TRI_QUADTREE_DEEPEST || v->slope * side < allowed;
     return (allowed > 0 || is_last) && keep_winners(m, list, n, cell, is_last ? HUGE_VAL : allowed);
 }
@@ -124,30 +128,62 @@ static void make_leaf(struct making *m, int32_t at, const int32_t *list, int64_t
     out->n += (int32_t)n;
 }
 
-/* Puts onto the stack those of a list, `from` to `to` in the stack, that can win in one of the quarters of a cell. */
-static struct verdict choose(struct making *m, int64_t from, int64_t to, struct tri_point low, double side)
+/* A square part of a cell: the whole, or a quarter. */
+struct part {
+    struct tri_point centre;
+    struct tri_key winner; /* who wins at the centre; value: infinite as long as there is none */
+    double most;           /* somebody's key is no larger anywhere in it */
+};
+
+static struct verdict ask_all(const struct making *m, int64_t from, int64_t to, struct part *parts, int n_parts,
+                              double radius)
 {
-    const double radius = side * 0.35355339059327379 * CUSHION;
-    struct verdict v = {{low.x + side / 2, low.y + side / 2}, m->stack[from], HUGE_VAL, 0};
-    double most[QUARTERS], *bound = m->bound;
-    for (int k = 0; k < QUARTERS; k++)
-        most[k] = HUGE_VAL;
+    struct verdict v = {m->stack[from], HUGE_VAL, 0};
+    struct sight *sight = m->sight;
     for (int64_t i = from; i < to; i++)
-        for (int k = 0; k < QUARTERS; k++) {
-            const struct tri_point p = lattice_place(low, side / 2, 0.5, 2, k);
-            double slope, key = m->contest->key(m->contest->user, m->stack[i], p, &slope);
-            *bound++ = key - slope * radius;
-            most[k] = tri_lesser(most[k], key + slope * radius);
-            v.winner = key < v.key ? m->stack[i] : v.winner;
-            v.key = tri_lesser(v.key, key);
-            v.slope = tri_larger(v.slope, slope);
+        for (int k = 0; k < n_parts; k++) {
+            struct part *part = &parts[k];
+            const struct tri_key key = m->contest->key(m->contest->user, m->stack[i], part->centre);
+            *sight++ = (struct sight){key.value, key.gradient};
+            part->most = tri_lesser(part->most, key.value + key.slope * radius);
+            v.slope = tri_larger(v.slope, key.slope);
+            if (key.value < part->winner.value)
+                part->winner = key;
+            if (key.value < v.key)
+                v = (struct verdict){m->stack[i], key.value, v.slope};
         }
-    bound = m->bound;
-    int64_t kept = m->n;
-    for (int64_t i = from; i < to; i++, bound += QUARTERS)
-        if (bound[0] <= most[0] || bound[1] <= most[1] || bound[2] <= most[2] || bound[3] <= most[3])
-            m->stack[kept++] = m->stack[i];
-    m->n = kept;
+    return v;
+}
+
+/* Can an item win in a part, whose sides are this far from its centre? */
+static inline bool can_win(const struct sight *s, const struct part *part, double half, double radius)
+{
+    const double x = s->gradient.x - part->winner.gradient.x, y = s->gradient.y - part->winner.gradient.y;
+    return s->value - half * (fabs(s->gradient.x) + fabs(s->gradient.y)) <= part->most &&
+           s->value - part->winner.value - half * (fabs(x) + fabs(y)) <= part->winner.bend * radius * radius;
+}
+
+/* Puts onto the stack, from `at` on, those of a list, `from` to `to` in it, that can win in one of the parts of a cell;
+ * a_side is 1 or 2. */
+static struct verdict choose(struct making *m, int64_t from, int64_t to, int64_t at, struct tri_cell cell, int a_side)
+{
+    const struct tri_point low = tri_cell_low(&m->out->tree, cell);
+    const double side = tri_cell_side(&m->out->tree, cell.depth) / a_side;
+    const double half = side / 2 * CUSHION, radius = half * 1.4142135623730951;
+    const int n_parts = a_side * a_side;
+    struct part parts[QUARTERS];
+    for (int k = 0; k < n_parts; k++)
+        parts[k] = (struct part){lattice_place(low, side, 0.5, a_side, k), {.value = HUGE_VAL}, HUGE_VAL};
+    const struct verdict v = ask_all(m, from, to, parts, n_parts, radius);
+    const struct sight *sight = m->sight;
+    m->n = at;
+    for (int64_t i = from; i < to; i++, sight += n_parts) {
+        bool wins = false;
+        for (int k = 0; k < n_parts && !wins; k++)
+            wins = can_win(&sight[k], &parts[k], half, radius);
+        if (wins)
+            m->stack[m->n++] = m->stack[i];
+    }
     return v;
 }
 
@@ -155,14 +191,13 @@ static struct verdict choose(struct making *m, int64_t from, int64_t to, struct 
 static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to)
 {
     struct tri_quadtree *tree = &m->out->tree;
-    const double side = tri_cell_side(tree, cell.depth);
-    const struct tri_point low = tri_cell_low(tree, cell);
     const int64_t first = m->n;
     if (tri_stop_is_due(m->stop, &m->steps))
         m->status = TRI_STOPPED;
     if (m->status || !reserve(m, to - from))
         return;
-    const struct verdict v = choose(m, from, to, low, side);
+    choose(m, from, to, first, cell, 1);
+    const struct verdict v = choose(m, first, m->n, first, cell, 2);
     int64_t n = m->n - first;
     if (settle(m, m->stack + first, &n, cell, &v)) {
         make_leaf(m, at, m->stack + first, n);
@@ -185,7 +220,7 @@ enum tri_status tri_candidates_make(struct tri_candidates *candidates, const str
     struct making m = {.out = candidates, .contest = contest, .stop = stop};
     *candidates = (struct tri_candidates){0};
     if (!tri_quadtree_init(&candidates->tree, low, high) || !reserve(&m, n) ||
-        !tri_resize(&m.bound, (size_t)n * QUARTERS, sizeof *m.bound))
+        !tri_resize(&m.sight, (size_t)n * QUARTERS, sizeof *m.sight))
         m.status = TRI_NO_MEMORY;
     if (!m.status) {
         for (int32_t i = 0; i < n; i++)
@@ -193,7 +228,7 @@ enum tri_status tri_candidates_make(struct tri_candidates *candidates, const str
         divide(&m, 0, (struct tri_cell){0, 0, 0}, 0, n);
     }
     free(m.stack);
-    free(m.bound);
+    free(m.sight);
     if (m.status)
         tri_candidates_clear(candidates);
     return m.status == TRI_STOPPED ? tri_fail_stopped(error)

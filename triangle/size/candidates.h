@@ -5,13 +5,27 @@
 #include "triangle/base/status.h"
 #include "triangle/size/quadtree.h"
 
+/* What is known of an item about a place p: q from there, its key is at least value + gradient * q, as of a convex
+ * function, and at most value + slope * |q|, and value + gradient * q + bend * |q|^2. */
+struct tri_key {
+    double value, slope, bend; /* bend may be infinite */
+    struct tri_point gradient;
+};
+
+/* Of a key that is `length` more than `growth` times the distance from a convex set, whose nearest place is `away`. */
+static inline struct tri_key tri_key_of_distance(double length, double growth, struct tri_point away)
+{
+    const double d = sqrt(away.x * away.x + away.y * away.y), steep = d > 0 ? growth / d : 0;
+    return (struct tri_key){length + growth * d, growth, d > 0 ? steep / 2 : HUGE_VAL,
+                            {-steep * away.x, -steep * away.y}};
+}
+
 /* The item with the least key at a place wins there; of several the first. */
 struct tri_contest {
-    /* The key of an item at a place, and by how much it changes at most for a distance of 1. */
-    double (*key)(const void *user, int32_t item, struct tri_point p, double *slope);
-    /* By how much may keys be too large in a cell with this side, about a place where this is the winner, and its key?
-     * 0: not at all; so it should be in cells that are not small against what is asked for. */
-    double (*allowed)(const void *user, int32_t winner, struct tri_point centre, double key, double side);
+    struct tri_key (*key)(const void *user, int32_t item, struct tri_point p);
+    /* By how much may keys be too large in a cell with this side, in which this is the least one? 0: not at all; so it
+     * should be in cells that are not small against what is asked for. */
+    double (*allowed)(const void *user, int32_t winner, double key, double side);
     const void *user;
 };
 

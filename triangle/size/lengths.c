@@ -43,8 +43,10 @@ static enum tri_status check_mesh(const struct tri_size_field *f, struct tri_err
 {
     const struct tri_reals *p = &f->points, *v = &f->values;
     const struct tri_ints *t = &f->triangles;
-    if (!p->at || p->n < 1 || p->width != 2 || p->stride < 2 || !t->at || t->n < 1 || t->width != 3 || t->stride < 3)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no points, or no triangles");
+    if (!p->at || p->n < 1 || p->width != 2 || p->stride < 2)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has no points");
+    if (t->n < 0 || (t->n > 0 && (!t->at || t->width != 3 || t->stride < 3)))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its triangles have %lld corners", (long long)t->width);
     if (!v->at || v->n != p->n || v->width != 1 || v->stride < 1)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it has %lld points and %lld values", (long long)p->n,
                         (long long)v->n);
@@ -103,12 +105,22 @@ enum tri_status tri_sizes_check(const struct tri_sizes *s, struct tri_error *err
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "max_size is %g", s->max_size);
     if (s->max_size > 0 && s->min_size > s->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "min_size %g is above max_size %g", s->min_size, s->max_size);
+    if (!(s->elements_across >= 0 && s->elements_across < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "elements_across is %g", s->elements_across);
+    if (!(s->per_circle >= 0 && s->per_circle < HUGE_VAL))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "per_circle is %g", s->per_circle);
     if (s->n < 0 || (s->n > 0 && !s->fields))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "sizes is NULL, and n_sizes %lld", (long long)s->n);
     for (int64_t k = 0; k < s->n; k++)
         if (check_field(&s->fields[k], &own))
             return blame(s, k, &own, error);
     return TRI_OK;
+}
+
+/* Sources that are no number. */
+static int64_t count_sources(const struct tri_lengths *l)
+{
+    return l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled;
 }
 
 /* --- made */
@@ -176,9 +188,10 @@ static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error
     if (status)
         return status;
     m->out->n_rasters++;
-    note_uncovered(m, k, (struct tri_point){r->origin[0], r->origin[1]},
-                   (struct tri_point){r->origin[0] + (double)(r->n[0] - 1) / r->inverse[0],
-                                      r->origin[1] + (double)(r->n[1] - 1) / r->inverse[1]});
+    const double x = 0.5 / r->inverse[0], y = 0.5 / r->inverse[1]; /* a value speaks for a cell around its node */
+    const double width = (double)(2 * r->n[0] - 1) * x, height = (double)(2 * r->n[1] - 1) * y;
+    note_uncovered(m, k, (struct tri_point){r->origin[0] - x, r->origin[1] - y},
+                   (struct tri_point){r->origin[0] + width, r->origin[1] + height});
     return TRI_OK;
 }
 
@@ -195,6 +208,9 @@ static enum tri_status take_background(struct making *m, int64_t k, struct tri_e
         low = (struct tri_point){tri_lesser(low.x, p.x), tri_lesser(low.y, p.y)};
         high = (struct tri_point){tri_larger(high.x, p.x), tri_larger(high.y, p.y)};
     }
+    for (int32_t v = 0; m->sizes->fields[k].triangles.n == 0 && m->frame.gradation < HUGE_VAL && v < b->n; v++)
+        if (b->length[v] > 0 && !tri_near_add(&m->out->near, b->at[v], b->at[v], b->length[v], m->frame.gradation))
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     note_uncovered(m, k, low, high);
     return TRI_OK;
 }
@@ -223,6 +239,19 @@ static enum tri_status take(struct making *m, int64_t k, struct tri_error *error
     return TRI_OK;
 }
 
+/* What the figure asks for. */
+static enum tri_status take_figure(struct making *m, struct tri_error *error)
+{
+    const struct tri_sizes *s = m->sizes;
+    struct tri_near *near = &m->out->near;
+    enum tri_status status = s->region_areas ? tri_near_regions(near, &m->frame, error) : TRI_OK;
+    if (!status && s->per_circle > 0)
+        status = tri_near_curves(near, &m->frame, s->per_circle, error);
+    if (!status && s->elements_across > 0)
+        status = tri_near_channels(near, &m->frame, s->elements_across, error);
+    return status ? status : tri_near_settle(near, &m->frame, error);
+}
+
 static enum tri_status take_all(struct making *m, struct tri_error *error)
 {
     struct tri_lengths *l = m->out;
@@ -240,7 +269,12 @@ static enum tri_status take_all(struct making *m, struct tri_error *error)
         if (take(m, k, &own))
             return blame(m->sizes, k, &own, error);
     }
-    return tri_near_settle(&l->near, &m->frame, error);
+    return take_figure(m, error);
+}
+
+static bool asks_for_any(const struct tri_sizes *s)
+{
+    return s->n > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
 }
 
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
@@ -250,13 +284,13 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
     (void)executor;
     *lengths = NULL;
     enum tri_status status = tri_sizes_check(sizes, error);
-    if (status || (sizes->n == 0 && !(sizes->max_size > 0)))
+    if (status || mesh->n_subs == 0 || !asks_for_any(sizes)) /* an empty mesh has nothing to measure */
         return status;
     struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
     if (!m.out)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     status = take_all(&m, error);
-    if (status)
+    if (status || (count_sources(m.out) == 0 && !(m.out->number < HUGE_VAL)))
         tri_lengths_free(m.out);
     else
         *lengths = m.out;
@@ -298,8 +332,7 @@ double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
 
 double tri_lengths_uniform(const struct tri_lengths *l)
 {
-    const bool is_number = l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled == 0;
-    return is_number && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
+    return count_sources(l) == 0 && l->number < HUGE_VAL ? tri_larger(l->number, l->min_size) : 0;
 }
 
 const char *tri_lengths_note(const struct tri_lengths *l) { return l ? l->note : ""; }

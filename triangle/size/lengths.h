@@ -15,6 +15,9 @@ struct tri_sizes {
     int64_t n;
     double gradation;          /* 0: 0.2; infinite: no limit */
     double min_size, max_size; /* 0: none */
+    double elements_across;    /* so many lengths between walls that face each other; 0: any */
+    double per_circle;         /* so many lengths around a circle of the curvature of segments; 0: any */
+    bool region_areas;         /* bounds of mesh->regions[] count outside these too, as lengths */
 };
 
 /* Can these be asked for at all? TRI_BAD_INPUT, TRI_TOO_LARGE: what is wrong with which field. */

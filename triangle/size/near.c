@@ -1,7 +1,7 @@
 /* Lengths that grow with the distance from segments and points.
  *
  * Each has its own length and growth, so that boundaries, regions and narrow places share one search: a contest
- * (candidates.h) with h itself as the key, which is convex, and of slope `growth`. */
+ * (candidates.h) with h itself as the key. */
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
@@ -19,26 +19,30 @@ bool tri_near_add(struct tri_near *near, struct tri_point a, struct tri_point b,
     return true;
 }
 
-static inline double length_at(const struct tri_near_item *s, struct tri_point p)
+/* From a place to the nearest one of an item. */
+static inline struct tri_point away_from(const struct tri_near_item *s, struct tri_point p)
 {
     const double x = p.x - s->from.x, y = p.y - s->from.y;
     const double t = tri_lesser(tri_larger((x * s->along.x + y * s->along.y) * s->inverse, 0), 1);
-    const double dx = x - t * s->along.x, dy = y - t * s->along.y;
-    return s->length + s->growth * sqrt(dx * dx + dy * dy);
+    return (struct tri_point){t * s->along.x - x, t * s->along.y - y};
 }
 
-static double key(const void *user, int32_t item, struct tri_point p, double *slope)
+static inline double length_at(const struct tri_near_item *s, struct tri_point p)
+{
+    const struct tri_point away = away_from(s, p);
+    return s->length + s->growth * sqrt(away.x * away.x + away.y * away.y);
+}
+
+static struct tri_key key(const void *user, int32_t item, struct tri_point p)
 {
     const struct tri_near_item *s = &((const struct tri_near *)user)->item[item];
-    *slope = s->growth;
-    return length_at(s, p);
+    return tri_key_of_distance(s->length, s->growth, away_from(s, p));
 }
 
-static double allowed(const void *user, int32_t winner, struct tri_point centre, double h, double side)
+static double allowed(const void *user, int32_t winner, double h, double side)
 {
     (void)user;
     (void)winner;
-    (void)centre;
     return side <= SMALL * h ? TOLERANCE * h : 0;
 }
 
@@ -57,6 +61,20 @@ double tri_near_at(const struct tri_near *near, struct tri_point p)
     for (int32_t i = 1; i < n; i++)
         h = tri_lesser(h, length_at(&near->item[list[i]], p));
     return h;
+}
+
+int32_t tri_near_winner(const struct tri_near *near, struct tri_point p, struct tri_point *away)
+{
+    int32_t n, winner = 0;
+    const int32_t *list = tri_candidates_at(&near->candidates, p, &n);
+    double least = HUGE_VAL;
+    for (int32_t i = 0; i < n; i++) {
+        const double h = length_at(&near->item[list[i]], p);
+        winner = h < least ? list[i] : winner;
+        least = tri_lesser(least, h);
+    }
+    *away = away_from(&near->item[winner], p);
+    return winner;
 }
 
 uint64_t tri_near_hash(const struct tri_near *near, uint64_t hash)

@@ -170,9 +170,9 @@ double tri_raster_at(const struct tri_raster *r, struct tri_point p)
     }
     const float *v = r->value + i[1] * r->n[0] + i[0];
     const int64_t right = r->n[0] > 1, up = r->n[1] > 1 ? r->n[0] : 0;
-    const double low = v[0] + f[0] * ((double)v[right] - v[0]);
-    const double high = v[up] + f[0] * ((double)v[up + right] - v[up]);
-    return r->scale * (low + f[1] * (high - low));
+    const double low = (1 - f[0]) * v[0] + f[0] * v[right]; /* above 0, whatever is rounded */
+    const double high = (1 - f[0]) * v[up] + f[0] * v[up + right];
+    return r->scale * ((1 - f[1]) * low + f[1] * high);
 }
 
 uint64_t tri_raster_hash(const struct tri_raster *r, uint64_t hash)

@@ -307,8 +307,9 @@ double tri_sampled_at(const struct tri_sampled *s, struct tri_point p)
     const double y = tri_lesser(tri_larger((p.y - s->tree.low.y) * quarters - 2.0 * cell.y, 0), 2);
     const int i = x >= 1, j = y >= 1;
     const float *v = leaf + 3 * j + i;
-    const double low = v[0] + (x - i) * ((double)v[1] - v[0]), high = v[3] + (x - i) * ((double)v[4] - v[3]);
-    return s->scale * (low + (y - j) * (high - low));
+    const double right = x - i, up = y - j;
+    const double low = (1 - right) * v[0] + right * v[1], high = (1 - right) * v[3] + right * v[4];
+    return s->scale * ((1 - up) * low + up * high);
 }
 
 uint64_t tri_sampled_hash(const struct tri_sampled *s, uint64_t hash)

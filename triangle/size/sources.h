@@ -65,6 +65,9 @@ enum tri_status tri_near_settle(struct tri_near *near, const struct tri_size_fra
 /* n >= 1. Exact within the frame, but where more than eight segments compete within half of h: a percent more at most.
  * Beyond the frame: of those that compete at the nearest place in it. */
 double tri_near_at(const struct tri_near *near, struct tri_point p);
+
+/* Who has that length, and how far its nearest place is away. */
+int32_t tri_near_winner(const struct tri_near *near, struct tri_point p, struct tri_point *away);
 uint64_t tri_near_hash(const struct tri_near *near, uint64_t hash);
 void tri_near_clear(struct tri_near *near);
 
@@ -121,7 +124,8 @@ double tri_sampled_at(const struct tri_sampled *sampled, struct tri_point p);
 uint64_t tri_sampled_hash(const struct tri_sampled *sampled, uint64_t hash);
 void tri_sampled_clear(struct tri_sampled *sampled);
 
-/* --- background.c: values at the vertices of a background mesh */
+/* --- background.c: values at the vertices of a background mesh; without triangles at points, of which the nearest
+ * counts, and which are not limited */
 struct tri_background {
     struct tri_point *at; /* [n] vertices */
     double *length;       /* [n] limited */
@@ -136,5 +140,20 @@ enum tri_status tri_background_make(struct tri_background *background, const str
 double tri_background_at(const struct tri_background *background, struct tri_point p);
 uint64_t tri_background_hash(const struct tri_background *background, uint64_t hash);
 void tri_background_clear(struct tri_background *background);
+
+/* --- figure_sizes.c: lengths that the figure itself asks for, as items of near.c. If there is no limit on the slope,
+ * they grow by 0.2. TRI_NO_MEMORY, TRI_STOPPED. */
+
+/* At the border of each region with a bound on areas: the edge of an equilateral triangle of that area. */
+enum tri_status tri_near_regions(struct tri_near *near, const struct tri_size_frame *frame, struct tri_error *error);
+
+/* At vertices where curves of segments go on by at most 60 degrees: the circumference of the circle through three of
+ * them in a row, over n. */
+enum tri_status tri_near_curves(struct tri_near *near, const struct tri_size_frame *frame, double n,
+                                struct tri_error *error);
+
+/* Between walls - boundaries, and borders of regions - that face each other: how far they are apart, over n. */
+enum tri_status tri_near_channels(struct tri_near *near, const struct tri_size_frame *frame, double n,
+                                  struct tri_error *error);
 
 #endif
