@@ -52,6 +52,8 @@ static void test_values(void **state)
     assert_true(take(&t, "--gradation", "inf") && t.options.gradation == HUGE_VAL);
     assert_true(take(&t, "--min-size", "3") && t.options.min_size == 3);
     assert_true(take(&t, "--max-size", "30") && t.options.max_size == 30);
+    assert_true(take(&t, "--elements-across", "2.5") && t.options.elements_across == 2.5);
+    assert_true(take(&t, "--per-circle=40", NULL) && t.options.per_circle == 40);
     assert_true(take(&t, "--placement", "classic") && t.switches.placement == TRI_PLACEMENT_CLASSIC);
     assert_true(take(&t, "--placement=front", NULL) && t.switches.placement == TRI_PLACEMENT_FRONT);
     assert_true(take(&t, "--placement=lattice", NULL) && t.switches.placement == TRI_PLACEMENT_LATTICE);
@@ -59,7 +61,7 @@ static void test_values(void **state)
     char text[SIZE_OPTIONS_TEXT];
     size_options_print(&t.options, text);
     assert_string_equal(text, "500, coast.asc, a@b.npy, 500 at segments with marker -2, 1.5 at segments with marker 7 "
-                              "growing by 0.15; at least 3; at most 30; gradation inf");
+                              "growing by 0.15, 2.5 across channels, 40 around a circle; at least 3; at most 30; gradation inf");
     size_options_free(&t.options);
 }
 
@@ -72,6 +74,7 @@ static void test_no_values(void **state)
         {"--size-near", "2:5,"}, {"--size-near", "2:5,-1"}, {"--size-near", "2:5,0.1,3"}, {"--size-near", "x:5"},
         {"--size-near", "99999999999:5"}, {"--gradation", "0"}, {"--gradation", "-1"}, {"--gradation", "nan"},
         {"--min-size", "0"}, {"--max-size", "inf"}, {"--max-size", "x"}, {"--placement", "Classic"},
+        {"--elements-across", "0"}, {"--per-circle", "2"}, {"--per-circle", "nan"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {

@@ -207,6 +207,8 @@ static json_t *source_of(const struct size_source *source)
                      f->growth >= 0 ? real(f->growth) : json_null());
 }
 
+static json_t *given(double value) { return value > 0 ? real(value) : json_null(); }
+
 /* null: there are none. */
 static json_t *sizes_of(const struct size_options *options)
 {
@@ -217,10 +219,9 @@ static json_t *sizes_of(const struct size_options *options)
     }
     for (int i = 0; i < options->n; i++)
         sources = appended(sources, source_of(&options->source[i]));
-    return json_pack("{s:o, s:o, s:o, s:o}", "sources", sources, "gradation",
-                     options->gradation > 0 ? real(options->gradation) : json_null(), "min_size",
-                     options->min_size > 0 ? real(options->min_size) : json_null(), "max_size",
-                     options->max_size > 0 ? real(options->max_size) : json_null());
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "sources", sources, "gradation", given(options->gradation),
+                     "min_size", given(options->min_size), "max_size", given(options->max_size), "elements_across",
+                     given(options->elements_across), "per_circle", given(options->per_circle));
 }
 
 /* --- all of it */

@@ -12,7 +12,7 @@
 
 static const double USUAL_GRADATION = 0.2; /* struct tri_sizes */
 
-enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, PLACEMENT };
+enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, PLACEMENT };
 
 static const struct kind {
     const char *name;
@@ -24,6 +24,8 @@ static const struct kind {
     {"gradation", GRADATION, "not a number above 0, or inf"},
     {"min-size", MIN_SIZE, "not a length above 0"},
     {"max-size", MAX_SIZE, "not a length above 0"},
+    {"elements-across", ELEMENTS_ACROSS, "not a number from 0.1 to 1000"},
+    {"per-circle", PER_CIRCLE, "not a number from 3 to 100000"},
     {"placement", PLACEMENT, "neither front, lattice nor classic"},
 };
 
@@ -124,6 +126,8 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case GRADATION: return words_take_real(text, "", NULL, DBL_TRUE_MIN, HUGE_VAL, &options->gradation);
     case MIN_SIZE: return take_length(text, &options->min_size);
     case MAX_SIZE: return take_length(text, &options->max_size);
+    case ELEMENTS_ACROSS: return words_take_real(text, "", NULL, 0.1, 1000, &options->elements_across);
+    case PER_CIRCLE: return words_take_real(text, "", NULL, 3, 1e5, &options->per_circle);
     case PLACEMENT: return take_placement(switches, text);
     default: return false;
     }
@@ -154,8 +158,8 @@ enum tri_status size_options_end(const struct size_options *options, struct tri_
 {
     const bool any = size_options_any(options);
     if (!any && (options->gradation > 0 || options->min_size > 0))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s limits lengths that nothing asks for: --size, --size-near "
-                        "or --max-size does", options->gradation > 0 ? "gradation" : "min-size");
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s limits lengths that nothing asks for: --size, --size-near, "
+                        "--max-size, --elements-across or --per-circle does", options->gradation > 0 ? "gradation" : "min-size");
     if (options->max_size > 0 && options->min_size > options->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-size %g is above --max-size %g", options->min_size,
                         options->max_size);
@@ -209,10 +213,17 @@ void size_options_print(const struct size_options *options, char text[SIZE_OPTIO
         if (f->kind == TRI_SIZE_NEAR && f->growth >= 0)
             add(&line, " growing by %g", f->growth);
     }
+    const char *between = options->n > 0 ? ", " : "";
+    if (options->elements_across > 0) {
+        add(&line, "%s%g across channels", between, options->elements_across);
+        between = ", ";
+    }
+    if (options->per_circle > 0)
+        add(&line, "%s%g around a circle", between, options->per_circle);
     if (options->min_size > 0)
         add(&line, "; at least %g", options->min_size);
     if (options->max_size > 0)
-        add(&line, "%sat most %g", options->n > 0 ? "; " : "", options->max_size);
+        add(&line, "%sat most %g", line.at > text ? "; " : "", options->max_size);
     add(&line, "; gradation %g", options->gradation > 0 ? options->gradation : USUAL_GRADATION);
 }
 
@@ -246,12 +257,14 @@ enum tri_status size_fields_read(struct size_fields *fields, const struct size_o
     return status;
 }
 
-enum tri_status size_fields_make(struct size_fields *fields, const struct size_options *options,
+enum tri_status size_fields_make(struct size_fields *fields, const struct size_options *options, bool region_areas,
                                  const struct tri_mesh *mesh, const struct tri_executor *executor,
                                  struct tri_error *error)
 {
     const struct tri_sizes sizes = {.fields = fields->field, .n = options->n, .gradation = options->gradation,
-                                    .min_size = options->min_size, .max_size = options->max_size};
+                                    .min_size = options->min_size, .max_size = options->max_size,
+                                    .elements_across = options->elements_across, .per_circle = options->per_circle,
+                                    .region_areas = region_areas};
     struct tri_error own = {0};
     char text[SIZE_OPTIONS_TEXT];
     const enum tri_status status = tri_lengths_new(&fields->lengths, &sizes, mesh, executor, &own);

@@ -22,6 +22,7 @@ struct size_options {
     int n;
     struct size_source source[SIZE_OPTIONS_MOST]; /* [n] in the order of the words */
     double gradation, min_size, max_size;         /* as in struct tri_sizes; 0: not given */
+    double elements_across, per_circle;           /* likewise */
 };
 
 /* Takes the option in word *at, as long_options_take does; false: that is another word. *error is set if its value is
@@ -38,7 +39,7 @@ void size_options_free(struct size_options *options);
 /* Are lengths asked for? */
 static inline bool size_options_any(const struct size_options *options)
 {
-    return options->n > 0 || options->max_size > 0;
+    return options->n > 0 || options->max_size > 0 || options->elements_across > 0 || options->per_circle > 0;
 }
 
 /* What is asked for, in a line. */
@@ -60,8 +61,8 @@ struct size_fields {
 enum tri_status size_fields_read(struct size_fields *fields, const struct size_options *options,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* Makes the lengths for a mesh. */
-enum tri_status size_fields_make(struct size_fields *fields, const struct size_options *options,
+/* Makes the lengths for a mesh. region_areas: the bounds of its regions limit them outside, too. */
+enum tri_status size_fields_make(struct size_fields *fields, const struct size_options *options, bool region_areas,
                                  const struct tri_mesh *mesh, const struct tri_executor *executor,
                                  struct tri_error *error);
 

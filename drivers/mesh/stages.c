@@ -294,7 +294,8 @@ static enum tri_status make_lengths(struct run *r)
     char text[SIZE_OPTIONS_TEXT];
     if (!r->options.refine)
         return TRI_OK;
-    const enum tri_status status = size_fields_make(&r->sizes, options, &r->mesh, r->settings.executor, r->error);
+    const enum tri_status status = size_fields_make(&r->sizes, options, r->options.quality.region_areas, &r->mesh,
+                                                    r->settings.executor, r->error);
     r->options.quality.lengths = r->sizes.lengths;
     if (!status && tri_lengths_note(r->sizes.lengths)[0]) {
         size_options_name(options, tri_lengths_note(r->sizes.lengths), text);

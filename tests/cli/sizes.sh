@@ -123,6 +123,20 @@ for mesher in triangle ptriangle; do
     mesher 0 $mesher -p koch_lake --size-near 2:0.004 --max-size 0.1 --gradation 0.5
     [ "$(triangles koch_lake.1)" -lt "$near" ] || fault "a steeper growth makes no fewer triangles than $near"
 
+    # --- channels and curves: more triangles for more of each
+    fresh thin_channel.poly gear.poly
+    more() { # more FILE OPTION N...: each makes more triangles than the one before
+        file=$1 option=$2 last=0
+        shift 2
+        for n; do
+            mesher 0 $mesher -p "$file" "$option" "$n"
+            [ "$(triangles "$file.1")" -gt $((last * 5 / 4)) ] || fault "$(triangles "$file.1") triangles after $last"
+            last=$(triangles "$file.1")
+        done
+    }
+    more thin_channel --elements-across 2 4 8
+    more gear --per-circle 20 100 400
+
     # --- one field, all formats: rasters alike byte by byte, meshes too, and both to a few triangles
     fresh letter.poly
     fields
