@@ -837,7 +837,7 @@ static void test_settings_without_meaning(void **state)
     settings[3].max_area = -1;
     settings[4].protect = 3;
     settings[5].size = 1;
-    settings[6].placement = (enum tri_placement)2;
+    settings[6].placement = (enum tri_placement)3;
     settings[7].placement = (enum tri_placement)-1;
     for (int i = 0; i < 8; i++)
         assert_refused(&figure, &settings[i]);

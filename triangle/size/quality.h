@@ -33,7 +33,7 @@ struct tri_quality {
     void *unsuitable_user;
     double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
                               about triangles of 1 / area_scale of the area; 0: as they are */
-    bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h) */
+    bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h), or a length */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
@@ -50,6 +50,9 @@ static inline bool tri_asks_caller(const struct tri_quality *quality)
 
 /* Are new points put into a lattice? The bound on angles must leave it standing: above 30 degrees it does not. */
 bool tri_wants_lattice(const struct tri_quality *quality);
+
+/* If sizes are one length everywhere, and new points are put into a lattice of it where there is room: that; else 0. */
+double tri_lattice_length(const struct tri_quality *quality);
 
 /* Of the areas in a mesh over the bound on areas: the mean, and a share that no mesh has. */
 double tri_mean_over_bound(const struct tri_quality *quality);
