@@ -27,7 +27,7 @@ struct tri_quality {
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
                                      its corners and centroid */
     void *edge_length_user;
-    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: nothing is asked for */
+    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: none are asked for */
     bool front;            /* points for lengths are placed over a front (front.h) */
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
@@ -153,11 +153,11 @@ static inline double tri_wanted_of(const struct tri_asked *asked, tri_vertex_id 
     return fabs(asked->mesh->length[v]) * asked->coarser;
 }
 
-/* Is a triangle of these corners, squared edges and twice this area too large for the lengths? It is if its circumradius
- * is above TRI_FRONT_ACCEPT of the mean h of its corners. A thin one has a large circumcircle at any size: that is the
- * angle's affair, and of lengths only its longest edge counts. */
-static inline bool tri_is_too_long(const struct tri_asked *asked, const tri_vertex_id v[3], double a, double b, double c,
-                                   double area2)
+/* Is a triangle of these corners, squared edges and twice this area too large for the lengths? It is if its
+ * circumradius is above TRI_FRONT_ACCEPT of the mean h of its corners. A thin one has a large circumcircle at any size:
+ * that is the angle's affair, and of lengths only its longest edge counts. */
+static inline bool tri_is_too_long(const struct tri_asked *asked, const tri_vertex_id v[3], double a, double b,
+                                   double c, double area2)
 {
     const double h = (tri_wanted_of(asked, v[0]) + tri_wanted_of(asked, v[1]) + tri_wanted_of(asked, v[2])) / 3;
     const double most = 2 * TRI_FRONT_ACCEPT * h * area2, longest = TRI_FRONT_LONGEST * h;
