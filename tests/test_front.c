@@ -42,8 +42,9 @@ static struct found look_at(const struct tri_mesh *m, const struct tri_lengths *
 
 static struct tri_check_options kept(void) { return (struct tri_check_options){.min_angle = ANGLE, .max_bad = -1}; }
 
-/* A square of the side 1 with this field, refined by one call. */
-static struct tri_mesh square_of(const struct tri_size_field *field, bool front, struct tri_lengths **lengths)
+/* A square of the side 1 with this field, refined by one call. way 0: at the usual places, 1: over a front, 2: in a
+ * lattice, too. */
+static struct tri_mesh square_of(const struct tri_size_field *field, int way, struct tri_lengths **lengths)
 {
     struct tri_pslg pslg = support_square(1, 0, 1);
     struct tri_options options = support_quality(ANGLE, 0);
@@ -52,7 +53,8 @@ static struct tri_mesh square_of(const struct tri_size_field *field, bool front,
     const struct tri_sizes sizes = {.fields = field, .n = 1, .gradation = HUGE_VAL};
     assert_int_equal(tri_lengths_new(lengths, &sizes, &mesh, NULL, NULL), TRI_OK);
     options.quality.lengths = *lengths;
-    options.quality.front = front;
+    options.quality.front = way > 0;
+    options.quality.lattice = way > 1;
     struct tri_refine_report report;
     assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
     const struct tri_check_options check = kept();
@@ -64,16 +66,16 @@ static struct tri_mesh square_of(const struct tri_size_field *field, bool front,
 static void test_edges_are_as_long_as_asked(void **state)
 {
     (void)state;
-    for (int front = 0; front < 2; front++) {
+    for (int way = 0; way < 3; way++) {
         const struct tri_size_field field = {.kind = TRI_SIZE_NUMBER, .length = 0.017};
         struct tri_lengths *lengths;
-        struct tri_mesh mesh = square_of(&field, front, &lengths);
+        struct tri_mesh mesh = square_of(&field, way, &lengths);
         const struct found f = look_at(&mesh, lengths);
-        print_message("  front %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest %.3f\n", front,
+        print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest %.3f\n", way,
                       (int)mesh.n_triangles, f.quality, f.share, f.over, f.shortest, f.widest);
         assert_true(f.widest <= 0.8 && f.shortest > 0.45);
-        assert_true(f.quality > (front ? 0.99 : 0.85) && f.share > (front ? 0.99 : 0.9));
-        assert_true(f.over > (front ? 0.98 : 0.9) && f.over < 1.03);
+        assert_true(f.quality > (way ? 0.985 : 0.85) && f.share > (way ? 0.98 : 0.9));
+        assert_true(f.over > (way ? 0.98 : 0.9) && f.over < 1.03);
         tri_mesh_free(&mesh);
         tri_lengths_free(lengths);
     }
@@ -86,7 +88,7 @@ static void test_sides_are_divided_by_the_integral(void **state)
     const double value[] = {0.01, 0.11, 0.01, 0.11};
     const struct tri_size_field field = {.kind = TRI_SIZE_RASTER, .values = {value, 2, 2, 2}, .step = {1, 1}};
     struct tri_lengths *lengths;
-    struct tri_mesh mesh = square_of(&field, true, &lengths);
+    struct tri_mesh mesh = square_of(&field, 1, &lengths);
     const double all = log(11) / 0.1, each = all / floor(all + 0.5);
     int parts = 0;
     for (tri_sub_id s = 0; s < mesh.n_subs; s++) {
@@ -150,7 +152,7 @@ static void test_lengths_go_when_nobody_asks_for_them(void **state)
     (void)state;
     const struct tri_size_field field = {.kind = TRI_SIZE_NUMBER, .length = 0.3};
     struct tri_lengths *lengths;
-    struct tri_mesh mesh = square_of(&field, true, &lengths);
+    struct tri_mesh mesh = square_of(&field, 1, &lengths);
     struct tri_quality quality = support_quality(ANGLE, 0.001).quality;
     struct tri_refine_report report;
     assert_true(mesh.length && mesh.has_lengths);

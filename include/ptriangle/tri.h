@@ -141,7 +141,7 @@ enum tri_placement {         /* of new points */
     TRI_PLACEMENT_LATTICE = 0, /* in a hexagonal lattice, if bounds on areas alone set the sizes and min_angle is at
                                   most 30: a third fewer triangles, most of them equilateral. With a larger
                                   min_angle, edge_length, unsuitable, or a figure with triangles: as CLASSIC; with
-                                  `sizes` as FRONT */
+                                  `sizes` as FRONT, but for a lattice inside if they are one length */
     TRI_PLACEMENT_CLASSIC,     /* at circumcentres, or the places that are best for angles */
     TRI_PLACEMENT_FRONT        /* for `sizes`: near-equilateral triangles over a front that begins at the segments.
                                   Without them as CLASSIC */

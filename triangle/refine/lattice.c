@@ -4,12 +4,14 @@
 #include "triangle/refine/place.h"
 #include "triangle/tunables.h"
 
-struct tri_lattice tri_lattice_for(double area2)
+static const double RISE = 0.86602540378443864676; /* sqrt(3) / 2 */
+
+struct tri_lattice tri_lattice_of(double edge)
 {
-    static const double rise = 0.86602540378443864676; /* sqrt(3) / 2 */
-    const double edge = sqrt(TRI_LATTICE_SHARE * area2 / rise);
-    return (struct tri_lattice){edge, rise * edge, TRI_LATTICE_FEATURE * edge};
+    return (struct tri_lattice){edge, RISE * edge, TRI_LATTICE_FEATURE * edge};
 }
+
+struct tri_lattice tri_lattice_for(double area2) { return tri_lattice_of(sqrt(TRI_LATTICE_SHARE * area2 / RISE)); }
 
 bool tri_lattice_point(const struct tri_lattice *lattice, const struct tri_point *xy, const tri_vertex_id v[3],
                        const struct tri_shape *shape, struct tri_point *p)

@@ -1,5 +1,5 @@
-/* A hexagonal lattice for new points, where one bound on areas holds. It is the best mesh there is away from features:
- * equilateral triangles of nearly the largest area allowed.
+/* A hexagonal lattice for new points, where one bound on areas holds, or one length. It is the best mesh there is away
+ * from features: equilateral triangles of nearly the largest area allowed.
  *
  * A bad triangle gets the lattice point nearest to its circumcentre, if nothing is too near to that. A circumdisk wider
  * than the lattice's holds a lattice point, and no vertex: so away from features each of its points is inserted, in
@@ -22,7 +22,8 @@ struct tri_lattice {
     double feature; /* the size of features around its points (triangle/size/feature_size.h) is at most this */
 };
 
-/* area2: twice the bound on areas, in the mesh's units. */
+/* edge: the length of its edges; area2: twice the bound on areas, both in the mesh's units. */
+struct tri_lattice tri_lattice_of(double edge);
 struct tri_lattice tri_lattice_for(double area2);
 
 /* By how much of an edge is a row shifted? */

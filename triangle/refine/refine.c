@@ -156,6 +156,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->criterion = tri_criterion_for(mesh, quality);
     r->report = report;
     r->lattice = tri_wants_lattice(quality);
+    r->edge = tri_lattice_length(quality);
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = hooks->fence;

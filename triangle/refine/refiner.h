@@ -26,7 +26,8 @@ struct tri_refiner {
     int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
-    bool lattice;     /* points lie in a lattice where they can */
+    bool lattice;     /* points lie in a lattice where they can, by the bound on areas, .. */
+    double edge;      /* .. or, above 0, in one with edges of this length */
     struct tri_fill *fill; /* cells of the lattice at work (lattice_fill.c); NULL: none */
     struct tri_front front; /* what waits in FRONT_STAGE */
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
@@ -37,12 +38,12 @@ struct tri_refiner {
     enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
-    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only), or to divide (front.c) */
+    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming), or to divide (front.c) */
     int32_t n_encroached, encroached_capacity;
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-/* A bad angle counts before a bad size, but in FRONT_STAGE not at all; what is not urgent (tri_refine_hooks) is good. */
+/* A bad angle counts before a bad size, in FRONT_STAGE not at all; what is not urgent (tri_refine_hooks) is good. */
 static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, const struct tri_triangle *t,
                                                  const struct tri_shape *shape)
 {

@@ -340,9 +340,9 @@ static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id t
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     const double area2 = tri_area2_bound(&r->criterion.asked, t->region) / tri_area_scale(r->quality);
-    if (!r->lattice || !(area2 < HUGE_VAL))
+    if (!(r->edge > 0) && (!r->lattice || !(area2 < HUGE_VAL)))
         return REFUSED;
-    const struct tri_lattice lattice = tri_lattice_for(area2);
+    const struct tri_lattice lattice = r->edge > 0 ? tri_lattice_of(r->edge) : tri_lattice_for(area2);
     if (!tri_lattice_point(&lattice, r->mesh->xy, t->v, shape, p))
         return REFUSED;
     const enum tri_outcome outcome = find_cavity(r, triangle, *p);

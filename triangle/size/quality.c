@@ -21,6 +21,13 @@ bool tri_wants_lattice(const struct tri_quality *quality)
            tri_worked_angle(quality) <= TRI_LATTICE_ANGLE;
 }
 
+double tri_lattice_length(const struct tri_quality *q)
+{
+    const bool is_alone = q->lengths && !(q->max_area > 0) && !q->region_areas && !tri_asks_caller(q);
+    return is_alone && q->lattice && q->front && tri_worked_angle(q) <= TRI_LATTICE_ANGLE
+               ? tri_lengths_uniform(q->lengths) : 0;
+}
+
 double tri_mean_over_bound(const struct tri_quality *quality)
 {
     return tri_wants_lattice(quality) ? TRI_LATTICE_MEAN : TRI_MEAN_OVER_BOUND;
@@ -61,7 +68,7 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 struct tri_bounds tri_bounds_of(const struct tri_quality *quality, double min_angle)
 {
     struct tri_bounds bounds = tri_bounds_for(min_angle, quality->conforming);
-    if (tri_wants_lattice(quality))
+    if (tri_wants_lattice(quality) || tri_lattice_length(quality) > 0)
         bounds.sin2 *= 1 - TRI_LATTICE_ROUNDING;
     return bounds;
 }

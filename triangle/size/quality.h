@@ -27,13 +27,13 @@ struct tri_quality {
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
                                      its corners and centroid */
     void *edge_length_user;
-    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: nothing is asked for */
+    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: none are asked for */
     bool front;            /* points for lengths are placed over a front (front.h) */
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
     double area_scale;     /* > 0: for pre-refinement, all areas may be larger by this factor; the size test is asked
                               about triangles of 1 / area_scale of the area; 0: as they are */
-    bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h) */
+    bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h), or a length */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
@@ -50,6 +50,9 @@ static inline bool tri_asks_caller(const struct tri_quality *quality)
 
 /* Are new points put into a lattice? The bound on angles must leave it standing: above 30 degrees it does not. */
 bool tri_wants_lattice(const struct tri_quality *quality);
+
+/* If sizes are one length everywhere, and new points are put into a lattice of it where there is room: that; else 0. */
+double tri_lattice_length(const struct tri_quality *quality);
 
 /* Of the areas in a mesh over the bound on areas: the mean, and a share that no mesh has. */
 double tri_mean_over_bound(const struct tri_quality *quality);
@@ -150,11 +153,11 @@ static inline double tri_wanted_of(const struct tri_asked *asked, tri_vertex_id 
     return fabs(asked->mesh->length[v]) * asked->coarser;
 }
 
-/* Is a triangle of these corners, squared edges and twice this area too large for the lengths? It is if its circumradius
- * is above TRI_FRONT_ACCEPT of the mean h of its corners. A thin one has a large circumcircle at any size: that is the
- * angle's affair, and of lengths only its longest edge counts. */
-static inline bool tri_is_too_long(const struct tri_asked *asked, const tri_vertex_id v[3], double a, double b, double c,
-                                   double area2)
+/* Is a triangle of these corners, squared edges and twice this area too large for the lengths? It is if its
+ * circumradius is above TRI_FRONT_ACCEPT of the mean h of its corners. A thin one has a large circumcircle at any size:
+ * that is the angle's affair, and of lengths only its longest edge counts. */
+static inline bool tri_is_too_long(const struct tri_asked *asked, const tri_vertex_id v[3], double a, double b,
+                                   double c, double area2)
 {
     const double h = (tri_wanted_of(asked, v[0]) + tri_wanted_of(asked, v[1]) + tri_wanted_of(asked, v[2])) / 3;
     const double most = 2 * TRI_FRONT_ACCEPT * h * area2, longest = TRI_FRONT_LONGEST * h;
