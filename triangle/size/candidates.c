@@ -8,7 +8,7 @@
  * long: there a small cell keeps those who win at nine places, if with these keys are nearly right at 16 others. */
 #include "triangle/size/candidates.h"
 
-enum { SHORT = 8, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
+enum { SHORT = 8, LONG = 32, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
 
 /* Rounding must not lose a candidate at the border of two cells. */
 static const double CUSHION = 1 + 0x1p-20;
@@ -196,8 +196,9 @@ static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t f
         m->status = TRI_STOPPED;
     if (m->status || !reserve(m, to - from))
         return;
-    choose(m, from, to, first, cell, 1);
-    const struct verdict v = choose(m, first, m->n, first, cell, 2);
+    struct verdict v = choose(m, from, to, first, cell, 1);
+    if (m->n - first > SHORT && m->n - first <= LONG) /* it may become short; else its parts are seen to anyway */
+        v = choose(m, first, m->n, first, cell, 2);
     int64_t n = m->n - first;
     if (settle(m, m->stack + first, &n, cell, &v)) {
         make_leaf(m, at, m->stack + first, n);
