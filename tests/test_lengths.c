@@ -60,7 +60,7 @@ static void check_items(int32_t n, int32_t n_equal, double length, double growth
     struct support_random random = {seed};
     struct tri_near near = {0};
     struct tri_mesh mesh = {.unit = 1};
-    const struct tri_size_frame frame = {&mesh, {0, 0}, {3, 1}, 0.2};
+    const struct tri_size_frame frame = {&mesh, {0, 0}, {3, 1}, 0.2, NULL};
     const double reach = n > 100 ? 0.1 : 1;
     for (int32_t i = 0; i < n; i++) {
         struct tri_point a = {3 * support_unit(&random), support_unit(&random)}, b = a;
@@ -114,7 +114,7 @@ static void test_ties_end(void **state)
     for (int fan = 0; fan < 2; fan++) {
         struct tri_near near = {0};
         struct tri_mesh mesh = {.unit = 1};
-        const struct tri_size_frame frame = {&mesh, {-1, -1}, {1, 1}, 0.2};
+        const struct tri_size_frame frame = {&mesh, {-1, -1}, {1, 1}, 0.2, NULL};
         const int n = 500;
         for (int i = 0; i < n; i++) {
             const double angle = 6.283185307179586 * i / n, next = 6.283185307179586 * (i + 1) / n;
@@ -131,6 +131,38 @@ static void test_ties_end(void **state)
         }
         tri_near_clear(&near);
     }
+}
+
+/* Of many items parts are made by tasks: in any order they come to the same. */
+static void test_tasks_make_the_same_lists(void **state)
+{
+    (void)state;
+    enum { MANY = 10000 };
+    struct tri_near near[2] = {{.n = 0}, {.n = 0}};
+    struct tri_mesh mesh = {.unit = 1};
+    for (int which = 0; which < 2; which++) {
+        struct support_random random = {11};
+        const struct tri_size_frame frame = {&mesh, {0, 0}, {1, 1}, 0.2, which ? &support_backwards : NULL};
+        for (int i = 0; i < MANY; i++) {
+            const struct tri_point p = place(&random, 1);
+            assert_true(tri_near_add(&near[which], p, p, 0.001 + 0.01 * support_unit(&random), 0.2));
+        }
+        assert_int_equal(tri_near_settle(&near[which], &frame, NULL), TRI_OK);
+    }
+    const struct tri_candidates *a = &near[0].candidates, *b = &near[1].candidates;
+    assert_true(a->n == b->n && a->tree.n == b->tree.n);
+    assert_memory_equal(a->list, b->list, (size_t)a->n * sizeof *a->list);
+    assert_memory_equal(a->tree.child, b->tree.child, (size_t)a->tree.n * sizeof *a->tree.child);
+    struct support_random random = {12};
+    for (int k = 0; k < 500; k++) {
+        const struct tri_point p = place(&random, 1);
+        double naive = HUGE_VAL;
+        for (int i = 0; i < MANY; i++)
+            naive = fmin(naive, near[0].item[i].length + 0.2 * sqrt(tri_distance2(near[0].item[i].from, p)));
+        assert_true(fabs(tri_near_at(&near[0], p) / naive - 1) < 0.02);
+    }
+    tri_near_clear(&near[0]);
+    tri_near_clear(&near[1]);
 }
 
 static void test_segments_with_a_marker(void **state)
@@ -785,6 +817,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
+        cmocka_unit_test(test_tasks_make_the_same_lists),
         cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
         cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_loose_points_and_triangles),
         cmocka_unit_test(test_functions_are_kept),

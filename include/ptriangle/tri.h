@@ -120,11 +120,11 @@ enum tri_size_kind {
 };
 
 /* One source of lengths. Arrays are the caller's, are only read, and not looked at after the call. A length that is not
- * above 0, or no number, is no data: the nearest data count in its place. */
+ * above 0, or no number, is no data: the nearest data count in its place. An infinite one is no bound. */
 struct tri_size_field {
     enum tri_size_kind kind;
     double length;           /* NUMBER, NEAR: above 0 */
-    double growth;           /* NEAR: 0 or more; below 0: tri_settings.gradation */
+    double growth;           /* NEAR: 0 or more, at most tri_settings.gradation counts; below 0: that */
     int32_t marker;          /* NEAR: of the segments */
     struct tri_reals values; /* RASTER: [rows][columns], the lowest row first; MESH: [points.n][1] */
     double origin[2];        /* RASTER: the place of the first value .. */
@@ -132,7 +132,8 @@ struct tri_size_field {
     struct tri_reals points; /* MESH: [n][2] */
     struct tri_ints triangles; /* MESH: [n][3] points; not given: the nearest point counts */
     /* FUNCTION: writes the lengths at n places. Asked by the calling thread alone, for some million places in a few
-     * dozen calls, before anything is meshed: what it says is kept in a quadtree, bilinear to 2%. */
+     * dozen calls, before anything is meshed: what it says is kept in a quadtree, bilinear: to 0.1% on the
+     * average, to 5% where it varies most. */
     void (*function)(void *user, int64_t n, const double (*at)[2], double *length);
     void *user;
 };

@@ -159,7 +159,7 @@ enum tri_status tri_background_make(struct tri_background *background, const str
         status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value of a triangle is a length");
     if (!status) {
         settle_triangles(b);
-        status = tri_candidates_make(&b->candidates, &contest, b->n_triangles, frame->low, frame->high, stop, error);
+        status = tri_candidates_make(&b->candidates, &contest, b->n_triangles, frame, error);
     }
     if (status)
         tri_background_clear(b);

@@ -8,7 +8,10 @@
  * long: there a small cell keeps those who win at nine places, if with these keys are nearly right at 16 others. */
 #include "triangle/size/candidates.h"
 
-enum { SHORT = 8, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
+enum { SHORT = 8, LONG = 32, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
+
+/* Of many items the cells of this depth are left to tasks. */
+enum { AHEAD = 3, PORTIONS = 64, MANY = 4096 };
 
 /* Rounding must not lose a candidate at the border of two cells. */
 static const double CUSHION = 1 + 0x1p-20;
@@ -19,6 +22,16 @@ struct sight {
     struct tri_point gradient;
 };
 
+/* A cell that is left to a task, with its candidates. */
+struct portion {
+    int32_t at; /* where it is in the tree */
+    struct tri_cell cell;
+    int32_t *list; /* [n] */
+    int64_t n;
+    struct tri_candidates out; /* what becomes of it, for itself: child[0] stands for it */
+    enum tri_status status;
+};
+
 struct making {
     struct tri_candidates *out;
     const struct tri_contest *contest;
@@ -26,6 +39,8 @@ struct making {
     int32_t *stack; /* the lists of the cells around the one that is worked on, the outermost first */
     int64_t n, capacity;
     struct sight *sight; /* [QUARTERS] for each in a list */
+    struct portion *portion; /* [n_portions] in the order of the tree; NULL: nothing is left to others */
+    size_t n_portions;
     uint32_t steps;
     enum tri_status status; /* the first failure */
 };
@@ -187,39 +202,108 @@ static struct verdict choose(struct making *m, int64_t from, int64_t to, int64_t
     return v;
 }
 
+/* Leaves a cell to a task. */
+static void put_off(struct making *m, int32_t at, struct tri_cell cell, const int32_t *list, int64_t n)
+{
+    struct portion *portion = &m->portion[m->n_portions];
+    *portion = (struct portion){.at = at, .cell = cell, .list = malloc((size_t)n * sizeof *list), .n = n};
+    if (!portion->list) {
+        m->status = TRI_NO_MEMORY;
+        return;
+    }
+    memcpy(portion->list, list, (size_t)n * sizeof *list);
+    m->n_portions++;
+}
+
+static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to);
+
+/* Makes the quarters of the cell that child[at] stands for; its list is in the stack. */
+static void quarter(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to)
+{
+    struct tri_quadtree *tree = &m->out->tree;
+    if (!tri_quadtree_grow(tree)) {
+        m->status = TRI_NO_MEMORY;
+        return;
+    }
+    const int32_t four = tree->n;
+    tree->n += 4;
+    tree->child[at] = four;
+    for (uint32_t k = 0; k < 4; k++)
+        divide(m, four + (int32_t)k, tri_cell_child(cell, k), from, to);
+}
+
 /* Makes the cell that child[at] stands for; its candidates are among those of the list. */
 static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to)
 {
-    struct tri_quadtree *tree = &m->out->tree;
     const int64_t first = m->n;
     if (tri_stop_is_due(m->stop, &m->steps))
         m->status = TRI_STOPPED;
     if (m->status || !reserve(m, to - from))
         return;
-    choose(m, from, to, first, cell, 1);
-    const struct verdict v = choose(m, first, m->n, first, cell, 2);
+    struct verdict v = choose(m, from, to, first, cell, 1);
+    if (m->n - first > SHORT && m->n - first <= LONG) /* it may become short; else its parts are seen to anyway */
+        v = choose(m, first, m->n, first, cell, 2);
     int64_t n = m->n - first;
-    if (settle(m, m->stack + first, &n, cell, &v)) {
+    if (settle(m, m->stack + first, &n, cell, &v))
         make_leaf(m, at, m->stack + first, n);
-    } else if (!tri_quadtree_grow(tree)) {
-        m->status = TRI_NO_MEMORY;
-    } else {
-        const int32_t four = tree->n;
-        tree->n += 4;
-        tree->child[at] = four;
-        for (uint32_t k = 0; k < 4; k++)
-            divide(m, four + (int32_t)k, tri_cell_child(cell, k), first, first + n);
-    }
+    else if (m->portion && cell.depth == AHEAD)
+        put_off(m, at, cell, m->stack + first, n);
+    else
+        quarter(m, at, cell, first, first + n);
     m->n = first;
 }
 
-enum tri_status tri_candidates_make(struct tri_candidates *candidates, const struct tri_contest *contest, int32_t n,
-                                    struct tri_point low, struct tri_point high, const struct tri_stop *stop,
-                                    struct tri_error *error)
+static void do_portion(void *making, size_t i)
 {
-    struct making m = {.out = candidates, .contest = contest, .stop = stop};
+    const struct making *all = making;
+    struct portion *portion = &all->portion[i];
+    struct making m = {.out = &portion->out, .contest = all->contest, .stop = all->stop, .stack = portion->list,
+                       .n = portion->n, .capacity = portion->n};
+    struct tri_quadtree *tree = &portion->out.tree;
+    *tree = all->out->tree; /* the same root */
+    tree->child = NULL;
+    tree->n = tree->capacity = 0;
+    if (!tri_quadtree_grow(tree) || !tri_resize(&m.sight, (size_t)m.n * QUARTERS, sizeof *m.sight)) {
+        m.status = TRI_NO_MEMORY;
+    } else {
+        tree->n = 1;
+        quarter(&m, 0, portion->cell, 0, portion->n);
+    }
+    portion->list = m.stack;
+    portion->status = m.status;
+    free(m.sight);
+}
+
+/* Puts behind what is there what has become of a portion. */
+static void join(struct making *m, const struct portion *portion)
+{
+    struct tri_candidates *out = m->out;
+    struct tri_quadtree *tree = &out->tree;
+    const struct tri_candidates *own = &portion->out;
+    m->status = m->status ? m->status : portion->status;
+    if (!m->status && (own->n > INT32_MAX / 4 || out->n > INT32_MAX / 4 ||
+                       !tri_grow(&out->list, &out->capacity, out->n + own->n, sizeof *out->list) ||
+                       !tri_grow(&tree->child, &tree->capacity, tree->n + own->tree.n, sizeof *tree->child)))
+        m->status = TRI_NO_MEMORY;
+    if (m->status)
+        return;
+    for (int32_t i = 0; i < own->tree.n; i++) {
+        const int32_t code = own->tree.child[i];
+        tree->child[i == 0 ? portion->at : tree->n + i - 1] = code >= 0 ? code + tree->n - 1 : ~(~code + out->n);
+    }
+    memcpy(out->list + out->n, own->list, (size_t)own->n * sizeof *own->list);
+    tree->n += own->tree.n - 1;
+    out->n += own->n;
+}
+
+enum tri_status tri_candidates_make(struct tri_candidates *candidates, const struct tri_contest *contest, int32_t n,
+                                    const struct tri_size_frame *frame, struct tri_error *error)
+{
+    struct portion portion[PORTIONS];
+    struct making m = {.out = candidates, .contest = contest, .stop = frame->mesh->stop,
+                       .portion = n > MANY ? portion : NULL};
     *candidates = (struct tri_candidates){0};
-    if (!tri_quadtree_init(&candidates->tree, low, high) || !reserve(&m, n) ||
+    if (!tri_quadtree_init(&candidates->tree, frame->low, frame->high) || !reserve(&m, n) ||
         !tri_resize(&m.sight, (size_t)n * QUARTERS, sizeof *m.sight))
         m.status = TRI_NO_MEMORY;
     if (!m.status) {
@@ -229,6 +313,12 @@ enum tri_status tri_candidates_make(struct tri_candidates *candidates, const str
     }
     free(m.stack);
     free(m.sight);
+    tri_execute(frame->executor, m.status ? 0 : m.n_portions, do_portion, &m);
+    for (size_t i = 0; i < m.n_portions; i++) {
+        join(&m, &portion[i]);
+        free(portion[i].list);
+        tri_candidates_clear(&portion[i].out);
+    }
     if (m.status)
         tri_candidates_clear(candidates);
     return m.status == TRI_STOPPED ? tri_fail_stopped(error)

@@ -2,7 +2,9 @@
 #ifndef TRIANGLE_SIZE_CANDIDATES_H
 #define TRIANGLE_SIZE_CANDIDATES_H
 
+#include "triangle/base/executor.h"
 #include "triangle/base/status.h"
+#include "triangle/mesh/mesh.h"
 #include "triangle/size/quadtree.h"
 
 /* What is known of an item about a place p: q from there, its key is at least value + gradient * q, as of a convex
@@ -35,11 +37,18 @@ struct tri_candidates {
     int32_t n, capacity;
 };
 
-/* The lists of n >= 1 items for places in a box; for others they are those of the nearest place in it. In about
- * n log n; asks `stop`. TRI_NO_MEMORY, TRI_STOPPED: *candidates is empty. */
+/* What all sources are made for. */
+struct tri_size_frame {
+    const struct tri_mesh *mesh;
+    struct tri_point low, high; /* the box of its vertices */
+    double gradation;           /* above 0, or infinite */
+    const struct tri_executor *executor;
+};
+
+/* The lists of n >= 1 items for places in the frame's box; for others they are those of the nearest place in it. In
+ * about n log n; contest is asked by several threads. TRI_NO_MEMORY, TRI_STOPPED: *candidates is empty. */
 enum tri_status tri_candidates_make(struct tri_candidates *candidates, const struct tri_contest *contest, int32_t n,
-                                    struct tri_point low, struct tri_point high, const struct tri_stop *stop,
-                                    struct tri_error *error);
+                                    const struct tri_size_frame *frame, struct tri_error *error);
 void tri_candidates_clear(struct tri_candidates *candidates);
 
 /* The items that can win at a place, *n >= 1 of them. */

@@ -281,12 +281,12 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
                                 const struct tri_mesh *mesh, const struct tri_executor *executor,
                                 struct tri_error *error)
 {
-    (void)executor;
     *lengths = NULL;
     enum tri_status status = tri_sizes_check(sizes, error);
     if (status || mesh->n_subs == 0 || !asks_for_any(sizes)) /* an empty mesh has nothing to measure */
         return status;
     struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
+    m.frame.executor = executor;
     if (!m.out)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     status = take_all(&m, error);

@@ -49,8 +49,7 @@ static double allowed(const void *user, int32_t winner, double h, double side)
 enum tri_status tri_near_settle(struct tri_near *near, const struct tri_size_frame *frame, struct tri_error *error)
 {
     const struct tri_contest contest = {key, allowed, near};
-    return near->n == 0 ? TRI_OK : tri_candidates_make(&near->candidates, &contest, near->n, frame->low, frame->high,
-                                                       frame->mesh->stop, error);
+    return near->n == 0 ? TRI_OK : tri_candidates_make(&near->candidates, &contest, near->n, frame, error);
 }
 
 double tri_near_at(const struct tri_near *near, struct tri_point p)

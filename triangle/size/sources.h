@@ -6,15 +6,7 @@
 #ifndef TRIANGLE_SIZE_SOURCES_H
 #define TRIANGLE_SIZE_SOURCES_H
 
-#include "triangle/mesh/mesh.h"
 #include "triangle/size/candidates.h"
-
-/* What all sources are made for. */
-struct tri_size_frame {
-    const struct tri_mesh *mesh;
-    struct tri_point low, high; /* the box of its vertices */
-    double gradation;           /* above 0, or infinite */
-};
 
 /* No length is longer than this: no edge of the mesh is. */
 static inline double tri_size_cap(const struct tri_size_frame *frame)
