@@ -158,8 +158,9 @@ enum tri_status size_options_end(const struct size_options *options, struct tri_
 {
     const bool any = size_options_any(options);
     if (!any && (options->gradation > 0 || options->min_size > 0))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s limits lengths that nothing asks for: --size, --size-near, "
-                        "--max-size, --elements-across or --per-circle does", options->gradation > 0 ? "gradation" : "min-size");
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s limits lengths that nothing asks for: --size, --size-near,"
+                        " --max-size, --elements-across or --per-circle does",
+                        options->gradation > 0 ? "gradation" : "min-size");
     if (options->max_size > 0 && options->min_size > options->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-size %g is above --max-size %g", options->min_size,
                         options->max_size);
