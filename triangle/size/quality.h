@@ -27,7 +27,7 @@ struct tri_quality {
     tri_edge_length *edge_length; /* NULL: none. No triangle is larger than an equilateral one with the least length at
                                      its corners and centroid */
     void *edge_length_user;
-    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: none are asked for */
+    const struct tri_lengths *lengths; /* edges shall be about so long (lengths.h); borrowed; NULL: none */
     bool front;            /* points for lengths are placed over a front (front.h) */
     tri_unsuitable *unsuitable; /* a size test; NULL: none */
     void *unsuitable_user;
