@@ -71,7 +71,8 @@ static void test_edges_are_as_long_as_asked(void **state)
         struct tri_lengths *lengths;
         struct tri_mesh mesh = square_of(&field, way, &lengths);
         const struct found f = look_at(&mesh, lengths);
-        print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest %.3f\n", way,
+        print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest"
+                      " %.3f\n", way,
                       (int)mesh.n_triangles, f.quality, f.share, f.over, f.shortest, f.widest);
         assert_true(f.widest <= 0.8 && f.shortest > 0.45);
         assert_true(f.quality > (way ? 0.985 : 0.85) && f.share > (way ? 0.98 : 0.9));
