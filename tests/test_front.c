@@ -126,8 +126,8 @@ static struct found look_at_blocks(struct trial trial)
         par_report_free(&report);
     }
     const struct found f = look_at(&mesh[0], start.options.quality.lengths);
-    print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality, f.share,
-                  f.over);
+    print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality,
+                  f.share, f.over);
     const struct tri_check_options check = kept();
     support_judge(&mesh[0], &start.pslg, &check, false, NULL);
     support_assert_same_bytes(&mesh[0], &mesh[1]);
