@@ -143,7 +143,8 @@ static void test_blocks_do_as_well(void **state)
     (void)state;
     const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
     assert_true(letter.quality > 0.982 && letter.share > 0.98 && letter.over > 0.97 && letter.over < 1.03);
-    const struct found coast = look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
+    const struct found coast =
+        look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
     assert_true(coast.quality > 0.9);
 }
 
