@@ -71,7 +71,8 @@ static void test_edges_are_as_long_as_asked(void **state)
         struct tri_lengths *lengths;
         struct tri_mesh mesh = square_of(&field, way, &lengths);
         const struct found f = look_at(&mesh, lengths);
-        print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest %.3f\n", way,
+        print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest"
+                      " %.3f\n", way,
                       (int)mesh.n_triangles, f.quality, f.share, f.over, f.shortest, f.widest);
         assert_true(f.widest <= 0.8 && f.shortest > 0.45);
         assert_true(f.quality > (way ? 0.985 : 0.85) && f.share > (way ? 0.98 : 0.9));
@@ -125,8 +126,8 @@ static struct found look_at_blocks(struct trial trial)
         par_report_free(&report);
     }
     const struct found f = look_at(&mesh[0], start.options.quality.lengths);
-    print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality, f.share,
-                  f.over);
+    print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality,
+                  f.share, f.over);
     const struct tri_check_options check = kept();
     support_judge(&mesh[0], &start.pslg, &check, false, NULL);
     support_assert_same_bytes(&mesh[0], &mesh[1]);
@@ -142,7 +143,8 @@ static void test_blocks_do_as_well(void **state)
     (void)state;
     const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
     assert_true(letter.quality > 0.982 && letter.share > 0.98 && letter.over > 0.97 && letter.over < 1.03);
-    const struct found coast = look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
+    const struct found coast =
+        look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
     assert_true(coast.quality > 0.9);
 }
 

@@ -36,7 +36,8 @@ struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3],
  * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps.
  *
  * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
- * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that edge. */
+ * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that edge. For
+ * lengths none gets one there that is smaller than an equilateral one with edges of h. */
 
 tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          tri_triangle_id triangle, const struct tri_shape *shape)
@@ -69,6 +70,10 @@ bool tri_is_walled_in(const struct tri_asked *asked, tri_triangle_id triangle, c
     const struct tri_triangle *t = &mesh->tri[triangle];
     const double longest2 = tri_longest2(shape), LOW = 4096;
     const int e = shape->l[0] == longest2 ? 0 : shape->l[1] == longest2 ? 1 : 2;
+    if (asked->quality->lengths && asked->quality->protect > 0 && !tri_asks_caller(asked->quality)) {
+        const double h = tri_wanted_of(asked, t->v[0]);
+        return shape->area2 <= tri_lesser(2 * TRI_EQUILATERAL * h * h, tri_area2_bound(asked, t->region));
+    }
     if (!tri_asks_caller(asked->quality) || asked->quality->protect == 0 || LOW * shape->area2 > longest2 ||
         shape->area2 > tri_area2_bound(asked, t->region))
         return false;
