@@ -74,7 +74,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
          threads: Optional[int] = None, stop: Optional[Callable[[], Any]] = None,
          progress: Optional[Progress] = None, placement: str = "lattice", size_near: Optional[Near] = None,
          gradation: Optional[float] = None, min_size: Optional[float] = None,
-         max_size: Optional[float] = None) -> Mesh:
+         max_size: Optional[float] = None, optimise: Optional[int] = None) -> Mesh:
     """A triangle mesh of a plane figure.
 
     What is given, anything that numpy makes an array of (arrays of the right type are not copied):
@@ -102,6 +102,9 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         which grows by growth (default: gradation) for a distance of 1.
     gradation: sizes grow by no more than this for a distance of 1 (default 0.2; inf: any growth).
     min_size, max_size: bounds on all sizes.
+    optimise: passes of smoothing at the end, which move new points inside regions to where triangles are best. Default:
+        1 where sizes are given, else 0. Not with max_area, areas of regions, unsuitable, conforming, max_new_points,
+        gate or fence.
     unsuitable: function of a, b, c and area: must this triangle be refined?
     conforming: every triangle is Delaunay, no point lies in the circle over a segment.
     keep_hull: the convex hull is meshed, whatever the segments enclose.
@@ -126,7 +129,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     who = "mesh()"
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
                                               max_new_points, gate, fence, threads, stop, progress, placement, size_near,
-                                              gradation, min_size, max_size))
+                                              gradation, min_size, max_size, optimise))
     settings.even_odd = polygons is not None or isinstance(holes, str)
     if union and polygons is None:
         raise InputError("%s: union=True without polygons" % who)

@@ -83,6 +83,7 @@ class Wanted:
     gradation: Optional[float] = None
     min_size: Optional[float] = None
     max_size: Optional[float] = None
+    optimise: Optional[int] = None
 
 
 def _placement(who: str, given: Any) -> int:
@@ -105,6 +106,8 @@ def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
             raise InputError("%s: fence has %d numbers instead of 4" % (who, len(wanted.fence)))
         settings.fence = (c_double * 4)(*(number(who, "fence", value) for value in wanted.fence))
     _take_sizes(settings, calls, wanted)
+    if wanted.optimise is not None:
+        settings.optimise = whole(who, "optimise", wanted.optimise) or -1  # 0: none, which the library calls -1
     _take_functions(settings, calls, wanted.unsuitable, wanted.gate, wanted.stop)
     if wanted.progress:
         settings.progress = follow(calls, wanted.progress)
