@@ -16,7 +16,6 @@ ptriangle.compat stands in for the package `triangle`.
 """
 from . import _library
 from ._errors import Error, FileError, InputError, StoppedError, TooLargeError
-from ._library import SizeFunction
 from ._make import mesh, read
 from ._mesh import Mesh
 from ._notes import EmptyMeshWarning, IgnoredWarning, InputWarning
@@ -24,4 +23,4 @@ from ._verdict import Verdict
 
 __version__: str = _library.library.tri_version().decode()
 __all__ = ["EmptyMeshWarning", "Error", "FileError", "IgnoredWarning", "InputError", "InputWarning", "Mesh",
-           "SizeFunction", "StoppedError", "TooLargeError", "Verdict", "mesh", "read"]
+           "StoppedError", "TooLargeError", "Verdict", "mesh", "read"]

@@ -10,7 +10,7 @@ import os
 from ctypes import (CFUNCTYPE, POINTER, Structure, byref, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64,
                     c_long, c_size_t, c_void_p, sizeof)
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Union
+from typing import Any, Iterator
 
 import numpy as np
 
@@ -42,14 +42,6 @@ class Figure(Sized):
                 ("triangles", Ints), ("triangle_attributes", Reals), ("triangle_areas", Reals)]
 
 
-if TYPE_CHECKING:
-    class SizeFunction:
-        """Compiled code that tells the length of edges: double (*)(void *, const double[2]), by its address."""
-
-        def __init__(self, function: Union[int, Callable[[Any, Any], float]]) -> None: ...
-else:
-    SizeFunction = CFUNCTYPE(c_double, c_void_p, POINTER(c_double))
-    SizeFunction.__name__ = "SizeFunction"
 Unsuitable = CFUNCTYPE(c_int, c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_double)
 Gate = CFUNCTYPE(c_bool, c_void_p, POINTER(c_double))
 Stop = CFUNCTYPE(c_bool, c_void_p)
@@ -57,17 +49,28 @@ Note = CFUNCTYPE(None, c_void_p, c_char_p)
 Progress = CFUNCTYPE(None, c_void_p, c_double, c_int64)
 
 
+SizeArrays = CFUNCTYPE(None, c_void_p, c_int64, c_void_p, POINTER(c_double))
+
+
+class SizeField(Structure):
+    _fields_ = [("kind", c_int), ("length", c_double), ("growth", c_double), ("marker", c_int32), ("values", Reals),
+                ("origin", c_double * 2), ("step", c_double * 2), ("points", Reals), ("triangles", Ints),
+                ("function", SizeArrays), ("user", c_void_p)]
+
+
 class Settings(Sized):
+    kept: Any = None  # what its pointers lead to
     _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("conforming", c_bool),
                 ("keep_hull", c_bool), ("protect", c_int), ("most_new_points", c_int64),
-                ("edge_length", SizeFunction), ("edge_length_user", c_void_p),  # type: ignore[list-item]
+                ("edge_length", c_void_p), ("edge_length_user", c_void_p),
                 ("unsuitable", Unsuitable), ("unsuitable_user", c_void_p),
                 ("gate", Gate), ("gate_user", c_void_p), ("fence", POINTER(c_double)),
                 ("stop", Stop), ("stop_user", c_void_p),
                 ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool),
                 ("even_odd", c_bool),
                 ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p),
-                ("placement", c_int)]
+                ("placement", c_int), ("sizes", POINTER(SizeField)), ("n_sizes", c_int64), ("gradation", c_double),
+                ("min_size", c_double), ("max_size", c_double), ("optimise", c_int)]
 
 
 class Demands(Sized):

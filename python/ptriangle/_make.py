@@ -13,8 +13,9 @@ from ._errors import InputError
 from ._figure import figure_of
 from ._library import Settings
 from ._mesh import Mesh, finished, made
-from ._settings import Progress, Size, Unsuitable, Wanted, settings_of
+from ._settings import Progress, Unsuitable, Wanted, settings_of
 from ._signature import explained
+from ._sizes import Near, Size
 
 if TYPE_CHECKING:
     from typing import TypedDict
@@ -71,7 +72,9 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
          max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
          fence: Optional[Sequence[float]] = None, order: int = 1, keep_unused: bool = False,
          threads: Optional[int] = None, stop: Optional[Callable[[], Any]] = None,
-         progress: Optional[Progress] = None, placement: str = "lattice") -> Mesh:
+         progress: Optional[Progress] = None, placement: str = "lattice", size_near: Optional[Near] = None,
+         gradation: Optional[float] = None, min_size: Optional[float] = None,
+         max_size: Optional[float] = None, optimise: Optional[int] = None) -> Mesh:
     """A triangle mesh of a plane figure.
 
     What is given, anything that numpy makes an array of (arrays of the right type are not copied):
@@ -91,17 +94,27 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     min_angle: degrees. Use 30 unless you have a reason: of 133 real inputs 101 keep 36, 31 keep 38. A bound above 38 is
         treated as 38, conforming above 36 as 36, with an IgnoredWarning.
     max_area: of a triangle.
-    size: bounds triangles by the area of an equilateral one with edges of this length: a number, or a function of x and
-        y, asked at corners and centroids (inf: any); or a SizeFunction, of compiled code, which all threads call.
+    size: how long edges shall be. A number; a function of the arrays x and y that returns an array (inf: any length);
+        a raster (values [rows, columns], (x_min, y_min, x_max, y_max)), whose first row lies at y_min and whose outer
+        nodes lie on these bounds; a mesh (points, triangles, values). A list of several: the least counts. A value that
+        is nan, or not above 0, is no data. A function of numbers works too, slowly, with an InputWarning.
+    size_near: {marker: length} or {marker: (length, growth)}: edges at the segments with this marker have this length,
+        which grows by growth (default: gradation) for a distance of 1.
+    gradation: sizes grow by no more than this for a distance of 1 (default 0.2; inf: any growth).
+    min_size, max_size: bounds on all sizes.
+    optimise: passes of smoothing at the end, which move new points inside regions to where triangles are best. Default:
+        1 where sizes are given, else 0. Not with max_area, areas of regions, unsuitable, conforming, max_new_points,
+        gate or fence.
     unsuitable: function of a, b, c and area: must this triangle be refined?
     conforming: every triangle is Delaunay, no point lies in the circle over a segment.
     keep_hull: the convex hull is meshed, whatever the segments enclose.
     protect: 1: no points on the boundary; 2: nor on any segment.
     max_new_points: then refinement ends.
     gate: function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max: changes stay within.
-    placement: "lattice": if max_area, a number as size, or areas of regions alone set the size, and min_angle is at
-        most 30, new points lie in a hexagonal lattice: a third fewer triangles. "classic": no lattice; edges have no
-        common directions. Above 30 degrees, with functions of size, and with triangles= both make the same mesh.
+    placement: "lattice": if one length, max_area, or areas of regions alone set the size, and min_angle is at most 30,
+        new points lie in a hexagonal lattice: a third fewer triangles. "classic": no lattice; edges have no common
+        directions. "front": points are placed row by row from the boundary inwards, at the distance that size asks
+        for. Sizes that vary in space use it in place of the lattice.
     order: 2: points amid the edges, too.
     keep_unused: points that no triangle uses (duplicates, points outside) stay. Otherwise they are dropped;
         Mesh.input_points holds the new number of each point.
@@ -115,7 +128,8 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     """
     who = "mesh()"
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
-                                              max_new_points, gate, fence, threads, stop, progress, placement))
+                                              max_new_points, gate, fence, threads, stop, progress, placement, size_near,
+                                              gradation, min_size, max_size, optimise))
     settings.even_odd = polygons is not None or isinstance(holes, str)
     if union and polygons is None:
         raise InputError("%s: union=True without polygons" % who)

@@ -15,8 +15,9 @@ from ._errors import InputError
 from ._figure import figure_of
 from ._library import Demands, Figure, Ints, Settings, VerdictDetail, library
 from ._notes import tell, warn
-from ._settings import Progress, Size, Unsuitable, Wanted, settings_of
+from ._settings import Progress, Unsuitable, Wanted, settings_of
 from ._signature import explained
+from ._sizes import Near, Size
 from ._verdict import Verdict
 
 Reals = npt.NDArray[np.float64]
@@ -290,14 +291,19 @@ class Mesh:
                triangle_areas: Optional[npt.ArrayLike] = None, conforming: bool = False, protect: int = 0,
                max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
                fence: Optional[Sequence[float]] = None, order: Optional[int] = None, threads: Optional[int] = None,
-               stop: Optional[Callable[[], Any]] = None, progress: Optional[Progress] = None) -> "Mesh":
+               stop: Optional[Callable[[], Any]] = None, progress: Optional[Progress] = None,
+               placement: str = "lattice", size_near: Optional[Near] = None, gradation: Optional[float] = None,
+               min_size: Optional[float] = None, max_size: Optional[float] = None,
+               optimise: Optional[int] = None) -> "Mesh":
         """A finer mesh, by the keywords of ptriangle.mesh(); this one stays as it is.
 
         Bounds that came with regions count no more; triangle_areas, [m], are new ones for each triangle. order is that
         of this mesh where it is not given.
         """
         settings, calls = settings_of("refine()", Wanted(min_angle, max_area, size, unsuitable, conforming, False,
-                                                         protect, max_new_points, gate, fence, threads, stop, progress))
+                                                         protect, max_new_points, gate, fence, threads, stop, progress,
+                                                         placement, size_near, gradation, min_size, max_size,
+                                                         optimise))
         figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
         finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
         finer._input_points = self._input_points
@@ -331,7 +337,9 @@ class Mesh:
     def bad(self, *, min_angle: Optional[float] = None, max_area: Optional[float] = None, size: Optional[Size] = None,
             unsuitable: Optional[Unsuitable] = None, conforming: bool = False, protect: int = 0,
             max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
-            fence: Optional[Sequence[float]] = None) -> Dict[str, int]:
+            fence: Optional[Sequence[float]] = None, size_near: Optional[Near] = None,
+            gradation: Optional[float] = None, min_size: Optional[float] = None,
+            max_size: Optional[float] = None) -> Dict[str, int]:
         """How many triangles do not keep the bounds, by reason; keywords as those of ptriangle.mesh().
 
         Reasons: input_angle (a small angle of the input), narrow_gap (between segments), protected, limit (of new
@@ -339,7 +347,8 @@ class Mesh:
         by these bounds yet).
         """
         settings, calls = settings_of("bad()", Wanted(min_angle, max_area, size, unsuitable, conforming, False, protect,
-                                                      max_new_points, gate, fence))
+                                                      max_new_points, gate, fence, size_near=size_near,
+                                                      gradation=gradation, min_size=min_size, max_size=max_size))
         if len(self._arrays["triangles"]) == 0:
             return {}
         count = (c_int64 * len(_REASONS))()

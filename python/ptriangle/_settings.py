@@ -9,10 +9,10 @@ from typing import Any, Callable, Optional, Sequence, Tuple, Union
 from . import _library as lib
 from ._calls import Calls
 from ._errors import InputError
-from ._library import Settings, SizeFunction
+from ._library import Settings
 from ._progress import follow
+from ._sizes import Near, Size, fields, length
 
-Size = Union[float, Callable[[float, float], float], SizeFunction]
 Place = Tuple[float, float]
 Unsuitable = Callable[[Place, Place, Place, float], Any]
 Progress = Union[bool, Callable[[float, int], Any]]
@@ -37,40 +37,17 @@ def whole(who: str, name: str, given: Any, bits: int = 32) -> int:
     return found
 
 
-def _name_of(function: Any) -> str:
-    return str(getattr(function, "__name__", type(function).__name__))
-
-
 def _refuse(who: str, name: str, given: Any) -> None:
     if given is not None and not callable(given):
         raise InputError("%s: %s is %r instead of a function" % (who, name, given))
 
 
-def _length_asked(calls: Calls, function: Callable[[float, float], float]) -> Callable[[Any, Any], float]:
-    """The caller's function of a place as the library calls it."""
-    def ask(_user: Any, at: Any) -> float:
-        x, y = at[0], at[1]
-        given = function(x, y)
-        try:
-            return float(given)
-        except (TypeError, ValueError):
-            raise TypeError("%s: size: %s(%r, %r) returned %r instead of a number"
-                            % (calls.who, _name_of(function), x, y, given)) from None
-    return calls.guarded(ask, math.inf)
-
-
-def _take_size(settings: Settings, calls: Calls, size: Any, unsuitable: Any) -> None:
-    if isinstance(size, SizeFunction):
-        settings.edge_length = size
-        settings.callbacks_in_parallel = unsuitable is None
-    elif callable(size):
-        settings.edge_length = SizeFunction(_length_asked(calls, size))
-    elif size is not None:
-        length = number(calls.who, "size", size)
-        if not length > 0:
-            raise InputError("%s: size: %g is not > 0" % (calls.who, length))
-        area = math.sqrt(3) / 4 * length * length
-        settings.max_area = min(settings.max_area, area) if settings.max_area > 0 else area
+def _take_sizes(settings: Settings, calls: Calls, wanted: "Wanted") -> None:
+    found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: which the library looks at
+    settings.sizes, settings.n_sizes = found, len(found)
+    for name in ("gradation", "min_size", "max_size"):
+        if getattr(wanted, name) is not None:
+            setattr(settings, name, length(calls.who, name, getattr(wanted, name)))
 
 
 def _take_functions(settings: Settings, calls: Calls, unsuitable: Any, gate: Any, stop: Any) -> None:
@@ -102,11 +79,16 @@ class Wanted:
     stop: Optional[Callable[[], Any]] = None
     progress: Optional[Progress] = None
     placement: str = "lattice"
+    size_near: Optional[Near] = None
+    gradation: Optional[float] = None
+    min_size: Optional[float] = None
+    max_size: Optional[float] = None
+    optimise: Optional[int] = None
 
 
 def _placement(who: str, given: Any) -> int:
     if given not in PLACEMENTS:
-        raise InputError('%s: placement: %r is neither "lattice" nor "classic"' % (who, given))
+        raise InputError('%s: placement: %r is not "lattice", "classic" or "front"' % (who, given))
     return PLACEMENTS.index(given)
 
 
@@ -123,7 +105,9 @@ def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
         if len(wanted.fence) != 4:
             raise InputError("%s: fence has %d numbers instead of 4" % (who, len(wanted.fence)))
         settings.fence = (c_double * 4)(*(number(who, "fence", value) for value in wanted.fence))
-    _take_size(settings, calls, wanted.size, wanted.unsuitable)
+    _take_sizes(settings, calls, wanted)
+    if wanted.optimise is not None:
+        settings.optimise = whole(who, "optimise", wanted.optimise) or -1  # 0: none, which the library calls -1
     _take_functions(settings, calls, wanted.unsuitable, wanted.gate, wanted.stop)
     if wanted.progress:
         settings.progress = follow(calls, wanted.progress)

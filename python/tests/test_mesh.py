@@ -97,17 +97,6 @@ def test_polygons():
         ptriangle.mesh()
 
 
-def test_size():
-    m = plate(min_angle=30, size=0.2)
-    assert areas(m).max() <= np.sqrt(3) / 4 * 0.04 * (1 + 1e-12)
-    graded = plate(min_angle=30, size=lambda x, y: 0.05 + 0.2 * x)
-    x = graded.points[graded.triangles].mean(axis=1)[:, 0]
-    assert areas(graded)[x < 1].max() < areas(graded)[x > 3].max() / 4
-    compiled = ptriangle.SizeFunction(lambda user, at: 0.05 + 0.2 * at[0])
-    same = plate(min_angle=30, size=compiled, threads=1)
-    assert same.check(min_angle=30)
-
-
 def test_placement():
     def mesh(angle, placement, **wanted):
         m = plate(min_angle=angle, placement=placement, **wanted)
@@ -118,7 +107,7 @@ def test_placement():
         lattice, classic = mesh(30, "lattice", **wanted), mesh(30, "classic", **wanted)
         assert 0.6 * len(classic.triangles) < len(lattice.triangles) < 0.8 * len(classic.triangles)
         assert np.array_equal(plate(min_angle=30, **wanted).points, lattice.points)
-    for angle, wanted in (33, dict(max_area=1e-3)), (30, dict(size=lambda x, y: 0.05)), (30, {}):
+    for angle, wanted in (33, dict(max_area=1e-3)), (30, {}):
         assert np.array_equal(mesh(angle, "lattice", **wanted).points, mesh(angle, "classic", **wanted).points)
 
 

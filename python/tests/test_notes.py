@@ -31,13 +31,6 @@ def test_segments_that_are_skipped():
     assert caught[0].category is ptriangle.InputWarning
 
 
-@pytest.mark.parametrize("odd", [0, -1, math.nan])
-def test_sizes_that_are_no_lengths(odd):
-    with pytest.warns(ptriangle.InputWarning, match=r"size returned %g at \([234].*\)" % odd) as caught:
-        ptriangle.mesh(SQUARE, RING, size=lambda x, y: odd if x > 2 else 0.5)
-    assert len(caught) == 1
-
-
 @pytest.mark.parametrize("call", [lambda: ptriangle.mesh(SQUARE, RING, min_angle=40),
                                   lambda: ptriangle.mesh(SQUARE, RING).refine(min_angle=40)])
 def test_an_angle_that_is_lowered(call):

@@ -60,8 +60,8 @@ def test_unknown_keywords(call, words):
     (dict(max_new_points=10 ** 400), "max_new_points is 1000"),
     (dict(max_new_points=1 << 63), "max_new_points is 9223372036854775808: beyond"), (dict(min_angle=np.nan), "is nan"),
     (dict(max_area=10 ** 400), "max_area is 1000"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"),
-    (dict(union=True), "union"), (dict(placement="hexagons"), r"^mesh\(\): placement: 'hexagons' is neither"),
-    (dict(placement=None), "placement: None is neither"),
+    (dict(union=True), "union"), (dict(placement="hexagons"), r"^mesh\(\): placement: 'hexagons' is not"),
+    (dict(placement=None), "placement: None is not"),
     (dict(regions=[[1, 2]]), r"^mesh\(\): regions: shape \(1, 2\)"), (dict(segment_markers="x"), "segment_markers")])
 def test_errors_name_function_and_argument(wanted, words):
     with pytest.raises(ptriangle.InputError, match=words):

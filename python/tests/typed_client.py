@@ -15,8 +15,8 @@ def square() -> Square:
     return np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float), [[0, 1], [1, 2], [2, 3], [3, 0]]
 
 
-def finer_near(x: float, y: float) -> float:
-    return 0.05 + 0.1 * x
+def finer_near(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.asarray(0.05 + 0.1 * x)
 
 
 def follow(done: float, triangles: int) -> None:
@@ -49,7 +49,7 @@ def files(path: str) -> ptriangle.Mesh:
 def polygons() -> ptriangle.Mesh:
     try:
         return ptriangle.mesh(polygons=[[(0, 0), (1, 0), (1, 1)]], union=True, gate=lambda x, y: x < 0.5,
-                              size=ptriangle.SizeFunction(lambda user, at: 0.1), stop=lambda: False)
+                              size=[0.1, ([[0.1, 0.2], [0.1, 0.2]], (0, 0, 1, 1))], size_near={0: (0.1, 0.2)}, stop=lambda: False)
     except ptriangle.InputError as error:
         assert error.status == 3
         raise
