@@ -217,6 +217,9 @@ struct tri_settings {
     double gradation;   /* lengths grow by no more than this for a distance of 1; 0: 0.2; infinite: no limit */
     double min_size;    /* shorter lengths count as this; 0: none is too short */
     double max_size;    /* > 0: no length is longer, also where no field says anything */
+    int optimise;       /* passes of smoothing, which move new points inside regions; 0: one where lengths are asked
+                           for, else none; below 0: none. Not with max_area, areas of regions, unsuitable, conforming,
+                           most_new_points, a gate or a fence */
 };
 
 static inline struct tri_settings tri_no_settings(void)

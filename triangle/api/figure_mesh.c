@@ -13,6 +13,7 @@
 #include "triangle/api/figure.h"
 #include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
+#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
@@ -80,6 +81,7 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.conforming = s->conforming;
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
+    how.passes = s->gate || s->fence ? 0 : s->optimise || !(s->n_sizes > 0 || s->max_size > 0) ? s->optimise : 1;
     how.edge_length = s->edge_length ? ask_length : NULL;
     how.edge_length_user = sizes;
     how.unsuitable = s->unsuitable;
@@ -373,6 +375,8 @@ static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mes
     (void)way;
     (void)settings;
     enum tri_status status = tri_refine_with(mesh, quality, hooks, report, error);
+    if (!status && tri_wants_smoothing(quality))
+        status = tri_smooth_all(mesh, quality, error);
     tri_surface_settle(mesh, NULL);
     return status;
 }
