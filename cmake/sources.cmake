@@ -39,6 +39,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine/lattice_fill.c
     triangle/refine/feed.c
     triangle/refine/treat.c
+    triangle/refine/smooth.c
     triangle/refine/refine.c
     triangle/refine/census.c
     triangle/size/crowd.c
@@ -162,6 +163,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/wire.c
     sched/ranks/territory.c
     sched/schedule/prerefine.c
+    sched/schedule/smoothing.c
     sched/schedule/schedule.c
     sched/schedule/par_triangulate.c
     sched/schedule/library.c)

@@ -158,4 +158,12 @@
 #define TRI_AGAIN 1.5
 #define TRI_NEVER_AGAIN 39.0
 
+/* --- smooth.c. Measured on a coast with sizes growing by 0.15: one pass raises the mean q from 0.956 to 0.977, a second
+ * one to 0.979. */
+
+#define TRI_SMOOTH_FINE 0.985 /* a vertex whose triangles all have at least this q stays: nothing is gained */
+#define TRI_SMOOTH_GAIN 1e-5  /* of the sum of 1 / q that a move must bring */
+#define TRI_SMOOTH_GOOD 0.7   /* the worst q may get lower as long as it is above this: no angle is below 24 degrees */
+#define TRI_SMOOTH_LEAST 0.05 /* no triangle flatter than this is made, whatever else gets better */
+
 #endif

@@ -8,6 +8,7 @@
 #include "triangle/base/system.h"
 #include "triangle/check/check.h"
 #include "triangle/hdf5/h5_write.h"
+#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 
 /* Measured: bytes a triangle at the peak, at least; of one refinement loop beside the mesh; time of the numbering
@@ -148,7 +149,8 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 static bool is_swept(const struct run *run)
 {
     const struct tri_quality *quality = &run->options.quality;
-    return (run->settings.n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0;
+    return (run->settings.n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0 &&
+           !tri_wants_smoothing(quality);
 }
 
 bool estimate_can_park(const struct run *run, double held)

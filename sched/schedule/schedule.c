@@ -16,6 +16,7 @@
 #include "sched/ranks/ranks.h"
 #include "sched/schedule/phase.h"
 #include "sched/schedule/prerefine.h"
+#include "sched/schedule/smoothing.h"
 #include "sched/schedule/threads.h"
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
@@ -25,6 +26,7 @@
 #include "triangle/base/size_text.h"
 #include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
+#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
@@ -377,7 +379,8 @@ static enum tri_status begin_schedule(struct par_run *run, const struct tri_qual
         return status;
     par_go(run, is_of_sizes ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE);
     begin_rounds(run);
-    const bool spreads = options->sink && options->carrier && !options->by_block && !run->ranks;
+    const bool spreads = options->sink && options->carrier && !options->by_block && !run->ranks &&
+                         !tri_wants_smoothing(run->asked.quality);
     return spreads ? par_ranks_begin(run, error) : TRI_OK;
 }
 
@@ -580,6 +583,8 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
 static enum tri_status deliver(struct par_run *run, enum tri_status status, struct tri_error *error)
 {
     if (!status && run->place.next < PAR_HAND_OUT)
+        status = par_smooth(run, error);
+    if (!status && run->place.next < PAR_HAND_OUT)
         par_go(run, PAR_HAND_OUT);
     if (run->ranks) {
         status = par_ranks_hand_out(run, status, error);
@@ -657,7 +662,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     struct par_run run = {.asked = {quality, options, {run_timed, &timed}, mesh->n_vertices}, .mesh = mesh,
                           .report = report, .bounds = *quality};
     bool sequential = must_be_sequential(quality, options);
-    bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
+    bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE &&
+                     !tri_wants_smoothing(quality);
     enum tri_status status = tri_refine_prepare(mesh, &run.asked.executor, error);
     status = status ? status : tri_ask_lengths(mesh, quality->lengths, &run.asked.executor, error);
     status = status || can_sweep ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);

@@ -13,6 +13,7 @@
 #include "triangle/api/figure.h"
 #include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
+#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
@@ -71,10 +72,15 @@ static double ask_length(void *user, const double at[2])
     return length;
 }
 
+static bool has_lengths(const struct tri_settings *s)
+{
+    return s->n_sizes > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
+}
+
 static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *s)
 {
     return s->min_angle > 0 || s->max_area > 0 || s->conforming || s->edge_length || s->unsuitable || m->has_areas ||
-           s->n_sizes > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
+           has_lengths(s);
 }
 
 static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes *sizes)
@@ -89,6 +95,7 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.conforming = s->conforming;
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
+    how.passes = s->gate || s->fence ? 0 : s->optimise || !has_lengths(s) ? s->optimise : 1;
     how.edge_length = s->edge_length ? ask_length : NULL;
     how.edge_length_user = sizes;
     how.unsuitable = s->unsuitable;
@@ -378,6 +385,8 @@ static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mes
     (void)way;
     (void)settings;
     enum tri_status status = tri_refine_with(mesh, quality, hooks, report, error);
+    if (!status && tri_wants_smoothing(quality))
+        status = tri_smooth_all(mesh, quality, error);
     tri_surface_settle(mesh, NULL);
     return status;
 }

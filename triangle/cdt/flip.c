@@ -77,6 +77,16 @@ static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
 }
 
+/* Do all corners of t, and the apex beyond its edge e, lie in the fence? */
+static bool is_fenced(const struct tri_flips *f, tri_triangle_id t, int e)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    const tri_vertex_id *v = mesh->tri[t].v;
+    return tri_fence_holds(f->fence, mesh->xy[v[0]]) && tri_fence_holds(f->fence, mesh->xy[v[1]]) &&
+           tri_fence_holds(f->fence, mesh->xy[v[2]]) &&
+           tri_fence_holds(f->fence, mesh->xy[tri_apex(mesh, mesh->tri[t].n[e])]);
+}
+
 bool tri_flip_legalise(struct tri_flips *f)
 {
     struct tri_mesh *mesh = f->mesh;
@@ -84,7 +94,8 @@ bool tri_flip_legalise(struct tri_flips *f)
         tri_halfedge code = f->touched[--f->n_touched];
         tri_triangle_id t = tri_of(code);
         int e = tri_edge(code);
-        if (mesh->tri[t].n[e] < 0 || !is_illegal(f, t, e) || !is_convex(mesh, t, e))
+        if (mesh->tri[t].n[e] < 0 || (f->fence && !is_fenced(f, t, e)) || !is_illegal(f, t, e) ||
+            !is_convex(mesh, t, e))
             continue;
         if (f->history && !tri_flip_history_add(f->history, mesh, t, e))
             return false;

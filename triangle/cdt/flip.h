@@ -2,6 +2,7 @@
 #ifndef TRIANGLE_CDT_FLIP_H
 #define TRIANGLE_CDT_FLIP_H
 
+#include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 
 /* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
@@ -20,6 +21,7 @@ struct tri_flips {
     struct tri_mesh *mesh;
     struct tri_flip_history *history; /* NULL, or hears of each flip before it is made; not owned */
     tri_triangle_id *corner; /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
+    const struct tri_fence *fence; /* NULL, or edges are flipped only where all four corners lie in it; not owned */
     bool ties_stay;          /* of four points on one circle nothing is flipped; else coordinates break the tie */
     tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */
     int32_t n_touched, capacity;

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #include "triangle/mesh/surface.h"
+#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
@@ -208,6 +209,8 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *qual
                            struct tri_error *error)
 {
     enum tri_status status = tri_refine_with(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
+    if (!status && tri_wants_smoothing(quality))
+        status = tri_smooth_all(mesh, quality, error);
     tri_surface_settle(mesh, NULL);
     return status;
 }

@@ -36,6 +36,7 @@ struct tri_quality {
     bool lattice;          /* points lie in a lattice where a bound on areas allows (lattice.h), or a length */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
+    int passes;            /* of smoothing at the end, which moves vertices (smooth.h); 0: none */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
 };
 

@@ -1,0 +1,134 @@
+#include "sched/schedule/smoothing.h"
+
+#include <stdlib.h>
+
+#include "sched/schedule/deal.h"
+#include "sched/tiles/numbering.h"
+#include "sched/tiles/park.h"
+#include "triangle/refine/smooth.h"
+
+/* A phase: vertices dealt to its blocks. */
+struct smoothing {
+    const struct par_run *run;
+    struct tri_smooth *smooth;
+    int phase;
+    tri_vertex_id *vertex; /* [n] that are still to be smoothed in this pass, in order .. */
+    tri_vertex_id *dealt;  /* [n] .. and by block */
+    int32_t n;
+    struct par_deal deal;  /* of the phase, tile by tile a block */
+    int32_t *left;         /* [blocks] how many of its vertices each block leaves */
+    enum tri_status *status; /* [blocks] */
+};
+
+static void count_share(void *context, size_t share)
+{
+    const struct smoothing *s = context;
+    int32_t *count = par_deal_at(&s->deal, share);
+    const struct tri_range range = par_deal_share(&s->deal, share);
+    struct par_locator locator = PAR_LOST;
+    for (int32_t i = range.first; i < range.last; i++)
+        count[par_locate(&locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]])]++;
+}
+
+static void deal_share(void *context, size_t share)
+{
+    const struct smoothing *s = context;
+    int32_t *at = par_deal_at(&s->deal, share);
+    const struct tri_range range = par_deal_share(&s->deal, share);
+    struct par_locator locator = PAR_LOST;
+    for (int32_t i = range.first; i < range.last; i++)
+        s->dealt[at[par_locate(&locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]])]++] = s->vertex[i];
+}
+
+static void smooth_block(void *context, size_t block)
+{
+    const struct smoothing *s = context;
+    const int32_t rows = s->run->cells.n_rows, *start = s->deal.start + block;
+    const struct tri_fence fence = par_fence(&s->run->cells, (int32_t)block / rows, (int32_t)block % rows);
+    s->left[block] = start[1] - start[0];
+    s->status[block] = tri_smooth_some(s->smooth, s->dealt + start[0], &s->left[block], &fence, NULL);
+}
+
+/* What blocks leave is the list of the next phase. */
+static enum tri_status gather(struct smoothing *s, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    s->n = 0;
+    for (int32_t block = 0; block < s->deal.n_tiles; block++) {
+        for (int32_t i = 0; i < s->left[block]; i++)
+            s->vertex[s->n++] = s->dealt[s->deal.start[block] + i];
+        status = status ? status : s->status[block];
+    }
+    return status == TRI_STOPPED ? tri_fail_stopped(error)
+           : status ? tri_fail(error, status, NULL, 0, "out of memory for smoothing") : TRI_OK;
+}
+
+static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error)
+{
+    const struct tri_executor *executor = &s->run->asked.executor;
+    enum tri_status status = TRI_OK;
+    if (!par_deal_reserve(&s->deal, s->n, par_blocks(&s->run->cells)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
+    if (!status) {
+        tri_execute(executor, s->deal.shares, count_share, s);
+        par_deal_add_up(&s->deal);
+        tri_execute(executor, s->deal.shares, deal_share, s);
+        tri_execute(executor, (size_t)s->deal.n_tiles, smooth_block, s);
+        status = gather(s, error);
+    }
+    par_deal_free(&s->deal);
+    return status;
+}
+
+static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = s->run->mesh;
+    enum tri_status status = TRI_OK;
+    s->n = 0;
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
+        if (tri_is_movable(mesh, v))
+            s->vertex[s->n++] = v;
+    for (s->phase = 0; !status && s->phase < PAR_PHASES; s->phase++)
+        status = smooth_phase(s, error);
+    return status ? status : tri_smooth_some(s->smooth, s->vertex, &s->n, NULL, error);
+}
+
+static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *error)
+{
+    struct tri_mesh *mesh = run->mesh;
+    const size_t list = ((size_t)mesh->n_vertices + 1) * sizeof(tri_vertex_id);
+    const size_t blocks = (size_t)par_blocks(&run->cells);
+    struct smoothing s = {.run = run, .vertex = tri_mesh_extra(mesh, list), .dealt = tri_mesh_extra(mesh, list),
+                          .left = malloc(blocks * sizeof *s.left), .status = malloc(blocks * sizeof *s.status)};
+    enum tri_status status = s.vertex && s.dealt && s.left && s.status
+                                 ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
+                                 : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
+    for (int pass = 0; !status && pass < run->asked.quality->passes; pass++)
+        status = smooth_pass(&s, error);
+    status = status ? status : tri_smooth_end(s.smooth, &run->asked.executor, error);
+    tri_smooth_free(s.smooth);
+    tri_mesh_extra_free(mesh, s.vertex);
+    tri_mesh_extra_free(mesh, s.dealt);
+    free(s.left);
+    free(s.status);
+    return status;
+}
+
+static enum tri_status number(struct par_run *run, struct tri_error *error)
+{
+    struct tri_mesh *mesh = run->mesh;
+    const double bytes = par_number_bytes(mesh->n_triangles, mesh->n_vertices, mesh->n_subs);
+    enum tri_status status = par_park_expect(run->park, mesh, (size_t)bytes, error);
+    return status ? status : par_number(mesh, &run->cells, run->asked.n_kept, &run->asked.executor, error);
+}
+
+enum tri_status par_smooth(struct par_run *run, struct tri_error *error)
+{
+    if (!tri_wants_smoothing(run->asked.quality))
+        return TRI_OK;
+    if (!run->cells.x)
+        return tri_smooth_all(run->mesh, run->asked.quality, error);
+    enum tri_status status = run->asked.options->by_block ? number(run, error) : TRI_OK;
+    status = status ? status : smooth_by_blocks(run, error);
+    return status ? status : number(run, error);
+}
