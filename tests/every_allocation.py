@@ -17,8 +17,8 @@ FEW = [
     ("ptriangle", "-pq30a0.3 section --threads 2 --dry-run", ["section.poly"]),
     ("ptriangle", "-pA section --output x.vtu --output x.msh --output x.2dm --output fort.14", ["section.poly"]),
     ("triangle", "-p letter --size mesh.msh --size-near 1:0.5", ["letter.poly", "lengths:mesh.msh"]),
-    ("ptriangle", "-p letter --size raster.asc --size h.npy@0,0,14,14 --threads 2", ["letter.poly", "lengths:raster.asc",
-                                                                                    "lengths:h.npy"]),
+    ("ptriangle", "-p letter --size raster.asc --size h.npy@0,0,14,14 --threads 2",
+     ["letter.poly", "lengths:raster.asc", "lengths:h.npy"]),
     ("trianglecheck", "square.1 --poly square.poly --quiet", ["square.poly", "mesh:square -pq"]),
 ]
 ALL = FEW + [
@@ -50,7 +50,8 @@ LENGTHS = {  # files for --size
     "raster.asc": b"ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 7\n1 2\n3 1\n",
     "h.npy": b"\x93NUMPY\x01\0\x3f\0" +
              b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 2), }".ljust(62) + b"\n\1\2\2\1",
-    "mesh.msh": b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n7 0 0 0\n9 30 0 0\n2 0 30 0\n$EndNodes\n$Elements\n1\n"
+    "mesh.msh": b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+                b"$Nodes\n3\n7 0 0 0\n9 30 0 0\n2 0 30 0\n$EndNodes\n$Elements\n1\n"
                 b"1 2 0 7 9 2\n$EndElements\n$NodeData\n1\n\"h\"\n0\n3\n0\n1\n3\n7 1\n9 2\n2 3\n$EndNodeData\n",
 }
 

@@ -85,6 +85,7 @@ tested_by() {
     sched/schedule/deal.c) echo numbering ;;
     sched/tiles/finds.c | sched/tiles/numbering.c | sched/tiles/pipeline.c | sched/tiles/queue.c) basename "$1" .c ;;
     sched/schedule/collect.c) echo phase ;;
+    sched/schedule/smoothing.c) echo smooth ;;
     sched/schedule/prerefine.c) echo theory ;;
     sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
@@ -167,7 +168,7 @@ done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh/(mesh|fence|surface)|refine/(refine|census)|size/estimate|api/(generate|opaque_mesh)|dropin/(triangle|call)'
+hooks='mesh/(mesh|fence|surface)|refine/(refine|census|smooth)|size/estimate|api/(generate|opaque_mesh)|dropin/(triangle|call)'
 tools='base/[a-z_]+|geometry/(hilbert|point|shape)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)

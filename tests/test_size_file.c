@@ -152,7 +152,8 @@ static const char jigsaw[] =
     "mshid=3;euclidean-mesh\nndims=2\npoint=6\n0;-1;0\n2;-1;0\n4;-1;0\n0;0;0\n2;0;0\n4;0;0\nedge2=1\n0;1;0\n"
     "value=6;1\n.75\n1.75\n2.75\n1\n2\n3\ntria3=4\n0;1;4;0\n0;4;3;0\n1;2;5;0\n1;5;4;0\n";
 static const char view[] =
-    "View \"h { \\ of x\" {\nSP(4,0,0){3};\nSL(0,0,0,2,0,0){1,2};\n// a comment\nST(0,-1,0, 2,-1,0, 2,0,0){.75,1.75,2};\nST(0,-1,0,2,0,0,0,0,0){.75,2,1,9,9,9};\n"
+    "View \"h { \\ of x\" {\nSP(4,0,0){3};\nSL(0,0,0,2,0,0){1,2};\n// a comment\n"
+    "ST(0,-1,0, 2,-1,0, 2,0,0){.75,1.75,2};\nST(0,-1,0,2,0,0,0,0,0){.75,2,1,9,9,9};\n"
     "SP(4,0,0){3};SL(0,0,0,2,0,0){1,2};ST(2,-1,0,4,-1,0,4,0,0){1.75,2.75,3};\nST(2,-1,0,4,0,0,2,0,0){1.75,3,2};\n};\n";
 
 static void test_meshes(void **state)
@@ -249,7 +250,8 @@ static void test_refused(void **state)
     check_refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0\n", 7, "ends before a coordinate");
     check_refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n", 0, "no length");
     check_refused("a.msh", "mshid=3;euclidean-sphere\n", 1, "neither euclidean-mesh");
-    check_refused("a.msh", "mshid=3;euclidean-mesh\nndims=2\npoint=1\n0;0;0\nvalue=2;1\n1\n2\n", 8, "2 values, not one");
+    check_refused("a.msh", "mshid=3;euclidean-mesh\nndims=2\npoint=1\n0;0;0\nvalue=2;1\n1\n2\n", 8,
+                  "2 values, not one");
     check_refused("a.msh", "mshid=3;euclidean-mesh\npoint=1\n0;0;0\nvalue=1;1\n1\ntria3=1\n0;0;5;0\n", 0,
                   "names point 5");
     check_refused("a.msh", "mshid=3;euclidean-grid\ncoord=1;2\n1\n1\n", 4, "do not rise");

@@ -61,7 +61,8 @@ static void test_values(void **state)
     char text[SIZE_OPTIONS_TEXT];
     size_options_print(&t.options, text);
     assert_string_equal(text, "500, coast.asc, a@b.npy, 500 at segments with marker -2, 1.5 at segments with marker 7 "
-                              "growing by 0.15, 2.5 across channels, 40 around a circle; at least 3; at most 30; gradation inf");
+                              "growing by 0.15, 2.5 across channels, 40 around a circle; at least 3; at most 30; "
+                              "gradation inf");
     size_options_free(&t.options);
 }
 

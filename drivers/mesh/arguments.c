@@ -155,7 +155,10 @@ static const char *const paragraphs[] = {
     "  --gradation G\n"
     "          lengths of all sources grow by no more than G for a distance of 1 (0.2; inf: no limit)\n"
     "  --min-size H, --max-size H\n"
-    "          no length that is asked for is below, or above H. --max-size alone holds everywhere\n",
+    "          no length that is asked for is below, or above H. --max-size alone holds everywhere\n"
+    "  --optimise N\n"
+    "          N passes of smoothing, which move new vertices inside regions to where triangles are best\n"
+    "          (default: 1 with lengths, else 0). Not beside -a, -D or -S\n",
 
     "Output\n"
     "  -e      also edges (.edge)\n"

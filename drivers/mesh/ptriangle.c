@@ -551,7 +551,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
          "  --numbering curve|blocks"
          "  --placement lattice|front|classic\n"
          "  --size H|FILE  --size-near MARKER:H[,GROWTH]  --gradation G  --min-size H  --max-size H\n"
-         "  --elements-across N  --per-circle N\n"
+         "  --elements-across N  --per-circle N  --optimise N\n"
          "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
          "  --help");
     return EXIT_SUCCESS;

@@ -12,7 +12,7 @@
 
 static const double USUAL_GRADATION = 0.2; /* struct tri_sizes */
 
-enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, PLACEMENT };
+enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, PLACEMENT, OPTIMISE };
 
 static const struct kind {
     const char *name;
@@ -27,6 +27,7 @@ static const struct kind {
     {"elements-across", ELEMENTS_ACROSS, "not a number from 0.1 to 1000"},
     {"per-circle", PER_CIRCLE, "not a number from 3 to 100000"},
     {"placement", PLACEMENT, "neither front, lattice nor classic"},
+    {"optimise", OPTIMISE, "not a whole number from 0 to 1000"},
 };
 
 static const struct kind *find_kind(const char *word)
@@ -118,6 +119,16 @@ static bool take_placement(struct tri_switches *switches, const char *text)
     return false;
 }
 
+static bool take_passes(struct tri_switches *switches, const char *text)
+{
+    int64_t passes;
+    const char *const end = text + strlen(text);
+    if (end == text || tri_scan_integer(text, end, &passes) != end || passes < 0 || passes > 1000)
+        return false;
+    switches->passes = (int)passes;
+    return true;
+}
+
 static bool take_value(struct size_options *options, struct tri_switches *switches, enum id id, const char *text)
 {
     switch (id) {
@@ -129,6 +140,7 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case ELEMENTS_ACROSS: return words_take_real(text, "", NULL, 0.1, 1000, &options->elements_across);
     case PER_CIRCLE: return words_take_real(text, "", NULL, 3, 1e5, &options->per_circle);
     case PLACEMENT: return take_placement(switches, text);
+    case OPTIMISE: return take_passes(switches, text);
     default: return false;
     }
 }
@@ -164,8 +176,13 @@ enum tri_status size_options_end(const struct size_options *options, struct tri_
     if (options->max_size > 0 && options->min_size > options->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-size %g is above --max-size %g", options->min_size,
                         options->max_size);
+    if (switches->passes > 0 &&
+        (switches->area || switches->area_lists || switches->conforming || switches->max_steiner >= 0))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--optimise moves vertices, and cannot keep -a, -D or -S");
     if (any && !switches->angle)
         tri_switches_add(switches, "q");
+    if (any && switches->passes < 0)
+        switches->passes = 1;
     return TRI_OK;
 }
 

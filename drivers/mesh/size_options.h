@@ -30,8 +30,8 @@ struct size_options {
 bool size_options_take(struct size_options *options, struct tri_switches *switches, int argc, char *const *argv,
                        int *at, struct tri_error *error);
 
-/* Once all words have been taken: lengths set -q, unless it has been given. TRI_BAD_INPUT: limits of lengths that
- * nothing asks for, or that exclude each other. */
+/* Once all words have been taken: lengths set -q and --optimise 1, unless these have been given. TRI_BAD_INPUT: limits
+ * of lengths that nothing asks for, or that exclude each other; --optimise beside bounds that it cannot keep. */
 enum tri_status size_options_end(const struct size_options *options, struct tri_switches *switches,
                                  struct tri_error *error);
 void size_options_free(struct size_options *options);

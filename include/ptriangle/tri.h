@@ -124,7 +124,7 @@ enum tri_size_kind {
 struct tri_size_field {
     enum tri_size_kind kind;
     double length;           /* NUMBER, NEAR: above 0 */
-    double growth;           /* NEAR: 0 or more, at most tri_settings.gradation counts; below 0: that */
+    double growth;           /* NEAR: 0 or more, and at most tri_settings.gradation if that is given; below 0: that */
     int32_t marker;          /* NEAR: of the segments */
     struct tri_reals values; /* RASTER: [rows][columns], the lowest row first; MESH: [points.n][1] */
     double origin[2];        /* RASTER: the place of the first value .. */

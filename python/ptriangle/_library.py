@@ -70,7 +70,8 @@ class Settings(Sized):
                 ("even_odd", c_bool),
                 ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p),
                 ("placement", c_int), ("sizes", POINTER(SizeField)), ("n_sizes", c_int64), ("gradation", c_double),
-                ("min_size", c_double), ("max_size", c_double), ("optimise", c_int)]
+                ("min_size", c_double), ("max_size", c_double),
+                ("elements_across", c_double), ("per_circle", c_double), ("optimise", c_int)]
 
 
 class Demands(Sized):

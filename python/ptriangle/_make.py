@@ -74,7 +74,8 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
          threads: Optional[int] = None, stop: Optional[Callable[[], Any]] = None,
          progress: Optional[Progress] = None, placement: str = "lattice", size_near: Optional[Near] = None,
          gradation: Optional[float] = None, min_size: Optional[float] = None,
-         max_size: Optional[float] = None, optimise: Optional[int] = None) -> Mesh:
+         max_size: Optional[float] = None, optimise: Optional[int] = None,
+         elements_across: Optional[float] = None, per_circle: Optional[float] = None) -> Mesh:
     """A triangle mesh of a plane figure.
 
     What is given, anything that numpy makes an array of (arrays of the right type are not copied):
@@ -102,6 +103,8 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         which grows by growth (default: gradation) for a distance of 1.
     gradation: sizes grow by no more than this for a distance of 1 (default 0.2; inf: any growth).
     min_size, max_size: bounds on all sizes.
+    elements_across: room for so many lengths between boundaries, or borders of regions, that face each other: channels.
+    per_circle: where segments follow a curve, so many lengths go around a circle of its curvature.
     optimise: passes of smoothing at the end, which move new points inside regions to where triangles are best. Default:
         1 where sizes are given, else 0. Not with max_area, areas of regions, unsuitable, conforming, max_new_points,
         gate or fence.
@@ -128,8 +131,9 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     """
     who = "mesh()"
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
-                                              max_new_points, gate, fence, threads, stop, progress, placement, size_near,
-                                              gradation, min_size, max_size, optimise))
+                                              max_new_points, gate, fence, threads, stop, progress, placement,
+                                              size_near, gradation, min_size, max_size, optimise,
+                                              elements_across, per_circle))
     settings.even_odd = polygons is not None or isinstance(holes, str)
     if union and polygons is None:
         raise InputError("%s: union=True without polygons" % who)

@@ -294,7 +294,8 @@ class Mesh:
                stop: Optional[Callable[[], Any]] = None, progress: Optional[Progress] = None,
                placement: str = "lattice", size_near: Optional[Near] = None, gradation: Optional[float] = None,
                min_size: Optional[float] = None, max_size: Optional[float] = None,
-               optimise: Optional[int] = None) -> "Mesh":
+               optimise: Optional[int] = None, elements_across: Optional[float] = None,
+               per_circle: Optional[float] = None) -> "Mesh":
         """A finer mesh, by the keywords of ptriangle.mesh(); this one stays as it is.
 
         Bounds that came with regions count no more; triangle_areas, [m], are new ones for each triangle. order is that
@@ -303,7 +304,7 @@ class Mesh:
         settings, calls = settings_of("refine()", Wanted(min_angle, max_area, size, unsuitable, conforming, False,
                                                          protect, max_new_points, gate, fence, threads, stop, progress,
                                                          placement, size_near, gradation, min_size, max_size,
-                                                         optimise))
+                                                         optimise, elements_across, per_circle))
         figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
         finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
         finer._input_points = self._input_points

@@ -45,7 +45,7 @@ def _refuse(who: str, name: str, given: Any) -> None:
 def _take_sizes(settings: Settings, calls: Calls, wanted: "Wanted") -> None:
     found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: which the library looks at
     settings.sizes, settings.n_sizes = found, len(found)
-    for name in ("gradation", "min_size", "max_size"):
+    for name in ("gradation", "min_size", "max_size", "elements_across", "per_circle"):
         if getattr(wanted, name) is not None:
             setattr(settings, name, length(calls.who, name, getattr(wanted, name)))
 
@@ -84,6 +84,8 @@ class Wanted:
     min_size: Optional[float] = None
     max_size: Optional[float] = None
     optimise: Optional[int] = None
+    elements_across: Optional[float] = None
+    per_circle: Optional[float] = None
 
 
 def _placement(who: str, given: Any) -> int:

@@ -103,7 +103,7 @@ def test_placement():
         assert m.check(min_angle=angle, max_area=wanted.get("max_area"))
         return m
 
-    for wanted in dict(max_area=1e-3), dict(size=0.05):
+    for wanted in dict(max_area=1e-3), dict(max_area=5e-4):
         lattice, classic = mesh(30, "lattice", **wanted), mesh(30, "classic", **wanted)
         assert 0.6 * len(classic.triangles) < len(lattice.triangles) < 0.8 * len(classic.triangles)
         assert np.array_equal(plate(min_angle=30, **wanted).points, lattice.points)

@@ -49,7 +49,8 @@ def files(path: str) -> ptriangle.Mesh:
 def polygons() -> ptriangle.Mesh:
     try:
         return ptriangle.mesh(polygons=[[(0, 0), (1, 0), (1, 1)]], union=True, gate=lambda x, y: x < 0.5,
-                              size=[0.1, ([[0.1, 0.2], [0.1, 0.2]], (0, 0, 1, 1))], size_near={0: (0.1, 0.2)}, stop=lambda: False)
+                              size=[0.1, ([[0.1, 0.2], [0.1, 0.2]], (0, 0, 1, 1))], size_near={1: (0.1, 0.2)},
+                              stop=lambda: False)
     except ptriangle.InputError as error:
         assert error.status == 3
         raise

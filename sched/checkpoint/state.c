@@ -21,7 +21,8 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
                               q->lattice};
     const uint64_t lengths[] = {q->lengths ? tri_lengths_hash(q->lengths) : 0, q->front};
     hash = tri_hash(tri_hash(hash, reals, sizeof reals), others, sizeof others);
-    return q->lengths ? tri_hash(hash, lengths, sizeof lengths) : hash;
+    hash = q->lengths ? tri_hash(hash, lengths, sizeof lengths) : hash;
+    return q->passes > 0 ? tri_hash(hash, &q->passes, sizeof q->passes) : hash;
 }
 
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)

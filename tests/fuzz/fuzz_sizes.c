@@ -50,7 +50,8 @@ static void ask(const struct tri_size_field *field)
     const enum tri_status status = tri_lengths_new(&lengths, &sizes, mesh(), NULL, &error);
     require(!status || error.text[0] != 0, "lengths are refused without words");
     for (int i = 0; !status && i < 25; i++)
-        require(tri_lengths_at(lengths, (struct tri_point){0.25 * (i % 5), 0.25 * (i / 5)}) > 0, "a length is not above 0");
+        require(tri_lengths_at(lengths, (struct tri_point){0.25 * (i % 5), 0.25 * (i / 5)}) > 0,
+                "a length is not above 0");
     tri_lengths_free(lengths);
 }
 

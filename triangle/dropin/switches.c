@@ -14,7 +14,7 @@ enum {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-struct tri_switches tri_switches_none(void) { return (struct tri_switches){.max_steiner = -1}; }
+struct tri_switches tri_switches_none(void) { return (struct tri_switches){.max_steiner = -1, .passes = -1}; }
 
 /* The value of a run of digits and dots up to its second dot. Handed to strtod as an integer with an exponent, since
  * the character that it takes for a decimal point depends on the locale. */
@@ -238,6 +238,7 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     options.quality.region_areas = (s->segments || s->mesh) && s->area_lists;
     options.quality.lattice = !s->mesh && s->placement == TRI_PLACEMENT_LATTICE;
     options.quality.front = s->placement != TRI_PLACEMENT_CLASSIC;
+    options.quality.passes = s->passes > 0 ? s->passes : 0;
     options.quality.conforming = s->conforming;
     options.quality.protect = s->protect;
     options.quality.max_steiner = s->max_steiner;

@@ -31,6 +31,7 @@ struct tri_switches {
     bool keep_hull;      /* c */
     bool even_odd;       /* --holes auto: no letter */
     enum tri_placement placement; /* --placement: no letter */
+    int passes;          /* --optimise: passes of smoothing; no letter; -1: not given */
     bool conforming;     /* D */
     bool jettison;       /* j */
     bool edges, voronoi, neighbors, off; /* e v n g */

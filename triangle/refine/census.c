@@ -211,11 +211,23 @@ static void count_share(void *context, size_t share)
         count_triangle(&c->criterion, c->report, t, c->count[share]);
 }
 
+/* Lengths are met on the average, and bound no single triangle. */
+static struct tri_criterion bounds_of(const struct tri_mesh *mesh, const struct tri_quality *quality,
+                                      struct tri_quality *bounds)
+{
+    struct tri_criterion c = tri_criterion_for(mesh, quality);
+    *bounds = *quality;
+    bounds->lengths = NULL;
+    c.asked.quality = bounds;
+    return c;
+}
+
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
                          int64_t count[TRI_EXCUSES + 1])
 {
-    const struct tri_criterion c = tri_criterion_for(mesh, quality);
+    struct tri_quality bounds;
+    const struct tri_criterion c = bounds_of(mesh, quality, &bounds);
     for (int32_t i = 0; i < n; i++)
         count_triangle(&c, report, triangle[i], count);
 }
@@ -224,7 +236,8 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_quality *qualit
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES])
 {
-    struct counting c = {tri_criterion_for(mesh, quality), report, {{0}}};
+    struct tri_quality bounds;
+    struct counting c = {bounds_of(mesh, quality, &bounds), report, {{0}}};
     size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(tri_asks_caller(quality) ? NULL : executor, shares, count_share, &c);
     for (size_t i = 1; i < shares; i++)

@@ -150,7 +150,7 @@ static bool find_place(const struct tri_smooth *r, const struct star *s, struct 
     for (int round = 0; again && round < 2; round++) {
         const struct tri_point there = better_place(s, *x);
         again = false;
-        for (double step = 1; !again && step > 0.3; step /= 2) {
+        for (double step = 1; !again && step > 0.2; step /= 2) {
             const struct tri_point p = tri_point_between(*x, there, step);
             const struct worth then = worth_at(r, s, p);
             again = is_better(&now, &then);

@@ -15,14 +15,14 @@ struct tri_smooth;
 
 /* The mesh and the bounds are borrowed. TRI_NO_MEMORY. O(triangles). */
 enum tri_status tri_smooth_new(struct tri_smooth **smooth, struct tri_mesh *mesh, const struct tri_quality *quality,
-                              struct tri_error *error);
+                               struct tri_error *error);
 void tri_smooth_free(struct tri_smooth *smooth);
 
 /* Moves these vertices, in their order, and flips edges around them until they are Delaunay. vertex[] then has those,
  * *n of them, whose triangles do not all lie in the fence (NULL: the plane). Calls with disjoint fences may run at the
  * same time (triangle/refine/refine.h, serialisation). TRI_NO_MEMORY, TRI_STOPPED: the mesh is valid. */
-enum tri_status tri_smooth_some(struct tri_smooth *smooth, tri_vertex_id *vertex, int32_t *n, const struct tri_fence *fence,
-                               struct tri_error *error);
+enum tri_status tri_smooth_some(struct tri_smooth *smooth, tri_vertex_id *vertex, int32_t *n,
+                                const struct tri_fence *fence, struct tri_error *error);
 
 /* The last step: every edge is Delaunay again, also where two fences met. */
 enum tri_status tri_smooth_end(struct tri_smooth *smooth, const struct tri_executor *executor, struct tri_error *error);

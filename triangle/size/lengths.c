@@ -151,10 +151,17 @@ static int32_t marker_of(const struct tri_subsegment *s)
     return s->marker == 0 && tri_is_boundary(s) ? 1 : s->marker;
 }
 
+/* A growth that is given is limited by a gradation that is given. */
+static double growth_of(const struct making *m, const struct tri_size_field *f)
+{
+    const double given = m->sizes->gradation;
+    return f->growth < 0 ? m->frame.gradation : given > 0 ? fmin(f->growth, given) : f->growth;
+}
+
 static enum tri_status take_near(struct making *m, const struct tri_size_field *f, struct tri_error *error)
 {
     const struct tri_mesh *mesh = m->frame.mesh;
-    const double gradation = m->frame.gradation, growth = f->growth < 0 ? gradation : fmin(f->growth, gradation);
+    const double growth = growth_of(m, f);
     const int32_t before = m->out->near.n;
     if (!(growth < HUGE_VAL))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its growth is infinite");
