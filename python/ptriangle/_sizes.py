@@ -1,12 +1,11 @@
 """Sizes: how long edges shall be, as a caller gives them and as the library takes them (struct tri_size_field)."""
 from __future__ import annotations
 
-from ctypes import c_double, cast
+from ctypes import POINTER, c_double, cast
 from typing import Any, Callable, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
-from . import _library as lib
 from ._arrays import Array, as_int32, from_numpy, numbers
 from ._calls import Calls
 from ._errors import InputError
@@ -89,7 +88,7 @@ def _function(calls: Calls, function: Function) -> SizeField:
     asked = _on_arrays(calls, function)
 
     def ask(_user: Any, n: int, at: Any, length: Any) -> None:
-        places = np.ctypeslib.as_array(cast(at, lib.POINTER(c_double)), (n, 2))
+        places = np.ctypeslib.as_array(cast(at, POINTER(c_double)), (n, 2))
         np.ctypeslib.as_array(length, (n,))[:] = asked(places[:, 0].copy(), places[:, 1].copy())
     return SizeField(kind=FUNCTION, function=SizeArrays(calls.guarded(ask, None)))
 

@@ -125,8 +125,9 @@ static bool weld(struct tri_background *b)
     }
     for (int64_t k = 0; order && k < 3 * (int64_t)b->n_triangles; k++)
         b->corner[k] = first[b->corner[k]];
+    const bool memory = order != NULL;
     free(order);
-    return order;
+    return memory;
 }
 
 /* The lengths of vertices that no triangle has say nothing. */
@@ -137,8 +138,9 @@ static bool forget_unused(struct tri_background *b)
         used[b->corner[k]] = true;
     for (int32_t v = 0; used && v < b->n; v++)
         b->length[v] = used[v] ? b->length[v] : 0;
+    const bool memory = used != NULL;
     free(used);
-    return used;
+    return memory;
 }
 
 enum tri_status tri_background_make(struct tri_background *background, const struct tri_size_field *field,

@@ -103,7 +103,7 @@ static bool keep_winners(const struct making *m, int32_t *list, int64_t *n, stru
 {
     const struct tri_point low = tri_cell_low(&m->out->tree, cell);
     const double side = tri_cell_side(&m->out->tree, cell.depth);
-    int32_t kept[PLACES];
+    int32_t kept[PLACES] = {0};
     const int n_kept = winners_of(m, list, *n, low, side, kept);
     for (int k = 0; k < CHECKS; k++) {
         const struct tri_point p = lattice_place(low, side / 4, 0.5, 4, k);
