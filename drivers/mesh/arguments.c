@@ -134,7 +134,7 @@ static const char *const paragraphs[] = {
     "          lattice (the default): if an area bound alone sets the size and the angle bound is at most 30\n"
     "          degrees, new vertices lie in a hexagonal lattice, which takes a third fewer triangles. Above 30\n"
     "          degrees, and with -r, as classic; with lengths (below) that vary, as front: new vertices grow over\n"
-    "          a front from the segments inwards, near-equilateral. classic leaves both out\n"
+    "          a front from the segments inwards, near-equilateral, at most for 30 degrees. classic leaves both out\n"
     "  -u      a test of the caller's own; without effect on the command line\n"
     "  -Y      do not put vertices on the boundary; -YY: nor on any segment\n"
     "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",

@@ -41,7 +41,8 @@ enum par_next {
     PAR_COLUMN_PHASE, /* phase `phase` of this column, except for the blocks that are `done` */
     PAR_BOUNDS_PHASE,
     PAR_BOUNDS_REST,
-    PAR_HAND_OUT,     /* nothing is refined any more; a mesh with cells is numbered by them, unless by_block */
+    PAR_HAND_OUT,     /* nothing is refined any more; a mesh with cells is numbered by them, unless by_block. Smoothing
+                         comes first, if it is asked for */
     PAR_END           /* the mesh has been handed out, or stays with the caller */
 };
 

@@ -137,11 +137,11 @@ static enum tri_status leave_no_gaps(struct par_run *run, bool numbering, struct
 
 /* Between two steps of what cannot be undone: a state may be kept here, unless there is one of a sweep, to which this
  * run is on its way again. */
-static enum tri_status offer_checkpoint(struct par_run *run, struct tri_error *error)
+static enum tri_status offer_checkpoint(struct par_run *run, bool surely, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(run);
     const bool is_kept = checkpoint && !par_checkpoint_has_sweep(checkpoint);
-    return is_kept ? par_state_border(checkpoint, run, NULL, false, error) : TRI_OK;
+    return is_kept ? par_state_border(checkpoint, run, NULL, surely, error) : TRI_OK;
 }
 
 /* From here on a step is stopped in its midst, too: what has been done since the last state is lost. */
@@ -170,7 +170,7 @@ static enum tri_status run_phase(void *self, struct tri_error *error)
         run->place.phase = PAR_PHASES;
         return TRI_OK;
     }
-    enum tri_status status = s->is_whole ? offer_checkpoint(run, error) : TRI_OK;
+    enum tri_status status = s->is_whole ? offer_checkpoint(run, false, error) : TRI_OK;
     par_tell(run, run->place.phase + 1);
     if (!status)
         status = checkpoint ? par_state_phase(checkpoint, run, turn, NULL, error) : par_phase(run, &turn, error);
@@ -264,7 +264,8 @@ static enum tri_status leave_memory(struct par_run *run, const struct par_partit
 {
     const struct par_options *options = run->asked.options;
     enum tri_status status = TRI_OK;
-    const bool is_last = run->place.next == PAR_BOUNDS && !options->by_block;
+    const bool is_last = run->place.next == PAR_BOUNDS && !options->by_block &&
+                         !tri_wants_smoothing(run->asked.quality);
     bool swept = false;
     if (is_last && (options->sink->begin || !options->scratch))
         status = try_to_sweep(run, partition, &swept, error);
@@ -298,7 +299,7 @@ static enum tri_status finish_rounds(struct par_schedule *s, struct tri_error *e
     if (s->is_whole && !par_is_rest(run->place.next))
         par_go(run, par_is_of_sizes(run->place.next) ? PAR_SIZES_REST : PAR_BOUNDS_REST);
     if (s->is_whole)
-        status = offer_checkpoint(run, error);
+        status = offer_checkpoint(run, false, error);
     if (!status)
         status = run->ranks ? par_refine_rest_on_ranks(run, error) : refine_left(run, error);
     run->report->seconds_last += tri_seconds() - began;
@@ -540,7 +541,7 @@ static enum tri_status refine_sizes_first(struct par_run *run, const struct tri_
     const struct par_checkpoint *checkpoint = checkpoint_of(run);
     const bool is_kept_whole = checkpoint && checkpoint->manifest.kind == PAR_WHOLE_STATE;
     par_go(run, run->cells.x || is_kept_whole ? PAR_BOUNDS_WHOLE : PAR_BOUNDS);
-    return offer_checkpoint(run, error);
+    return offer_checkpoint(run, false, error);
 }
 
 /* What a schedule cannot do, one call does. */
@@ -574,7 +575,7 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
     if (options->carrier)
         return par_whole_on_ranks(options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
-    if (status && options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
+    if (status && options->checkpoint && !tri_wants_smoothing(run->asked.quality)) /* what there is of the mesh is kept, whether that can be or not */
         (void)par_state_border(options->checkpoint, run, NULL, true, NULL);
     return status;
 }
@@ -583,14 +584,13 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
 static enum tri_status deliver(struct par_run *run, enum tri_status status, struct tri_error *error)
 {
     if (!status && run->place.next < PAR_HAND_OUT)
-        status = par_smooth(run, error);
-    if (!status && run->place.next < PAR_HAND_OUT)
         par_go(run, PAR_HAND_OUT);
     if (run->ranks) {
         status = par_ranks_hand_out(run, status, error);
     } else if (!status && run->place.next != PAR_END) {
-        status = offer_checkpoint(run, error);
+        status = offer_checkpoint(run, tri_wants_smoothing(run->asked.quality), error);
         let_stop(run);
+        status = status ? status : par_smooth(run, error); /* the state is that of before */
         status = !status && run->asked.options->sink ? hand_out(run, error) : status;
     }
     if (!status && run->place.next == PAR_HAND_OUT)

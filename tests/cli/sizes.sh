@@ -201,6 +201,17 @@ for words in "--size 0.1" "--size raster.asc --size-near 1:0.05,0.3 --max-size 0
     done
 done
 
+# smoothing needs the whole mesh, also if it does not fit in memory; without it the mesh is another one
+program 0 -pQ letter --size 0.02 --threads 2 --output one
+program 0 -pQ letter --size 0.02 --threads 2 --memory 45M --output less
+program 0 -pQ letter --size 0.02 --threads 2 --optimise 0 --output rough
+for suffix in node ele poly; do
+    same one.$suffix less.$suffix
+done
+cmp -s one.node rough.node && fault "--optimise 0 moves vertices"
+program 1 -pQ letter --size 0.02 -D --optimise 1
+complains 'optimise moves vertices'
+
 # --- a run goes on with the same field alone
 limit=0.02
 rm -rf state

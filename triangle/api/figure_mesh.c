@@ -38,6 +38,8 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: max_area is %g", settings->max_area);
     if (settings->protect < 0 || settings->protect > 2)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: protect is %d", settings->protect);
+    if (settings->optimise > 1000)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: optimise is %d, and above 1000", settings->optimise);
     if ((unsigned)settings->placement > TRI_PLACEMENT_FRONT)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "settings: placement is %d", (int)settings->placement);
     for (int k = 0; settings->fence && k < 4; k++)
@@ -91,8 +93,8 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     how.max_area = s->max_area;
     how.region_areas = m->has_areas;
     how.lattice = s->placement == TRI_PLACEMENT_LATTICE && !m->has_triangles;
-    how.front = s->placement != TRI_PLACEMENT_CLASSIC;
     how.conforming = s->conforming;
+    how.front = s->placement != TRI_PLACEMENT_CLASSIC && tri_allows_front(&how);
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
     how.passes = s->gate || s->fence ? 0 : s->optimise || !has_lengths(s) ? s->optimise : 1;

@@ -237,9 +237,9 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     options.quality.max_area = s->area ? s->max_area : 0;
     options.quality.region_areas = (s->segments || s->mesh) && s->area_lists;
     options.quality.lattice = !s->mesh && s->placement == TRI_PLACEMENT_LATTICE;
-    options.quality.front = s->placement != TRI_PLACEMENT_CLASSIC;
     options.quality.passes = s->passes > 0 ? s->passes : 0;
     options.quality.conforming = s->conforming;
+    options.quality.front = s->placement != TRI_PLACEMENT_CLASSIC && tri_allows_front(&options.quality);
     options.quality.protect = s->protect;
     options.quality.max_steiner = s->max_steiner;
     return options;

@@ -28,6 +28,8 @@ double tri_lattice_length(const struct tri_quality *q)
                ? tri_lengths_uniform(q->lengths) : 0;
 }
 
+bool tri_allows_front(const struct tri_quality *quality) { return tri_worked_angle(quality) <= TRI_LATTICE_ANGLE; }
+
 double tri_mean_over_bound(const struct tri_quality *quality)
 {
     return tri_wants_lattice(quality) ? TRI_LATTICE_MEAN : TRI_MEAN_OVER_BOUND;
