@@ -229,7 +229,7 @@ static json_t *sizes_of(const struct size_options *options)
 /* Of new vertices: in a lattice, over a front, or neither. */
 static const char *placement_of(const struct tri_quality *q)
 {
-    return tri_wants_lattice(q) ? "lattice" : q->lengths && q->front ? "front" : "classic";
+    return tri_wants_lattice(q) || tri_lattice_length(q) > 0 ? "lattice" : q->lengths && q->front ? "front" : "classic";
 }
 
 static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks)

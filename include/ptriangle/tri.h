@@ -144,8 +144,8 @@ enum tri_placement {         /* of new points */
                                   min_angle, edge_length, unsuitable, or a figure with triangles: as CLASSIC; with
                                   `sizes` as FRONT, but for a lattice inside if they are one length */
     TRI_PLACEMENT_CLASSIC,     /* at circumcentres, or the places that are best for angles */
-    TRI_PLACEMENT_FRONT        /* for `sizes`: near-equilateral triangles over a front that begins at the segments.
-                                  Without them as CLASSIC */
+    TRI_PLACEMENT_FRONT        /* for `sizes`, with a min_angle of at most 30: near-equilateral triangles over a front
+                                  that begins at the segments. Without these as CLASSIC */
 };
 
 /* What is wanted of the mesh. 0 and NULL: nothing. Without bounds on angles or sizes no points are added: the result is
@@ -224,8 +224,8 @@ struct tri_settings {
     double elements_across; /* > 0: between boundaries, or borders of regions, that face each other there is room for so
                                many lengths: channels and walls */
     double per_circle;  /* > 0: where segments follow a curve, so many lengths go around a circle of its curvature */
-    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions; 0: one where lengths are asked
-                           for, else none; below 0: none. Not with max_area, areas of regions, unsuitable, conforming,
+    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions; 0: one where
+                           lengths are asked for, else none; below 0: none. Not with max_area, areas of regions, unsuitable, conforming,
                            most_new_points, a gate or a fence */
 };
 

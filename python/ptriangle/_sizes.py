@@ -71,6 +71,8 @@ def _on_arrays(calls: Calls, function: Function) -> Callable[[Array, Array], Arr
             found = np.asarray(function(x, y), np.float64)
         except (TypeError, ValueError):
             return None
+        if found.size == x.size and len(x) > 1:
+            return found.ravel()
         return np.broadcast_to(found, x.shape) if found.shape in ((), x.shape) else None
 
     def ask(x: Array, y: Array) -> Array:
@@ -117,5 +119,7 @@ def fields(calls: Calls, size: Optional[Size], size_near: Optional[Near]) -> Tup
     kept: List[Any] = []
     given = size if isinstance(size, list) else [] if size is None else [size]
     found = [_field(calls, one, kept) for one in given]
+    if not isinstance(size_near, (dict, type(None))):
+        raise InputError("%s: size_near is %r instead of a dict of markers" % (calls.who, size_near))
     found += [_near(calls.who, marker, one) for marker, one in (size_near or {}).items()]
     return (SizeField * len(found))(*found), [found, kept]

@@ -199,7 +199,7 @@ static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, 
 static bool find_division(const struct tri_refiner *r, const struct tri_subsegment *s, double *fraction)
 {
     const double all = walk(r, s, HUGE_VAL, fraction);
-    const int parts = (int)(all + 0.5);
+    const int parts = (int)tri_lesser(all + 0.5, 1e9);
     if (parts < 2 || tri_is_protected(r->quality, s))
         return false;
     if (r->mesh->on[s->v[0]] == TRI_VERTEX_ACUTE || r->mesh->on[s->v[1]] == TRI_VERTEX_ACUTE)
