@@ -55,8 +55,8 @@ bool tri_wants_lattice(const struct tri_quality *quality);
 /* If sizes are one length everywhere, and new points are put into a lattice of it where there is room: that; else 0. */
 double tri_lattice_length(const struct tri_quality *quality);
 
-/* Are points placed over a front, if lengths are asked for? As in a lattice, each further point halves an angle of about
- * 60 degrees. So a larger bound on angles would undo the front, and take several times as many triangles. */
+/* Are points placed over a front, if lengths are asked for? As in a lattice, each further point halves an angle of
+ * about 60 degrees. So a bound above 30 degrees would undo the front, and take several times as many triangles. */
 bool tri_allows_front(const struct tri_quality *quality);
 
 /* Of the areas in a mesh over the bound on areas: the mean, and a share that no mesh has. */
