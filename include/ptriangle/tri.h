@@ -224,9 +224,9 @@ struct tri_settings {
     double elements_across; /* > 0: between boundaries, or borders of regions, that face each other there is room for so
                                many lengths: channels and walls */
     double per_circle;  /* > 0: where segments follow a curve, so many lengths go around a circle of its curvature */
-    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions; 0: one where
-                           lengths are asked for, else none; below 0: none. Not with max_area, areas of regions, unsuitable, conforming,
-                           most_new_points, a gate or a fence */
+    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions; 0: one if lengths
+                           are asked for, otherwise none; below 0: none. Not with max_area, areas of regions,
+                           unsuitable, conforming, most_new_points, a gate or a fence */
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -105,7 +105,8 @@ def test_no_data():
     (dict(size=([[1.0]], (0, 0, 0, 1))), "extent"), (dict(size=(1, 2)), "a pair is an array"),
     (dict(size=([[np.nan, np.nan], [np.nan, np.nan]], (0, 0, 1, 1))), "no value is a length"),
     (dict(size=([[0, 0], [1, 0], [0, 1]], [[0, 1, 5]], [1, 1, 1])), "5"), (dict(size_near={9: 0.1}), "9"),
-    (dict(size_near={1: (1, 2, 3)}), "size_near"), (dict(size_near={1: -1}), "size_near"), (dict(size_near=[1]), "a dict"),
+    (dict(size_near={1: (1, 2, 3)}), "size_near"),
+    (dict(size_near={1: -1}), "size_near"), (dict(size_near=[1]), "a dict"),
     (dict(size=1, optimise=1001), "1001"),
     (dict(size=1, gradation=-1), "gradation"), (dict(max_size=0), "max_size")])
 def test_errors(wanted, words):

@@ -575,7 +575,8 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
     if (options->carrier)
         return par_whole_on_ranks(options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
-    if (status && options->checkpoint && !tri_wants_smoothing(run->asked.quality)) /* what there is of the mesh is kept, whether that can be or not */
+    /* What there is of the mesh is kept, whether that can be or not. */
+    if (status && options->checkpoint && !tri_wants_smoothing(run->asked.quality))
         (void)par_state_border(options->checkpoint, run, NULL, true, NULL);
     return status;
 }
