@@ -16,9 +16,16 @@ struct smoothing {
     tri_vertex_id *dealt;  /* [n] .. and by block */
     int32_t n;
     struct par_deal deal;  /* of the phase, tile by tile a block */
-    int32_t *left;         /* [blocks] how many of its vertices each block leaves */
+    struct tri_smooth_count *count; /* [blocks] */
     enum tri_status *status; /* [blocks] */
+    int64_t moved;         /* vertices, in this pass */
 };
+
+/* The block of the phase that vertex i of the list lies in. */
+static int32_t block_of(const struct smoothing *s, struct par_locator *locator, int32_t i)
+{
+    return par_locate(locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]]);
+}
 
 static void count_share(void *context, size_t share)
 {
@@ -27,7 +34,7 @@ static void count_share(void *context, size_t share)
     const struct tri_range range = par_deal_share(&s->deal, share);
     struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++)
-        count[par_locate(&locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]])]++;
+        count[block_of(s, &locator, i)]++;
 }
 
 static void deal_share(void *context, size_t share)
@@ -37,7 +44,7 @@ static void deal_share(void *context, size_t share)
     const struct tri_range range = par_deal_share(&s->deal, share);
     struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++)
-        s->dealt[at[par_locate(&locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]])]++] = s->vertex[i];
+        s->dealt[at[block_of(s, &locator, i)]++] = s->vertex[i];
 }
 
 static void smooth_block(void *context, size_t block)
@@ -45,8 +52,8 @@ static void smooth_block(void *context, size_t block)
     const struct smoothing *s = context;
     const int32_t rows = s->run->cells.n_rows, *start = s->deal.start + block;
     const struct tri_fence fence = par_fence(&s->run->cells, (int32_t)block / rows, (int32_t)block % rows);
-    s->left[block] = start[1] - start[0];
-    s->status[block] = tri_smooth_some(s->smooth, s->dealt + start[0], &s->left[block], &fence, NULL);
+    s->status[block] = tri_smooth_some(s->smooth, s->dealt + start[0], start[1] - start[0], &fence, &s->count[block],
+                                       NULL);
 }
 
 /* What blocks leave is the list of the next phase. */
@@ -55,8 +62,9 @@ static enum tri_status gather(struct smoothing *s, struct tri_error *error)
     enum tri_status status = TRI_OK;
     s->n = 0;
     for (int32_t block = 0; block < s->deal.n_tiles; block++) {
-        for (int32_t i = 0; i < s->left[block]; i++)
+        for (int32_t i = 0; i < s->count[block].left; i++)
             s->vertex[s->n++] = s->dealt[s->deal.start[block] + i];
+        s->moved += s->count[block].moved;
         status = status ? status : s->status[block];
     }
     return status == TRI_STOPPED ? tri_fail_stopped(error)
@@ -84,13 +92,17 @@ static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
 {
     const struct tri_mesh *mesh = s->run->mesh;
     enum tri_status status = TRI_OK;
+    struct tri_smooth_count last = {0};
     s->n = 0;
+    s->moved = 0;
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (tri_is_movable(mesh, v))
             s->vertex[s->n++] = v;
     for (s->phase = 0; !status && s->phase < PAR_PHASES; s->phase++)
         status = smooth_phase(s, error);
-    return status ? status : tri_smooth_some(s->smooth, s->vertex, &s->n, NULL, error);
+    status = status ? status : tri_smooth_some(s->smooth, s->vertex, s->n, NULL, &last, error);
+    s->moved += last.moved;
+    return status;
 }
 
 static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *error)
@@ -99,17 +111,18 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     const size_t list = ((size_t)mesh->n_vertices + 1) * sizeof(tri_vertex_id);
     const size_t blocks = (size_t)par_blocks(&run->cells);
     struct smoothing s = {.run = run, .vertex = tri_mesh_extra(mesh, list), .dealt = tri_mesh_extra(mesh, list),
-                          .left = malloc(blocks * sizeof *s.left), .status = malloc(blocks * sizeof *s.status)};
-    enum tri_status status = s.vertex && s.dealt && s.left && s.status
+                          .count = malloc(blocks * sizeof *s.count), .status = malloc(blocks * sizeof *s.status),
+                          .moved = 1};
+    enum tri_status status = s.vertex && s.dealt && s.count && s.status
                                  ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
-    for (int pass = 0; !status && pass < run->asked.quality->passes; pass++)
+    for (int pass = 0; !status && s.moved > 0 && pass < run->asked.quality->passes; pass++)
         status = smooth_pass(&s, error);
     status = status ? status : tri_smooth_end(s.smooth, &run->asked.executor, error);
     tri_smooth_free(s.smooth);
     tri_mesh_extra_free(mesh, s.vertex);
     tri_mesh_extra_free(mesh, s.dealt);
-    free(s.left);
+    free(s.count);
     free(s.status);
     return status;
 }

@@ -13,7 +13,6 @@
 #include "triangle/api/figure.h"
 #include "triangle/mesh/surface.h"
 #include "triangle/refine/census.h"
-#include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
@@ -76,7 +75,8 @@ static double ask_length(void *user, const double at[2])
 
 static bool has_lengths(const struct tri_settings *s)
 {
-    return s->n_sizes > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
+    const struct tri_sizes sizes = sizes_of(s);
+    return tri_sizes_any(&sizes);
 }
 
 static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *s)
@@ -386,11 +386,7 @@ static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mes
 {
     (void)way;
     (void)settings;
-    enum tri_status status = tri_refine_with(mesh, quality, hooks, report, error);
-    if (!status && tri_wants_smoothing(quality))
-        status = tri_smooth_all(mesh, quality, error);
-    tri_surface_settle(mesh, NULL);
-    return status;
+    return tri_refine_whole(mesh, quality, hooks, report, error);
 }
 
 enum tri_status tri_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,

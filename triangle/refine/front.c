@@ -414,7 +414,7 @@ static bool take_all(struct tri_refiner *r)
 bool tri_front_begin(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
-        r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+        r->n_worklist = tri_count_listed(r);
         r->step = DIVIDING;
         if (!r->quality->conforming && !list_segments(r))
             return false;
@@ -429,7 +429,7 @@ bool tri_front_begin(struct tri_refiner *r)
         return true;
     if (!erase_all(r))
         return false;
-    r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+    r->n_worklist = tri_count_listed(r);
     r->step = ADVANCING;
     return take_all(r);
 }

@@ -69,7 +69,7 @@ static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
         assert(!r->in_hand && r->n_encroached == 0);
-        r->n_worklist = r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+        r->n_worklist = tri_count_listed(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
     }
@@ -205,12 +205,19 @@ enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality 
     return status;
 }
 
-enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
-                           struct tri_error *error)
+enum tri_status tri_refine_whole(struct tri_mesh *mesh, const struct tri_quality *quality,
+                                 const struct tri_refine_hooks *hooks, struct tri_refine_report *report,
+                                 struct tri_error *error)
 {
-    enum tri_status status = tri_refine_with(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
+    enum tri_status status = tri_refine_with(mesh, quality, hooks, report, error);
     if (!status && tri_wants_smoothing(quality))
         status = tri_smooth_all(mesh, quality, error);
     tri_surface_settle(mesh, NULL);
     return status;
+}
+
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
+                           struct tri_error *error)
+{
+    return tri_refine_whole(mesh, quality, &(struct tri_refine_hooks){0}, report, error);
 }

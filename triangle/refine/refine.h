@@ -89,9 +89,13 @@ struct tri_refine_report {
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
  * TRI_TOO_LARGE comes before anything is done if area bounds, or lengths that are a function, ask for more than a mesh
  * holds (tri_refine_check; not within a fence, nor of a part).
- * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. Only tri_refine sets attributes, last. */
+ * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. tri_refine and tri_refine_whole, which
+ * has hooks, end with smoothing (smooth.h) and set attributes; tri_refine_with does neither. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_refine_report *report,
                            struct tri_error *error);
+enum tri_status tri_refine_whole(struct tri_mesh *mesh, const struct tri_quality *quality,
+                                 const struct tri_refine_hooks *hooks, struct tri_refine_report *report,
+                                 struct tri_error *error);
 enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality *quality,
                                 const struct tri_refine_hooks *hooks, struct tri_refine_report *report,
                                 struct tri_error *error);

@@ -54,6 +54,12 @@ static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, co
     return counts ? badness : TRI_GOOD;
 }
 
+/* How many triangles the worklist has; without one it is all of the mesh. */
+static inline int32_t tri_count_listed(const struct tri_refiner *r)
+{
+    return r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
+}
+
 /* Triangle i of the worklist. */
 static inline tri_triangle_id tri_listed(const struct tri_refiner *r, int32_t i)
 {

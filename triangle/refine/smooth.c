@@ -172,8 +172,9 @@ static bool keeps_orientation(const struct star *s, struct tri_point x)
     return true;
 }
 
-/* False: no memory. */
-static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here)
+/* Counts what becomes of it. False: no memory. */
+static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here,
+                       struct tri_smooth_count *count)
 {
     struct star s;
     if (!take_star(r, v, flips->fence, &s, is_here))
@@ -182,29 +183,29 @@ static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_
     if (!find_place(r, &s, &x) || (flips->fence && !tri_fence_holds(flips->fence, x)) || !keeps_orientation(&s, x))
         return true;
     r->mesh->xy[v] = x;
+    count->moved++;
     for (int i = 0; i < s.n; i++)
         if (!tri_flip_touch(flips, s.triangle[i]))
             return false;
     return tri_flip_legalise(flips);
 }
 
-enum tri_status tri_smooth_some(struct tri_smooth *r, tri_vertex_id *vertex, int32_t *n, const struct tri_fence *fence,
-                               struct tri_error *error)
+enum tri_status tri_smooth_some(struct tri_smooth *r, tri_vertex_id *vertex, int32_t n, const struct tri_fence *fence,
+                                struct tri_smooth_count *count, struct tri_error *error)
 {
     struct tri_flips flips = {.mesh = r->mesh, .corner = r->corner, .ties_stay = true, .fence = fence};
     enum tri_status status = TRI_OK;
-    const int32_t given = *n;
     uint32_t step = 0;
-    *n = 0;
-    for (int32_t i = 0; !status && i < given; i++) {
+    *count = (struct tri_smooth_count){0};
+    for (int32_t i = 0; !status && i < n; i++) {
         bool is_here;
         assert(tri_is_movable(r->mesh, vertex[i]));
         if (tri_stop_is_due(r->mesh->stop, &step))
             status = tri_fail_stopped(error);
-        else if (!smooth_one(r, &flips, vertex[i], &is_here))
+        else if (!smooth_one(r, &flips, vertex[i], &is_here, count))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
         else if (!is_here)
-            vertex[(*n)++] = vertex[i];
+            vertex[count->left++] = vertex[i];
     }
     tri_flips_free(&flips);
     return status;
@@ -221,12 +222,13 @@ enum tri_status tri_smooth_all(struct tri_mesh *mesh, const struct tri_quality *
     tri_vertex_id *vertex = malloc(((size_t)mesh->n_vertices + 1) * sizeof *vertex);
     enum tri_status status = vertex ? tri_smooth_new(&r, mesh, quality, error)
                                     : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
-    for (int pass = 0; !status && pass < quality->passes; pass++) {
+    struct tri_smooth_count count = {.moved = 1};
+    for (int pass = 0; !status && count.moved > 0 && pass < quality->passes; pass++) {
         int32_t n = 0;
         for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
             if (tri_is_movable(mesh, v))
                 vertex[n++] = v;
-        status = tri_smooth_some(r, vertex, &n, NULL, error);
+        status = tri_smooth_some(r, vertex, n, NULL, &count, error);
     }
     status = status ? status : tri_smooth_end(r, NULL, error);
     tri_smooth_free(r);

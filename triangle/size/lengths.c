@@ -279,18 +279,13 @@ static enum tri_status take_all(struct making *m, struct tri_error *error)
     return take_figure(m, error);
 }
 
-static bool asks_for_any(const struct tri_sizes *s)
-{
-    return s->n > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
-}
-
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
                                 const struct tri_mesh *mesh, const struct tri_executor *executor,
                                 struct tri_error *error)
 {
     *lengths = NULL;
     enum tri_status status = tri_sizes_check(sizes, error);
-    if (status || mesh->n_subs == 0 || !asks_for_any(sizes)) /* an empty mesh has nothing to measure */
+    if (status || mesh->n_subs == 0 || !tri_sizes_any(sizes)) /* an empty mesh has nothing to measure */
         return status;
     struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
     m.frame.executor = executor;

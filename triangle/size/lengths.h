@@ -23,6 +23,12 @@ struct tri_sizes {
 /* Can these be asked for at all? TRI_BAD_INPUT, TRI_TOO_LARGE: what is wrong with which field. */
 enum tri_status tri_sizes_check(const struct tri_sizes *sizes, struct tri_error *error);
 
+/* Is there anything that asks for lengths, rather than limits them? */
+static inline bool tri_sizes_any(const struct tri_sizes *s)
+{
+    return s->n > 0 || s->max_size > 0 || s->elements_across > 0 || s->per_circle > 0;
+}
+
 /* *lengths is the caller's, until tri_lengths_free; NULL where nothing is asked for. The mesh has the subsegments that
  * NEAR means; it is not looked at afterwards. TRI_BAD_INPUT, TRI_NO_MEMORY, TRI_STOPPED. */
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,

@@ -15,20 +15,19 @@ double tri_worked_angle(const struct tri_quality *quality)
     return fmin(quality->min_angle, quality->conforming ? TRI_CONFORMING_ANGLE : TRI_USUAL_ANGLE);
 }
 
+bool tri_allows_front(const struct tri_quality *quality) { return tri_worked_angle(quality) <= TRI_LATTICE_ANGLE; }
+
 bool tri_wants_lattice(const struct tri_quality *quality)
 {
     return quality->lattice && tri_has_sizes(quality) && !tri_sizes_vary(quality) &&
-           tri_worked_angle(quality) <= TRI_LATTICE_ANGLE;
+           tri_allows_front(quality);
 }
 
 double tri_lattice_length(const struct tri_quality *q)
 {
     const bool is_alone = q->lengths && !(q->max_area > 0) && !q->region_areas && !tri_asks_caller(q);
-    return is_alone && q->lattice && q->front && tri_worked_angle(q) <= TRI_LATTICE_ANGLE
-               ? tri_lengths_uniform(q->lengths) : 0;
+    return is_alone && q->lattice && q->front && tri_allows_front(q) ? tri_lengths_uniform(q->lengths) : 0;
 }
-
-bool tri_allows_front(const struct tri_quality *quality) { return tri_worked_angle(quality) <= TRI_LATTICE_ANGLE; }
 
 double tri_mean_over_bound(const struct tri_quality *quality)
 {
