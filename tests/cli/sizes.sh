@@ -207,7 +207,7 @@ program 0 -pQ letter --size 0.02 --threads 2 --optimise 0 --output rough
 case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
 *libasan* | *libtsan* | *libubsan*) ;; # have memory of their own
 *)
-    program 0 -pQ letter --size 0.02 --threads 2 --memory 55M --output less
+    program 0 -pQ letter --size 0.02 --threads 2 --memory 48M --output less
     for suffix in node ele poly; do
         same one.$suffix less.$suffix
     done ;;
