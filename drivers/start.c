@@ -5,7 +5,6 @@
 
 int main(int argc, char **argv)
 {
-    tasks_wait_idly(argv);
     return program_main(argc, argv);
 }
 
@@ -89,7 +88,6 @@ static int run_module(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    tasks_wait_idly(argv);
     return needs_module(argc, argv) ? run_module(argc, argv) : program_main(argc, argv);
 }
 
