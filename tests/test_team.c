@@ -56,14 +56,21 @@ static void test_each_task_runs_once(void **state)
     assert_true(are_jobs_done(PAR_MOST_THREADS, 20));
 }
 
-/* All threads are there at once, if the system gives them: each task waits for the others. */
-static void wait_for_all(void *context, size_t index)
+struct meeting {
+    atomic_int here;
+    int left[3]; /* by task; not atomic */
+};
+
+/* All threads are there at once, if the system gives them: each task waits for the others. One ends later. */
+static void meet(void *context, size_t index)
 {
-    atomic_int *here = context;
-    (void)index;
-    atomic_fetch_add(here, 1);
-    while (atomic_load(here) < 3)
+    struct meeting *meeting = context;
+    atomic_fetch_add(&meeting->here, 1);
+    while (atomic_load(&meeting->here) < 3)
         (void)tri_pause(1e-4);
+    if (index == 0)
+        (void)tri_pause(1e-3);
+    meeting->left[index] = 1;
 }
 
 static void test_threads_work_side_by_side(void **state)
@@ -72,9 +79,9 @@ static void test_threads_work_side_by_side(void **state)
     struct par_team team = {.threads = 3};
     const struct tri_executor executor = par_executor(&team);
     for (int i = 0; i < 20; i++) {
-        atomic_int here = 0;
-        executor.run(executor.self, 3, wait_for_all, &here);
-        assert_int_equal(here, 3);
+        struct meeting meeting = {0};
+        executor.run(executor.self, 3, meet, &meeting);
+        assert_int_equal(meeting.left[0] + meeting.left[1] + meeting.left[2], 3);
     }
     par_team_end(&team);
 }
