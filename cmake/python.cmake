@@ -13,10 +13,14 @@ set_target_properties(libptriangle_python PROPERTIES
     LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
 target_compile_options(libptriangle_python PRIVATE
     -fno-semantic-interposition $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
+include(CheckLinkerFlag)
+check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
+check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: exports.map names MPI's, too
 target_link_options(libptriangle_python PRIVATE
     # the path as a word of its own: in LINKER: a comma would end it
     "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
-    LINKER:-Bsymbolic-functions LINKER:-z,defs)
+    $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
+    $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)
 target_link_libraries(libptriangle_python PRIVATE m ptriangle_threads)
 install(TARGETS libptriangle_python LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
 

@@ -1,0 +1,75 @@
+#!/bin/sh
+# Python wheels for the systems that a Linux machine can build for: one wheel for each system serves all versions of
+# Python from 3.9 on. The compiler is zig of PyPI, which carries the C libraries of all of them. The wheels for macOS and
+# Windows are made by .github/workflows/wheels.yml on machines of these systems.
+# Usage: tools/wheels.sh [FOLDER] [SYSTEM...]   FOLDER: build/wheels without. Systems: manylinux_x86_64 manylinux_aarch64
+#        musllinux_x86_64 musllinux_aarch64; all without. The wheels lie in FOLDER/dist afterwards.
+# The first build for a system compiles its C and C++ libraries, some minutes of a core; then one minute each.
+set -eu
+cd "$(dirname "$0")/.."
+root=$PWD
+work=$root/build/wheels
+case ${1:-} in
+'' | manylinux* | musllinux*) ;;
+*) work=$1; shift ;;
+esac
+mkdir -p "$work"
+work=$(cd "$work" && pwd)
+[ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64
+
+triple() { # what zig calls the system, with the oldest C library that the wheel needs
+    case $1 in
+    manylinux_*) echo "${1#manylinux_}-linux-gnu.2.17" ;;
+    musllinux_*) echo "${1#musllinux_}-linux-musl" ;;
+    *) echo "wheels: no system $1" >&2; return 2 ;;
+    esac
+}
+
+tag() { # of the wheel's platform, in words of PEP 600 and 656
+    case $1 in
+    manylinux_*) echo "manylinux_2_17_${1#manylinux_}" ;;
+    musllinux_*) echo "musllinux_1_1_${1#musllinux_}" ;;
+    esac
+}
+
+toolchain() { # toolchain SYSTEM FOLDER: the compiler as CMake wants it
+    mkdir -p "$2"
+    for driver in cc c++ ar ranlib; do
+        target=
+        case $driver in c*) target="-target $(triple "$1")" ;; esac
+        printf '#!/bin/sh\nexec "%s" -m ziglang %s %s "$@"\n' "$python" "$driver" "$target" >"$2/$driver"
+        chmod +x "$2/$driver"
+    done
+    cat >"$2/toolchain.cmake" <<END
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR ${1#*_})
+set(CMAKE_C_COMPILER "$2/cc")
+set(CMAKE_CXX_COMPILER "$2/c++")
+set(CMAKE_AR "$2/ar")
+set(CMAKE_RANLIB "$2/ranlib")
+set(CMAKE_FIND_ROOT_PATH "$2") # nothing of this machine
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_EXE_LINKER_FLAGS_INIT -s)
+set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
+END
+}
+
+python=$work/venv/bin/python
+[ -x "$python" ] || python3 -m venv "$work/venv"
+"$python" -m pip --disable-pip-version-check -q install ziglang scikit-build-core wheel ||
+    { echo "wheels: PyPI cannot be reached"; exit 1; }
+for system; do
+    triple "$system" >/dev/null
+    folder=$work/$system
+    rm -rf "$folder/wheel"
+    toolchain "$system" "$folder/zig"
+    "$python" -m pip --disable-pip-version-check wheel --no-build-isolation --no-deps --wheel-dir "$folder/wheel" \
+        -C cmake.args="-DCMAKE_TOOLCHAIN_FILE=$folder/zig/toolchain.cmake" -C build-dir="$folder/build" \
+        -C install.strip=false "$root" >"$folder/log" 2>&1 || { tail -n 30 "$folder/log"; exit 1; }
+    "$python" -m wheel tags --platform-tag "$(tag "$system")" --remove "$folder"/wheel/*.whl >"$folder/log" 2>&1 ||
+        { cat "$folder/log"; exit 1; }
+    mkdir -p "$work/dist"
+    mv "$folder"/wheel/*.whl "$work/dist/"
+    ls -l "$work/dist/"*"$(tag "$system")".whl
+done
