@@ -44,9 +44,9 @@ cp web/package.json "$work/npm/package.json"
 
 # --- the module
 
-# What runs for long is compiled for speed, all else for size. Without a 128-bit integer decimal.cpp needs no table.
+# Compiled for size, which costs no speed that could be measured. Without a 128-bit integer decimal.cpp has no table.
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -n 1)
-flags="--target=wasm32-wasi -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
+flags="--target=wasm32-wasi -Oz -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
     -fno-tree-slp-vectorize -Wall -Wextra -Werror -Wno-unused-function -U__SIZEOF_INT128__ -I$root -I$root/include"
 sources=$(sed -n '/^set(PTRIANGLE_\(MESHER\|TEXT\)_SOURCES/,/)/p' cmake/sources.cmake |
     grep -oE 'triangle/[a-z_0-9/]+\.c(pp)?' |
@@ -56,16 +56,11 @@ cache=$(command -v ccache || true)
 compile() {
     object=$work/objects/$(echo "$1" | tr / _).o
     objects="$objects $object"
-    size=-Oz
-    case $1 in
-    triangle/geometry/* | triangle/mesh/[cls]* | triangle/cdt/insertion.c | triangle/refine/lattice_fill.c) size=-O2 ;;
-    triangle/refine/[bt]* | triangle/refine/feed.c | triangle/refine/split.c) size=-O2 ;;
-    esac
     # shellcheck disable=SC2086 # one word an option
     case $1 in
-    *.cpp) $cache clang++-19 $flags $size -std=c++17 -fno-exceptions -fno-rtti \
+    *.cpp) $cache clang++-19 $flags -std=c++17 -fno-exceptions -fno-rtti \
         -isystem $llvm/include/wasm32-wasi/c++/v1 -c "$1" -o "$object" ;;
-    *) $cache clang-19 $flags $size -std=c11 "-DPTRIANGLE_VERSION=\"$version\"" -c "$1" -o "$object" ;;
+    *) $cache clang-19 $flags -std=c11 "-DPTRIANGLE_VERSION=\"$version\"" -c "$1" -o "$object" ;;
     esac
 }
 for source in $sources web/c/glue.c web/c/left_out.c web/c/system_memory.c; do

@@ -11,7 +11,8 @@ const bundle = (entry, define = {}) =>
 const figure = (name) => readFileSync(join(process.env.DATA, name), "utf8").split("\n")
   .map((line) => line.replace(/#.*/, "").trim().replace(/\s+/g, " ")).filter(Boolean).join("\n") + "\n";
 const examples = [
-  ["coast", "British Isles", "coast/islands.poly"], ["letter", "Letter A", "letter.poly"], ["gear", "Gear", "gear.poly"],
+  ["coast", "British Isles", "coast/islands.poly"], ["letter", "Letter R", "letter.poly"], ["gear", "Gear",
+    "gear.poly"],
   ["aerofoil", "Aerofoil", "naca2412_box.poly"], ["koch", "Koch's lake", "koch_lake.poly"],
   ["section", "Retaining wall", "section.poly"],
 ].map(([key, name, file]) => ({ key, name, poly: figure(file) }));

@@ -1,7 +1,7 @@
 /* What the WebAssembly module exports: figures come as files in memory, meshes leave as arrays or as files.
  *
- * One figure, one mesh and one error exist at a time; each call replaces them. web/src/mesher.ts is the only caller, and
- * the structs' layout never leaves this file: every number has a function of its own. */
+ * One figure, one mesh and one error exist at a time; each call replaces them. web/src/mesher.ts is the only caller.
+ * The layout of structs never leaves this file: every number has a function of its own. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,6 +132,17 @@ int EXPORT(web_mesh)(double min_angle, double max_area, double size, double grow
     return status;
 }
 
+/* How many triangles do not keep this bound on angles for this reason (enum tri_reason). */
+int EXPORT(web_unmet)(double min_angle, int flags, int reason)
+{
+    struct tri_settings settings = tri_no_settings();
+    int64_t by_reason[TRI_REASONS] = {0};
+    settings.min_angle = min_angle;
+    settings.conforming = flags & CONFORMING;
+    settings.protect = flags & PROTECT ? 1 : 0;
+    return mesh && tri_mesh_count_bad(mesh, &settings, by_reason, TRI_REASONS) > 0 ? (int)by_reason[reason] : 0;
+}
+
 /* Writes the mesh into files in memory, as tri_file_write does; holes and regions are those of the figure. */
 int EXPORT(web_write)(const char *name, int first)
 {
@@ -150,7 +161,16 @@ const char *EXPORT(web_version)(void) { return tri_version(); }
 
 /* --- arrays: row i begins at web_rows(what) + i * web_rows_stride(what) numbers */
 
-enum { POINTS, POINT_MARKERS, TRIANGLES, TRIANGLE_ATTRIBUTES, SEGMENTS, SEGMENT_MARKERS, FIGURE_POINTS, FIGURE_SEGMENTS };
+enum {
+    POINTS,
+    POINT_MARKERS,
+    TRIANGLES,
+    TRIANGLE_ATTRIBUTES,
+    SEGMENTS,
+    SEGMENT_MARKERS,
+    FIGURE_POINTS,
+    FIGURE_SEGMENTS
+};
 
 struct rows {
     const void *at;        /* NULL if n is 0 */

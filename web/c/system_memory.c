@@ -152,7 +152,7 @@ size_t tri_path_folder_length(const char *path)
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* --- of the real systems: folders, locks, disks, other processes. Nothing in the module gets as far as calling these */
+/* --- of the real systems: folders, locks, disks, other processes. Nothing in the module calls these */
 
 static bool refuse(void)
 {

@@ -33,13 +33,15 @@ export class Drawing {
     document.getElementById("draw")!.setAttribute("aria-pressed", String(this.on));
     hint.hidden = !this.on;
     hint.textContent = this.open.length > 2 ? "Click the first corner, or press Enter, to close the outline"
-      : this.open.length || !this.rings.length ? "Click to set corners" : "Drag corners, draw a hole, or press Draw again to end";
+      : this.open.length || !this.rings.length ? "Click to set corners"
+        : "Drag corners, draw a hole, or press Draw again to end";
     this.paint();
   }
 
   private rounded(px: number, py: number): [number, number] {
     const unit = 10 ** Math.floor(Math.log10(1 / this.view.camera.scale));
-    return this.view.toFigure(px, py).map((v) => Number((Math.round(v / unit) * unit).toPrecision(12))) as [number, number];
+    return this.view.toFigure(px, py).map((v) => Number((Math.round(v / unit) * unit).toPrecision(12))) as [number,
+      number];
   }
 
   private near(p: [number, number], px: number, py: number, reach = 10): boolean {
@@ -60,7 +62,8 @@ export class Drawing {
             return true;
           }
     if (this.open.length > 2 && this.near(this.open[0]!, px, py, 12)) this.close();
-    else if (!this.open.length || !this.near(this.open[this.open.length - 1]!, px, py, 3)) this.open.push(this.rounded(px, py));
+    else if (!this.open.length || !this.near(this.open[this.open.length - 1]!, px, py,
+      3)) this.open.push(this.rounded(px, py));
     this.sign();
     return true;
   }
@@ -100,7 +103,8 @@ export class Drawing {
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.clearRect(0, 0, w, h);
     if (!this.on) return;
-    const accent = getComputedStyle(document.body).getPropertyValue("--accent"), at = (p: [number, number]) => this.view.toScreen(...p);
+    const accent = getComputedStyle(document.body).getPropertyValue("--accent"), at = (p: [number,
+      number]) => this.view.toScreen(...p);
     c.strokeStyle = c.fillStyle = accent;
     c.lineWidth = 2;
     c.beginPath();

@@ -63,7 +63,8 @@ function fromGeoJson(text: string): Line[] {
   if (!lines.length) throw new Error("no polygons or lines are in this GeoJSON");
   const all = lines.flatMap((l) => l.points);
   if (!all.every(([x, y]) => Math.abs(x) <= 360 && Math.abs(y) <= 90)) return lines;
-  const middle = (k: 0 | 1) => { let a = 1e9, b = -1e9; for (const p of all) { a = Math.min(a, p[k]); b = Math.max(b, p[k]); }
+  const middle = (k: 0 | 1) => { let a = 1e9, b = -1e9; for (const p of all) { a = Math.min(a, p[k]); b = Math.max(b,
+    p[k]); }
     return (a + b) / 2; };
   const x0 = middle(0), y0 = middle(1), wide = Math.cos(y0 * Math.PI / 180) * 111.32;
   const rounded = (v: number) => Math.round(v * 1e6) / 1e6;
@@ -116,7 +117,8 @@ function fromDxf(text: string): Line[] {
       const points = arc(0, 0, 1, e.startAngle, e.endAngle)
         .map(([c, s]) => [e.center.x + x * c - y * k * s, e.center.y + y * c + x * k * s] as [number, number]);
       add(whole ? points.slice(0, -1) : points, whole);
-    } else if (e.type === "SPLINE" && e.fitPoints?.length) add(e.fitPoints.map((p: any) => [p.x, p.y]), Boolean(e.closed));
+    } else if (e.type === "SPLINE" && e.fitPoints?.length) add(e.fitPoints.map((p: any) => [p.x, p.y]),
+      Boolean(e.closed));
   }
   if (!lines.length) throw new Error("no lines, polylines, circles or arcs are in this DXF");
   return lines;
@@ -166,7 +168,8 @@ function fromSvg(text: string): Line[] {
     }
   } else paths.push(text);
   let lines: Line[];
-  try { lines = paths.flatMap(pathLines); } catch (fault) { throw new Error(`a path cannot be read: ${(fault as Error).message}`); }
+  try { lines = paths.flatMap(pathLines); } catch (fault) {
+    throw new Error(`a path cannot be read: ${(fault as Error).message}`); }
   if (!lines.length) throw new Error("no paths are in this SVG");
   return lines;
 }

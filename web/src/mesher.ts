@@ -54,6 +54,7 @@ interface Exports {
   web_file_remove(name: number): void;
   web_read(name: number): number;
   web_mesh(angle: number, area: number, size: number, growth: number, flags: number): number;
+  web_unmet(angle: number, flags: number, reason: number): number;
   web_write(name: number, first: number): number;
   web_error_text(): number;
   web_error_line(): number;
@@ -107,9 +108,15 @@ export class Mesher {
 
   /** Meshes the figure that was read. Without bounds: its constrained Delaunay triangulation. */
   mesh(s: Settings = {}): Mesh {
-    const flags = (s.conforming ? 1 : 0) | (s.protect ? 2 : 0) | (s.evenOdd ? 4 : 0) | (s.regionAreas ? 8 : 0);
-    this.check(this.c.web_mesh(s.minAngle ?? 0, s.maxArea ?? 0, s.size ?? 0, s.growth ?? 0, flags));
+    this.check(this.c.web_mesh(s.minAngle ?? 0, s.maxArea ?? 0, s.size ?? 0, s.growth ?? 0, this.flags(s)));
     return this.current();
+  }
+
+  /** Triangles that do not keep these bounds on angles, by reason: small angles of the figure, narrow gaps, protected
+   * segments, points that would run away, precision, deferred. */
+  unmet(s: Settings): number[] {
+    return Array.from({ length: 6 }, (_, reason) =>
+      this.c.web_unmet(s.minAngle ?? 0, this.flags(s), reason));
   }
 
   /** The mesh once more, for instance after memory has grown. */
@@ -132,6 +139,10 @@ export class Mesher {
         this.c.web_file_remove(at);
       });
     return files;
+  }
+
+  private flags(s: Settings): number {
+    return (s.conforming ? 1 : 0) | (s.protect ? 2 : 0) | (s.evenOdd ? 4 : 0) | (s.regionAreas ? 8 : 0);
   }
 
   private check(status: number): void {

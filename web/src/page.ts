@@ -119,21 +119,30 @@ function boxOf(p: Float64Array): number[] {
   return box.every(Number.isFinite) ? box : [0, 0, 1, 1];
 }
 
+/** Why angles are smaller than asked. */
+function unmet(r: Result): string {
+  const reasons = ["at small angles of the figure", "in gaps too narrow to fill",
+    "at the boundary, which is to keep its points",
+    "because points would run away", "where coordinates end to resolve"];
+  const parts = r.unmet.slice(0, 5).map((n, i) => n ? `${number.format(n)} ${reasons[i]}` : "").filter(Boolean);
+  const all = r.unmet.reduce((s, n) => s + n, 0);
+  return parts.length ? `${number.format(all)} triangles have smaller angles: ${parts.join(", ")}.` : "";
+}
+
 function tell(r: Result): void {
   const text = (id: string, value: string) => { $(id).textContent = value; };
   text("s-triangles", number.format(r.triangles));
   text("s-points", number.format(r.points));
-  text("s-angle", r.triangles ? `${(Math.floor(r.minAngle * 100) / 100).toFixed(2)}°` : "–");
+  text("s-angle", r.triangles ? `${(Math.floor(r.minAngle * 100 + 1e-6) / 100).toFixed(2)}°` : "–");
   text("s-large", r.triangles ? `${r.maxAngle.toFixed(1)}°` : "–");
   text("s-time", r.ms < 1000 ? `${r.ms < 10 ? r.ms.toFixed(1) : r.ms.toFixed(0)} ms` : `${(r.ms / 1000).toFixed(2)} s`);
-  text("s-speed", r.ms > 0.5 ? `${(r.triangles / r.ms / 1000).toFixed(2)} million` : "–");
-  text("notes", r.notes.trim());
+  text("notes", [r.notes.trim(), unmet(r)].filter(Boolean).join("\n"));
   const most = Math.max(1, ...r.histogram), n = r.histogram.length, palette = paletteOf("angle", view.dark);
   $("histogram").innerHTML = r.histogram.map((c, i) => {
     const h = c ? Math.max(0.8, 62 * c / most) : 0, angle = (i + 0.5) * 180 / n;
     const at = 4 * Math.round(255 * Math.max(0, Math.min(1, angle <= 60 ? angle / 60 : (180 - angle) / 120)));
     return `<rect x="${i * 240 / n + 0.3}" y="${64 - h}" width="${240 / n - 0.6}" height="${h}"
-      fill="rgb(${palette[at]},${palette[at + 1]},${palette[at + 2]})"><title>${i * 180 / n}° to ${(i + 1) * 180 / n}°: ${
+      fill="rgb(${palette.subarray(at, at + 3)})"><title>${i * 180 / n}° to ${(i + 1) * 180 / n}°: ${
       number.format(c)}</title></rect>`;
   }).join("");
 }
@@ -162,8 +171,10 @@ async function takeFile(file: File | undefined): Promise<void> {
 
 // --- settings: a slider and a number each; lengths and areas by their logarithm
 
-const scales: Record<string, { get: () => number; set: (v: number) => void; from: (s: number) => number; to: (v: number) => number }> = {
-  angle: { get: () => settings.minAngle, set: (v) => { settings.minAngle = Math.min(38, v); }, from: (s) => s, to: (v) => v },
+const scales: Record<string, { get: () => number; set: (v: number) => void; from: (s: number) => number;
+  to: (v: number) => number }> = {
+  angle: { get: () => settings.minAngle, set: (v) => { settings.minAngle = Math.min(38, v); }, from: (s) => s,
+    to: (v) => v },
   area: { get: () => settings.maxArea, set: (v) => { settings.maxArea = v; },
     from: (s) => s ? Number((extent ** 2 * 10 ** (-1.2 - s * 0.052)).toPrecision(3)) : 0,
     to: (v) => v ? (-1.2 - Math.log10(v / extent ** 2)) / 0.052 : 0 },
@@ -218,7 +229,8 @@ for (const radio of document.querySelectorAll<HTMLInputElement>("input[name=colo
 let view: View;
 try { view = new View($("gl")); } catch (fault) { fail((fault as Error).message); throw fault; }
 const dark = matchMedia("(prefers-color-scheme: dark)");
-const themed = () => { view.dark = dark.matches; view.repaint(); fill(); if (result) tell(result); if (examples.length) gallery(); };
+const themed = () => { view.dark = dark.matches; view.repaint(); fill(); if (result) tell(result);
+  if (examples.length) gallery(); };
 const drawing = new Drawing(view, $("gl"), $("over"), (rings) => {
   if (!rings.length) return;
   const fitted = fitNext;
@@ -241,7 +253,8 @@ $("gl").addEventListener("pointermove", (e) => {
   const other = [...fingers].find(([id]) => id !== e.pointerId)?.[1];
   fingers.set(e.pointerId, [e.offsetX, e.offsetY]);
   if (other) {
-    const before = Math.hypot(was[0] - other[0], was[1] - other[1]), after = Math.hypot(e.offsetX - other[0], e.offsetY - other[1]);
+    const before = Math.hypot(was[0] - other[0], was[1] - other[1]), after = Math.hypot(e.offsetX - other[0],
+      e.offsetY - other[1]);
     view.pan((e.offsetX - was[0]) / 2, (e.offsetY - was[1]) / 2);
     if (before > 0) view.zoom(after / before, (e.offsetX + other[0]) / 2, (e.offsetY + other[1]) / 2);
   } else view.pan(e.offsetX - was[0], e.offsetY - was[1]);
@@ -255,7 +268,8 @@ $("gl").addEventListener("wheel", (e) => {
 }, { passive: false });
 $("gl").addEventListener("keydown", (e) => {
   const step = 60;
-  const move: Record<string, [number, number]> = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+  const move: Record<string, [number, number]> = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step],
+    ArrowDown: [0, -step] };
   if (move[e.key]) view.pan(...move[e.key]!);
   else if (e.key === "+" || e.key === "=") view.zoom(1.4);
   else if (e.key === "-") view.zoom(1 / 1.4);
@@ -271,9 +285,11 @@ $("fit").onclick = () => view.fit();
 
 $("open").onclick = () => $("file").click();
 $("file").onchange = () => { takeFile($("file").files?.[0]); $("file").value = ""; };
-$("paste").onclick = () => { $("paste-text").value = ""; ($("paste-box") as unknown as HTMLDialogElement).showModal(); };
+$("paste").onclick = () => { $("paste-text").value = ""; ($("paste-box") as unknown as HTMLDialogElement).showModal();
+  };
 $("paste-go").onclick = () => takeText("pasted", $("paste-text").value);
-$("examples").onclick = () => { drawing.leave(); show("empty", true); view.setLayout(null); show("result", false); $("name").textContent = ""; };
+$("examples").onclick = () => { drawing.leave(); show("empty", true); view.setLayout(null); show("result", false);
+  $("name").textContent = ""; };
 $("draw").onclick = () => {
   if (drawing.on) { drawing.leave(); return; }
   show("empty", false);
@@ -307,7 +323,9 @@ addEventListener("paste", (e) => {
   const file = e.clipboardData?.files[0], text = e.clipboardData?.getData("text");
   if (file) takeFile(file); else if (text) takeText("pasted", text);
 });
-addEventListener("keydown", (e) => { if (!(e.target as HTMLElement).closest("input, textarea, dialog")) drawing.key(e); });
+addEventListener("keydown", (e) => {
+  if (!(e.target as HTMLElement).closest("input, textarea, dialog")) drawing.key(e);
+});
 
 async function gallery(): Promise<void> {
   $("gallery").textContent = "";
@@ -333,7 +351,8 @@ function thumbnail(canvas: HTMLCanvasElement, r: Result): void {
   for (let k = 0; k < chunks.length; k += 8)
     for (let i = chunks[k + 6]!; i < chunks[k + 6]! + chunks[k + 7]!; i++) {
       const x = (v: number) => (chunks[k]! + p[v]! - (x0 + x1) / 2) * scale + canvas.width / 2;
-      const y = (v: number) => canvas.height / 2 - (chunks[k + 1]! + p[v]! - (y0 + y1) / 2) * scale, v = 4 * values[12 * i]!;
+      const y = (v: number) => canvas.height / 2 - (chunks[k + 1]! + p[v]! - (y0 + y1) / 2) * scale,
+        v = 4 * values[12 * i]!;
       c.fillStyle = `rgb(${palette[v]},${palette[v + 1]},${palette[v + 2]})`;
       c.beginPath();
       c.moveTo(x(6 * i), y(6 * i + 1));
@@ -360,7 +379,8 @@ $("download").onclick = async () => {
 
 async function hash(): Promise<string> {
   const words = new URLSearchParams({ angle: String(settings.minAngle) });
-  for (const [key, v] of [["area", settings.maxArea], ["size", settings.size]] as const) if (v) words.set(key, String(v));
+  for (const [key, v] of [["area", settings.maxArea], ["size", settings.size]] as const) if (v) words.set(key,
+    String(v));
   if (settings.size) words.set("growth", String(settings.growth));
   if (settings.conforming) words.set("conforming", "1");
   if (settings.protect) words.set("protect", "1");
@@ -394,7 +414,8 @@ async function fromLink(): Promise<boolean> {
   };
   Object.assign(settings, { minAngle: value("angle", 30), maxArea: value("area", 0), size: value("size", 0),
     growth: value("growth", 0.12), conforming: words.has("conforming"), protect: words.has("protect") });
-  const colour = document.querySelector<HTMLInputElement>(`input[value="${CSS.escape(words.get("colour") ?? "angle")}"]`);
+  const wish = CSS.escape(words.get("colour") ?? "angle");
+  const colour = document.querySelector<HTMLInputElement>(`input[name=colour][value="${wish}"]`);
   if (colour) { colour.checked = true; view.colour = colour.value as Colour; }
   const example = examples.find((e) => e.key === key);
   try {

@@ -33,20 +33,24 @@ export function zip(files: [string, Uint8Array][]): Uint8Array {
   let at = 0;
   const record = (size: number, values: [number, number, number][], name = "") => {
     const bytes = new Uint8Array(size + name.length), view = new DataView(bytes.buffer);
-    for (const [place, width, v] of values) width === 2 ? view.setUint16(place, v, true) : view.setUint32(place, v, true);
+    for (const [place, width, v] of values) width === 2 ? view.setUint16(place, v, true) : view.setUint32(place, v,
+      true);
     bytes.set(new TextEncoder().encode(name), size);
     return bytes;
   };
   for (const [name, bytes] of files) {
     const sum = crc(bytes), n = bytes.length, day = 0x5821;
-    const head = record(30, [[0, 4, 0x04034b50], [4, 2, 20], [12, 2, day], [14, 4, sum], [18, 4, n], [22, 4, n], [26, 2, name.length]], name);
-    directory.push(record(46, [[0, 4, 0x02014b50], [4, 2, 20], [6, 2, 20], [14, 2, day], [16, 4, sum], [20, 4, n], [24, 4, n],
+    const head = record(30, [[0, 4, 0x04034b50], [4, 2, 20], [12, 2, day], [14, 4, sum], [18, 4, n], [22, 4, n], [26,
+      2, name.length]], name);
+    directory.push(record(46, [[0, 4, 0x02014b50], [4, 2, 20], [6, 2, 20], [14, 2, day], [16, 4, sum], [20, 4, n],
+      [24, 4, n],
       [28, 2, name.length], [42, 4, at]], name));
     parts.push(head, bytes);
     at += head.length + n;
   }
   const size = directory.reduce((s, d) => s + d.length, 0);
-  parts.push(...directory, record(22, [[0, 4, 0x06054b50], [8, 2, files.length], [10, 2, files.length], [12, 4, size], [16, 4, at]]));
+  parts.push(...directory, record(22, [[0, 4, 0x06054b50], [8, 2, files.length], [10, 2, files.length], [12, 4, size],
+    [16, 4, at]]));
   const whole = new Uint8Array(parts.reduce((s, p) => s + p.length, 0));
   let place = 0;
   for (const p of parts) { whole.set(p, place); place += p.length; }

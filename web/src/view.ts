@@ -1,5 +1,5 @@
 // The picture: WebGL2 with pan and zoom. A frame draws at most BUDGET triangles. If more are in sight, the last picture
-// moves along, and a new one is made from slices, one a frame, once the hand rests. Edges fade where they would fill the
+// moves along. Once the hand rests, a new one is made of slices, one a frame. Edges fade where they would fill the
 // triangles; there the shade shows the density.
 import type { Layout } from "./worker";
 
@@ -27,17 +27,18 @@ void main() {
   vec3 slope = max(fwidth(corner), 1e-9), away = corner / slope;
   float height = 1.0 / max(slope.x, max(slope.y, slope.z)) / dot_size;
   vec3 fill = texture(palette, vec2((floor(shade * 255.0 + 0.5) + 0.5) / 256.0, 0.5)).rgb;
-  fill = mix(fill, ink, 0.30 * (1.0 - smoothstep(1.0, 12.0, height)));
+  fill = mix(fill, ink, 0.22 * (1.0 - smoothstep(0.5, 5.0, height)));
   float near_edge = min(away.x, min(away.y, away.z));
   float edge = (1.0 - smoothstep(0.25 * dot_size, 0.95 * dot_size, near_edge)) * smoothstep(3.0, 16.0, height);
   vec3 far = vec3((edges & 1) != 0 ? away.x : 1e9, (edges & 2) != 0 ? away.y : 1e9, (edges & 4) != 0 ? away.z : 1e9);
   float border = 1.0 - smoothstep(0.9 * dot_size, 1.7 * dot_size, min(far.x, min(far.y, far.z)));
   vec3 colour = mix(fill, ink, 0.62 * edge);
-  result = vec4(mix(colour, line, border * smoothstep(0.6, 5.0, height)), 1);
+  result = vec4(mix(colour, line, border * smoothstep(0.2, 1.6, height)), 1);
 }`;
 const copyVertex = `#version 300 es
 uniform vec4 box; out vec2 uv;
-void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); uv = c; gl_Position = vec4(mix(box.xy, box.zw, c), 0, 1); }`;
+void main() { vec2 c = vec2(gl_VertexID & 1, gl_VertexID >> 1); uv = c; gl_Position = vec4(mix(box.xy, box.zw, c), 0,
+  1); }`;
 const copyFragment = `#version 300 es
 precision highp float;
 in vec2 uv; uniform sampler2D picture; out vec4 result;
@@ -93,7 +94,8 @@ export class View {
   private fitted = true;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true, preserveDrawingBuffer: true });
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true,
+      preserveDrawingBuffer: true });
     if (!gl) throw new Error("this browser offers no WebGL2, so meshes are made but not drawn");
     this.gl = gl;
     this.program = this.build(vertexShader, fragmentShader);
@@ -201,7 +203,8 @@ export class View {
 
   /** Chunks in sight, and how many triangles they have. */
   private visible(): { list: number[]; triangles: number } {
-    const { x, y, scale } = this.camera, hw = this.canvas.clientWidth / 2 / scale, hh = this.canvas.clientHeight / 2 / scale;
+    const { x, y, scale } = this.camera, hw = this.canvas.clientWidth / 2 / scale,
+      hh = this.canvas.clientHeight / 2 / scale;
     const list: number[] = [], c = this.chunks;
     let triangles = 0;
     for (let i = 0; i < c.length; i += 8)
@@ -233,7 +236,8 @@ export class View {
 
   private isTaken(): boolean {
     const t = this.taken, c = this.camera;
-    return !!t && t.x === c.x && t.y === c.y && t.scale === c.scale && t.width === this.canvas.width && t.height === this.canvas.height;
+    return !!t && t.x === c.x && t.y === c.y && t.scale === c.scale && t.width === this.canvas.width
+      && t.height === this.canvas.height;
   }
 
   private screen(): void {
@@ -245,7 +249,8 @@ export class View {
   }
 
   private draw(list: number[]): void {
-    const gl = this.gl, ratio = this.canvas.width / this.canvas.clientWidth, c = this.chunks, { x, y, scale } = this.camera;
+    const gl = this.gl, ratio = this.canvas.width / this.canvas.clientWidth, c = this.chunks, { x, y,
+      scale } = this.camera;
     gl.useProgram(this.program);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.palette);
@@ -271,7 +276,8 @@ export class View {
     const gl = this.gl, t = this.taken, c = this.camera;
     if (!t) return;
     const k = c.scale / t.scale, w = t.width / this.canvas.width * k, h = t.height / this.canvas.height * k;
-    const mx = (t.x - c.x) * c.scale / (this.canvas.clientWidth / 2), my = (t.y - c.y) * c.scale / (this.canvas.clientHeight / 2);
+    const mx = (t.x - c.x) * c.scale / (this.canvas.clientWidth / 2),
+      my = (t.y - c.y) * c.scale / (this.canvas.clientHeight / 2);
     gl.useProgram(this.copy);
     gl.bindTexture(gl.TEXTURE_2D, this.picture);
     gl.uniform4f(gl.getUniformLocation(this.copy, "box"), mx - w, my - h, mx + w, my + h);

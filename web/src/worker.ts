@@ -16,7 +16,8 @@ export interface Layout {
 }
 export interface Result {
   id: number; ms: number; points: number; triangles: number; segments: number; minAngle: number; maxAngle: number;
-  area: number; histogram: number[]; regions: number[]; notes: string; layout: Layout; outline: Float64Array;
+  area: number; histogram: number[]; regions: number[]; notes: string; unmet: number[]; layout: Layout;
+    outline: Float64Array;
 }
 export type Answer =
   | { kind: "ready"; version: string }
@@ -35,13 +36,15 @@ function pairSet(segments: Int32Array): (a: number, b: number) => boolean {
   while (size < segments.length * 2) size *= 2;
   const keys = new Float64Array(size).fill(-1);
   const key = (a: number, b: number) => a < b ? a * 2 ** 28 + b : b * 2 ** 28 + a;
-  const place = (a: number, b: number) => (Math.imul(Math.min(a, b), 0x9e3779b1) ^ Math.imul(Math.max(a, b), 0x85ebca6b)) >>> 0;
+  const place = (a: number, b: number) => (Math.imul(Math.min(a, b), 0x9e3779b1) ^ Math.imul(Math.max(a, b),
+    0x85ebca6b)) >>> 0;
   const find = (a: number, b: number) => {
     let i = place(a, b) & (size - 1);
     while (keys[i] !== -1 && keys[i] !== key(a, b)) i = (i + 1) & (size - 1);
     return i;
   };
-  for (let i = 0; i < segments.length; i += 2) keys[find(segments[i]!, segments[i + 1]!)] = key(segments[i]!, segments[i + 1]!);
+  for (let i = 0; i < segments.length; i += 2) keys[find(segments[i]!, segments[i + 1]!)] = key(segments[i]!,
+    segments[i + 1]!);
   return (a, b) => keys[find(a, b)] !== -1;
 }
 
@@ -57,7 +60,8 @@ function order(p: Float64Array, t: Int32Array, box: number[]): Uint32Array {
   const key = new Uint32Array(n), count = new Uint32Array((1 << (2 * bits)) + 1), sorted = new Uint32Array(n);
   for (let i = 0; i < n; i++) {
     const a = 2 * t[3 * i]!, b = 2 * t[3 * i + 1]!, c = 2 * t[3 * i + 2]!;
-    const x = (p[a]! + p[b]! + p[c]! - 3 * box[0]!) * scale, y = (p[a + 1]! + p[b + 1]! + p[c + 1]! - 3 * box[1]!) * scale;
+    const x = (p[a]! + p[b]! + p[c]! - 3 * box[0]!) * scale,
+      y = (p[a + 1]! + p[b + 1]! + p[c + 1]! - 3 * box[1]!) * scale;
     count[(key[i] = spread(x) | (spread(y) << 1)) + 1]!++;
   }
   for (let i = 1; i < count.length; i++) count[i]! += count[i - 1]!;
@@ -74,7 +78,7 @@ function boxOf(p: Float64Array, t: Int32Array): number[] {
   return [x0, y0, x1, y1];
 }
 
-function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline"> {
+function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet"> {
   const { points: p, triangles: t } = mesh, n = t.length / 3, box = boxOf(p, t);
   const positions = new Float32Array(6 * n), values = new Uint8Array(12 * n), chunks: number[] = [];
   const histogram = new Array<number>(BINS).fill(0), isSegment = pairSet(mesh.segments);
@@ -96,9 +100,11 @@ function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline"> {
       const la = Math.hypot(xb - xc, yb - yc), lb = Math.hypot(xc - xa, yc - ya), lc = Math.hypot(xa - xb, ya - yb);
       const twice = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya);
       const alpha = Math.atan2(twice, (xb - xa) * (xc - xa) + (yb - ya) * (yc - ya)) * degrees;
-      const beta = Math.atan2(twice, (xa - xb) * (xc - xb) + (ya - yb) * (yc - yb)) * degrees, gamma = 180 - alpha - beta;
+      const beta = Math.atan2(twice, (xa - xb) * (xc - xb) + (ya - yb) * (yc - yb)) * degrees,
+        gamma = 180 - alpha - beta;
       const small = Math.min(alpha, beta, gamma), large = Math.max(alpha, beta, gamma);
-      for (const angle of [alpha, beta, gamma]) histogram[Math.min(BINS - 1, Math.max(0, Math.floor(angle * BINS / 180)))]!++;
+      for (const angle of [alpha, beta, gamma]) histogram[Math.min(BINS - 1, Math.max(0,
+        Math.floor(angle * BINS / 180)))]!++;
       if (small < minAngle) minAngle = small;
       if (large > maxAngle) maxAngle = large;
       area += twice / 2;
@@ -109,9 +115,11 @@ function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline"> {
         region = regionNumber.get(attribute) ?? regionNumber.set(attribute, regionNumber.size).size - 1;
       }
       const edges = (onSegment[b]! & onSegment[c]! && isSegment(b, c) ? 1 : 0) |
-        (onSegment[c]! & onSegment[a]! && isSegment(c, a) ? 2 : 0) | (onSegment[a]! & onSegment[b]! && isSegment(a, b) ? 4 : 0);
+        (onSegment[c]! & onSegment[a]! && isSegment(c, a) ? 2 : 0) | (onSegment[a]! & onSegment[b]! && isSegment(a,
+          b) ? 4 : 0);
       for (let v = 12 * i; v < 12 * i + 12; v += 4) {
-        values[v] = small * 255 / 60; values[v + 1] = quality * 255; values[v + 2] = region % 256; values[v + 3] = edges;
+        values[v] = small * 255 / 60; values[v + 1] = quality * 255; values[v + 2] = region % 256;
+          values[v + 3] = edges;
       }
     }
     chunks.push(ox, oy, bx0, by0, bx1, by1, start, end - start);
@@ -141,9 +149,10 @@ self.onmessage = async ({ data }: MessageEvent<Question>) => {
       last = performance.now();
       mesher.read(job.name + ".poly", job.poly);
       const f = mesher.figure(), outline = new Float64Array(f.segments.length * 2);
-      f.segments.forEach((v, i) => { outline[2 * i] = f.points[2 * v] ?? NaN; outline[2 * i + 1] = f.points[2 * v + 1] ?? NaN; });
+      f.segments.forEach((v, i) => { outline[2 * i] = f.points[2 * v] ?? NaN;
+        outline[2 * i + 1] = f.points[2 * v + 1] ?? NaN; });
       const start = performance.now(), mesh = mesher.mesh(job.settings), ms = performance.now() - start;
-      const result: Result = { ...measure(mesh), id, ms, outline };
+      const result: Result = { ...measure(mesh), id, ms, outline, unmet: mesher.unmet(job.settings) };
       const { positions, values, chunks } = result.layout;
       say({ kind: "result", result }, [positions.buffer, values.buffer, chunks.buffer, outline.buffer]);
     } else say({ kind: "files", id, files: [...mesher.write(data.name)] });
