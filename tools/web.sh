@@ -44,9 +44,9 @@ cp web/package.json "$work/npm/package.json"
 
 # --- the module
 
-# Compiled for size, which costs no speed that could be measured. Without a 128-bit integer decimal.cpp has no table.
+# Compiled for size, except where refinement spends its time. Without a 128-bit integer decimal.cpp has no table.
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -n 1)
-flags="--target=wasm32-wasi -Oz -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
+flags="--target=wasm32-wasi -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
     -fno-tree-slp-vectorize -Wall -Wextra -Werror -Wno-unused-function -U__SIZEOF_INT128__ -I$root -I$root/include"
 sources=$(sed -n '/^set(PTRIANGLE_\(MESHER\|TEXT\)_SOURCES/,/)/p' cmake/sources.cmake |
     grep -oE 'triangle/[a-z_0-9/]+\.c(pp)?' |
@@ -56,11 +56,16 @@ cache=$(command -v ccache || true)
 compile() {
     object=$work/objects/$(echo "$1" | tr / _).o
     objects="$objects $object"
+    size=-Oz
+    case $1 in
+    triangle/geometry/predicates.c | triangle/mesh/cavity.c | triangle/mesh/surface.c | triangle/mesh/locate.c) size=-O2 ;;
+    triangle/refine/treat.c | triangle/refine/bad_queue.c) size=-O2 ;;
+    esac
     # shellcheck disable=SC2086 # one word an option
     case $1 in
-    *.cpp) $cache clang++-19 $flags -std=c++17 -fno-exceptions -fno-rtti \
+    *.cpp) $cache clang++-19 $flags $size -std=c++17 -fno-exceptions -fno-rtti \
         -isystem $llvm/include/wasm32-wasi/c++/v1 -c "$1" -o "$object" ;;
-    *) $cache clang-19 $flags -std=c11 "-DPTRIANGLE_VERSION=\"$version\"" -c "$1" -o "$object" ;;
+    *) $cache clang-19 $flags $size -std=c11 "-DPTRIANGLE_VERSION=\"$version\"" -c "$1" -o "$object" ;;
     esac
 }
 for source in $sources web/c/glue.c web/c/left_out.c web/c/system_memory.c; do
@@ -94,6 +99,12 @@ cd "$root"
 # --- tests
 
 bin=${PTRIANGLE_BIN:-$root/build/release/bin}
+if command -v cc >/dev/null && [ -e /usr/include/cmocka.h ]; then # decimal.cpp as libc++ 19 makes it
+    c++ -O1 -std=c++17 -DPTRIANGLE_NO_CHARCONV -I. -c triangle/text/decimal.cpp -o "$work/objects/native_decimal.o"
+    cc -std=c11 -I. -Iinclude -Itests tests/test_decimal.c "$work/objects/native_decimal.o" -lcmocka -lstdc++ -lm \
+        -o "$work/objects/test_decimal"
+    "$work/objects/test_decimal" >"$work/decimal.log" 2>&1 || { cat "$work/decimal.log"; exit 1; }
+fi
 [ -x "$bin/triangle" ] || tools/build.sh release >"$work/native.log" 2>&1 || { tail "$work/native.log"; exit 1; }
 PACKAGE=$work/package NATIVE=$bin DATA=$root/data node --test --test-reporter=spec web/test/mesher.test.mjs
 PAGE=$work/ptriangle.html DATA=$root/data SHOTS=$work/shots node --test --test-reporter=spec \

@@ -57,26 +57,33 @@ static int compare_markers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* One source of lengths for each marker that segments have: all segments ask for this length. NULL: no memory. */
-static struct tri_size_field *fields_near(double length, double growth, int64_t *n)
+/* The segments' markers, with 1 for 0: a length cannot name 0, and 1 is what boundary segments get. NULL: no memory. */
+static int32_t *named_markers(void)
 {
-    const int64_t most = figure.segments.n;
-    int32_t *markers = calloc((size_t)most + 1, sizeof *markers);
-    struct tri_size_field *fields = NULL;
+    int32_t *markers = malloc(((size_t)figure.segments.n + 1) * sizeof *markers);
+    for (int64_t i = 0; markers && i < figure.segments.n; i++) {
+        const struct tri_ints *given = &figure.segment_markers;
+        markers[i] = i < given->n && given->at[i * given->stride] != 0 ? given->at[i * given->stride] : 1;
+    }
+    return markers;
+}
+
+/* One source of lengths for each of these markers: all segments ask for this length. NULL: no memory. */
+static struct tri_size_field *fields_near(const int32_t *markers, double length, double growth, int64_t *n)
+{
+    const size_t n_segments = (size_t)figure.segments.n;
+    int32_t *sorted = malloc((n_segments + 1) * sizeof *sorted);
+    struct tri_size_field *fields = calloc(n_segments + 1, sizeof *fields);
     *n = 0;
-    for (int64_t i = 0; markers && i < most && figure.segment_markers.n; i++)
-        markers[i] = figure.segment_markers.at[i * figure.segment_markers.stride];
-    if (markers)
-        qsort(markers, (size_t)most, sizeof *markers, compare_markers);
-    for (int64_t i = 0; markers && i < most; i++)
-        if (i == 0 || markers[i] != markers[i - 1])
-            markers[(*n)++] = markers[i];
-    if (markers)
-        fields = calloc((size_t)*n + 1, sizeof *fields);
-    for (int64_t i = 0; fields && i < *n; i++)
-        fields[i] = (struct tri_size_field){.kind = TRI_SIZE_NEAR, .length = length, .growth = growth,
-                                            .marker = markers[i]};
-    free(markers);
+    if (sorted && fields) {
+        memcpy(sorted, markers, n_segments * sizeof *sorted);
+        qsort(sorted, n_segments, sizeof *sorted, compare_markers);
+        for (size_t i = 0; i < n_segments; i++)
+            if (i == 0 || sorted[i] != sorted[i - 1])
+                fields[(*n)++] = (struct tri_size_field){.kind = TRI_SIZE_NEAR, .length = length, .growth = growth,
+                                                         .marker = sorted[i]};
+    }
+    free(sorted);
     return fields;
 }
 
@@ -88,10 +95,13 @@ static void tell_progress(void *user, double done, int64_t triangles)
 
 enum { CONFORMING = 1, PROTECT = 2, EVEN_ODD = 4, REGION_AREAS = 8 };
 
-static int make_mesh(const struct tri_settings *settings, int flags)
+/* markers: of the segments; NULL: the figure's */
+static int make_mesh(const struct tri_settings *settings, const int32_t *markers, int flags)
 {
     struct tri_figure given = figure;
     double *regions = NULL;
+    if (markers)
+        given.segment_markers = tri_ints_of(markers, figure.segments.n, 1);
     if (!(flags & REGION_AREAS) && figure.regions.n > 0) { /* the regions' own bounds do not count */
         regions = malloc((size_t)figure.regions.n * 4 * sizeof *regions);
         for (int64_t i = 0; regions && i < figure.regions.n; i++) {
@@ -111,6 +121,7 @@ int EXPORT(web_mesh)(double min_angle, double max_area, double size, double grow
 {
     struct tri_settings settings = tri_no_settings();
     struct tri_size_field everywhere = {.kind = TRI_SIZE_NUMBER, .length = size}, *near = NULL;
+    int32_t *markers = NULL;
     tri_mesh_delete(mesh);
     mesh = NULL;
     error = (struct tri_error){0};
@@ -122,13 +133,15 @@ int EXPORT(web_mesh)(double min_angle, double max_area, double size, double grow
     settings.progress = tell_progress;
     if (size > 0 && growth > 0 && figure.segments.n > 0) {
         settings.gradation = growth;
-        settings.sizes = near = fields_near(size, growth, &settings.n_sizes);
+        markers = named_markers();
+        settings.sizes = near = markers ? fields_near(markers, size, growth, &settings.n_sizes) : NULL;
     } else if (size > 0) {
         settings.sizes = &everywhere;
         settings.n_sizes = 1;
     }
-    const int status = make_mesh(&settings, flags);
+    const int status = make_mesh(&settings, markers, flags);
     free(near);
+    free(markers);
     return status;
 }
 

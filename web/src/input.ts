@@ -7,6 +7,8 @@ export interface Figure {
   poly: string;
   /** Rings tell what is inside; otherwise holes and regions of the file do. */
   evenOdd: boolean;
+  /** Whose lines errors count. */
+  file?: string;
 }
 export type Ring = [number, number][];
 interface Line { points: Ring; closed: boolean }
@@ -182,6 +184,6 @@ export function parse(name: string, text: string): Figure {
   if (start.startsWith("{") || start.startsWith("[")) return outlines(fromGeoJson(text));
   if (start.startsWith("<") || /^[Mm]\s*[-+.\d]/.test(start)) return outlines(fromSvg(text));
   if (/^(999[^]*?\n)?0\s*\n\s*SECTION/m.test(start)) return outlines(fromDxf(text));
-  if (/^(#|[-+.\d])/.test(start)) return { name: stem, poly: text, evenOdd: false };
+  if (/^(#|[-+.\d])/.test(start)) return { name: stem, poly: text, evenOdd: false, file: name };
   throw new Error("this is no .poly, GeoJSON, DXF or SVG");
 }

@@ -91,8 +91,8 @@ async function run(): Promise<void> {
   if (busy !== job) return;
   idle();
   if (answer.kind === "error") {
-    fail(`${now.name}${answer.line ? `, line ${answer.line}` : ""}: ${answer.text}`);
-    if (!result) { view.setLayout(null); show("empty", !drawing.on); }
+    fail(`${now.file ?? now.name}${now.file && answer.line ? `, line ${answer.line}` : ""}: ${answer.text}`);
+    if (!result) { view.setLayout(null); show("result", false); show("empty", !drawing.on); }
   } else if (answer.kind === "result") {
     show("error", false);
     accept(answer.result);
@@ -124,9 +124,8 @@ function unmet(r: Result): string {
   const reasons = ["at small angles of the figure", "in gaps too narrow to fill",
     "at the boundary, which is to keep its points",
     "because points would run away", "where coordinates end to resolve"];
-  const parts = r.unmet.slice(0, 5).map((n, i) => n ? `${number.format(n)} ${reasons[i]}` : "").filter(Boolean);
-  const all = r.unmet.reduce((s, n) => s + n, 0);
-  return parts.length ? `${number.format(all)} triangles have smaller angles: ${parts.join(", ")}.` : "";
+  const parts = r.unmet.slice(0, 5).map((n, i) => n ? `${number.format(n)} triangle${n > 1 ? "s" : ""} ${reasons[i]}` : "").filter(Boolean);
+  return parts.length ? `Below ${settings.minAngle}°: ${parts.join(", ")}.` : "";
 }
 
 function tell(r: Result): void {
