@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/* Makes a file of so many bytes, which the caller fills; replaces one of that name. NULL: no memory, or 16 files. */
+/* Makes a file of `size` bytes, which the caller fills; replaces one of that name. NULL: no memory, or 16 files. */
 void *tri_memory_file(const char *name, size_t size);
 
 /* The bytes of a file, valid until it is written or removed. NULL: there is none. */
