@@ -287,8 +287,14 @@ $("file").onchange = () => { takeFile($("file").files?.[0]); $("file").value = "
 $("paste").onclick = () => { $("paste-text").value = ""; ($("paste-box") as unknown as HTMLDialogElement).showModal();
   };
 $("paste-go").onclick = () => takeText("pasted", $("paste-text").value);
-$("examples").onclick = () => { drawing.leave(); show("empty", true); view.setLayout(null); show("result", false);
-  $("name").textContent = ""; };
+$("examples").onclick = () => {
+  drawing.leave();
+  show("empty", true);
+  view.setLayout(null);
+  show("result", false);
+  $("name").textContent = "";
+  gallery(); // once more: a run that was stopped may have cut it short
+};
 $("draw").onclick = () => {
   if (drawing.on) { drawing.leave(); return; }
   show("empty", false);
