@@ -58,7 +58,8 @@ compile() {
     objects="$objects $object"
     size=-Oz
     case $1 in
-    triangle/geometry/predicates.c | triangle/mesh/cavity.c | triangle/mesh/surface.c | triangle/mesh/locate.c) size=-O2 ;;
+    triangle/geometry/predicates.c | triangle/mesh/cavity.c | triangle/mesh/surface.c) size=-O2 ;;
+    triangle/mesh/locate.c) size=-O2 ;;
     triangle/refine/treat.c | triangle/refine/bad_queue.c) size=-O2 ;;
     esac
     # shellcheck disable=SC2086 # one word an option

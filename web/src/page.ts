@@ -124,7 +124,8 @@ function unmet(r: Result): string {
   const reasons = ["at small angles of the figure", "in gaps too narrow to fill",
     "at the boundary, which is to keep its points",
     "because points would run away", "where coordinates end to resolve"];
-  const parts = r.unmet.slice(0, 5).map((n, i) => n ? `${number.format(n)} triangle${n > 1 ? "s" : ""} ${reasons[i]}` : "").filter(Boolean);
+  const parts = r.unmet.slice(0, 5)
+    .map((n, i) => n ? `${number.format(n)} triangle${n > 1 ? "s" : ""} ${reasons[i]}` : "").filter(Boolean);
   return parts.length ? `Below ${settings.minAngle}°: ${parts.join(", ")}.` : "";
 }
 
