@@ -10,6 +10,9 @@
 
 #include <cassert>
 #include <charconv>
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <system_error>
@@ -63,10 +66,22 @@ char *print_unsigned(char *at, uint64_t n)
     return end;
 }
 
+/* libc++ before LLVM 20 has std::from_chars for integers alone, and std::to_chars brings 100 kB of tables. */
+#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000
+#define PTRIANGLE_NO_CHARCONV
+#endif
+
 /* The exact routine that every doubtful case falls back on. */
 char *print_exactly(char *at, double value)
 {
+#ifdef PTRIANGLE_NO_CHARCONV
+    char *const end = at + std::snprintf(at, TRI_REAL_ROOM, "%.17g", value);
+    if (char *const point = std::strchr(at, *std::localeconv()->decimal_point))
+        *point = '.';
+    return end;
+#else
     return std::to_chars(at, at + TRI_REAL_ROOM, value, std::chars_format::general, 17).ptr;
+#endif
 }
 
 #ifdef __SIZEOF_INT128__
@@ -277,6 +292,55 @@ char *print_positive(char *at, double value) { return print_exactly(at, value); 
 
 #endif
 
+/* std::from_chars, or its stand-in. */
+struct scanned {
+    const char *ptr;
+    std::errc ec;
+};
+
+#ifdef PTRIANGLE_NO_CHARCONV
+
+/* By strtod, which rounds correctly in the C libraries that libc++ comes with. It wants a final 0 and the locale's
+ * point, so the number is copied. It skips blanks and accepts a +, which from_chars does not. Out of range it gives an
+ * infinity or a zero: that is what callers make of it. */
+scanned scan_double(const char *at, const char *end, double *value, bool hexadecimal)
+{
+    static const char of_numbers[] = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.+-()_";
+    const size_t prefix = hexadecimal ? 2 : 0;
+    char few[128] = "0x";
+    size_t n = 0;
+    while (at + n < end && at[n] && std::strchr(of_numbers, at[n]))
+        n++;
+    char *const text = prefix + n < sizeof few ? few : static_cast<char *>(std::malloc(prefix + n + 1));
+    if (!text || n == 0 || *at == '+')
+        return {at, std::errc::invalid_argument};
+    std::memcpy(text, "0x", prefix);
+    std::memcpy(text + prefix, at, n);
+    text[prefix + n] = 0;
+    if (char *const point = std::strchr(text, '.'))
+        *point = *std::localeconv()->decimal_point;
+    char *stop;
+    const double x = std::strtod(text, &stop);
+    const size_t read = static_cast<size_t>(stop - text);
+    if (text != few)
+        std::free(text);
+    if (read <= prefix)
+        return {at, std::errc::invalid_argument};
+    *value = x;
+    return {at + (read - prefix), std::errc()};
+}
+
+#else
+
+scanned scan_double(const char *at, const char *end, double *value, bool hexadecimal)
+{
+    const auto format = hexadecimal ? std::chars_format::hex : std::chars_format::general;
+    const auto result = std::from_chars(at, end, *value, format);
+    return {result.ptr, result.ec};
+}
+
+#endif
+
 int digit_value(char c)
 {
     if (c >= '0' && c <= '9')
@@ -313,7 +377,7 @@ bool is_too_large(const char *at, const char *end)
 
 const char *scan_hexadecimal(const char *at, const char *end, double *value)
 {
-    const auto result = std::from_chars(at, end, *value, std::chars_format::hex);
+    const scanned result = scan_double(at, end, value, true);
     if (result.ec == std::errc::result_out_of_range) {
         const char *p = at;
         while (p < result.ptr && (*p | 0x20) != 'p')
@@ -329,7 +393,7 @@ const char *scan_unsigned_real(const char *at, const char *end, double *value)
 {
     if (is_hexadecimal(at, end))
         return scan_hexadecimal(at + 2, end, value);
-    const auto result = std::from_chars(at, end, *value);
+    const scanned result = scan_double(at, end, value, false);
     if (result.ec == std::errc::result_out_of_range)
         *value = is_too_large(at, result.ptr) ? std::numeric_limits<double>::infinity() : 0.0;
     return result.ptr;
