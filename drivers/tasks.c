@@ -46,8 +46,7 @@ static bool is_way_told(void)
 /* Is this file the program that argv names, rather than a loader that was given it? */
 static bool is_program(const char *path, const char *argv0)
 {
-    const char *file = strrchr(path, '/'), *name = strrchr(argv0, '/');
-    return strcmp(file ? file + 1 : path, name ? name + 1 : argv0) == 0;
+    return strcmp(path + tri_path_folder_length(path), argv0 + tri_path_folder_length(argv0)) == 0;
 }
 
 /* Does every second processor have other work? */

@@ -35,7 +35,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
 bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file)
 {
     const tri_file folder = tri_folder_open(directory, true);
-    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, strrchr(path, '/') + 1, file) &&
+    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, path + tri_path_folder_length(path), file) &&
                       tri_file_sync(folder);
     (void)tri_file_close(folder);
     return done;
