@@ -251,6 +251,9 @@ bool tri_host_name(char *name, size_t room); /* cut, if it is longer; false: not
 /* What main() was given, in UTF-8; no memory: as it was. */
 char **tri_arguments(int argc, char **argv);
 
+/* What the system's shells have around a word that is more than letters. */
+const char *tri_word_quote(void);
+
 /* The path of the program's executable, by whatever links it was found. */
 bool tri_own_path(char path[TRI_PATH]);
 

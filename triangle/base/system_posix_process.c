@@ -199,6 +199,8 @@ char **tri_arguments(int argc, char **argv)
     return argv;
 }
 
+const char *tri_word_quote(void) { return "'"; }
+
 bool tri_own_path(char path[TRI_PATH])
 {
     const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);

@@ -108,6 +108,8 @@ char **tri_arguments(int argc, char **argv)
     return all ? all : argv;
 }
 
+const char *tri_word_quote(void) { return "\""; } /* those of both, and no name of a file can hold one */
+
 bool tri_own_path(char path[TRI_PATH])
 {
     wchar_t wide[TRI_PATH];
