@@ -102,6 +102,15 @@ function(ptriangle_static_runtime target)
     endif()
 endfunction()
 
+# What a DLL lets out, from cmake/exports.map, less what is for MPI alone.
+function(ptriangle_write_exports file)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/exports.map names REGEX "^    [a-z_]+;$")
+    list(TRANSFORM names REPLACE ";" "")
+    list(FILTER names EXCLUDE REGEX "par_stream_on$")
+    list(JOIN names "\n" names)
+    file(WRITE ${file} "EXPORTS\n${names}\n")
+endfunction()
+
 # Numbers are read and written by <charconv>; with floating point since libstdc++ 11.
 set(CMAKE_REQUIRED_FLAGS -std=c++17)
 check_cxx_source_compiles("
