@@ -1,11 +1,9 @@
 # What the Python package (python/) carries: one shared library, with everything in one, and the programs. All have the
-# C++ runtime inside and the OpenMP runtime beside them, so that a wheel needs neither a compiler nor packages of the
-# system; but for meshplot, which needs libcairo. The target python_package builds all.
+# C++ runtime inside, so that a wheel needs neither a compiler nor packages of the system; but for meshplot, which needs
+# libcairo. The target python_package builds all.
 set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
-if(TARGET libptriangle)
-    list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
-    list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
-endif()
+list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
+list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
 add_library(libptriangle_python SHARED ${sources})
 ptriangle_library_settings(libptriangle_python ptriangle_python)
 ptriangle_dropin(libptriangle_python)
@@ -19,27 +17,13 @@ target_link_options(libptriangle_python PRIVATE
     # the path as a word of its own: in LINKER: a comma would end it
     "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
     LINKER:-Bsymbolic-functions LINKER:-z,defs)
-target_link_libraries(libptriangle_python PRIVATE m)
+target_link_libraries(libptriangle_python PRIVATE m ptriangle_threads)
 install(TARGETS libptriangle_python LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
-
-if(TARGET libptriangle)
-    target_link_libraries(libptriangle_python PRIVATE OpenMP::OpenMP_C)
-    foreach(library IN LISTS OpenMP_C_LIBRARIES)
-        get_filename_component(name ${library} NAME_WE)
-        execute_process(COMMAND ${CMAKE_C_COMPILER} -print-file-name=${name}.so.1 OUTPUT_VARIABLE runtime
-                        OUTPUT_STRIP_TRAILING_WHITESPACE)
-        if(name MATCHES "omp" AND IS_ABSOLUTE "${runtime}")
-            file(REAL_PATH ${runtime} runtime)
-            install(FILES ${runtime} DESTINATION ptriangle RENAME ${name}.so.1 COMPONENT python EXCLUDE_FROM_ALL)
-        endif()
-    endforeach()
-endif()
 
 add_custom_target(python_package DEPENDS libptriangle_python)
 foreach(program IN ITEMS ptriangle trianglecheck meshplot)
     if(TARGET ${program})
         add_dependencies(python_package ${program})
-        set_target_properties(${program} PROPERTIES INSTALL_RPATH $ORIGIN/..)
         install(TARGETS ${program} RUNTIME DESTINATION ptriangle/programs COMPONENT python EXCLUDE_FROM_ALL)
     endif()
 endforeach()

@@ -138,10 +138,11 @@ set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c ${PTRIANG
     triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
-# Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
-# hand out threads (sched/schedule/threads.h), and nothing else.
+# Folder sched/, the parallel schedule. It is compiled with OpenMP, if there is one, as are the programs ptriangle and
+# trianglecheck, and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/threads.c
+    sched/schedule/team.c
     sched/schedule/deal.c
     sched/schedule/partition.c
     sched/schedule/room.c
@@ -196,7 +197,7 @@ set(PTRIANGLE_MAIN_ptriangle drivers/mesh/ptriangle.c)
 set(PTRIANGLE_MAIN_trianglecheck drivers/judge/trianglecheck.c)
 set(PTRIANGLE_MAIN_meshplot drivers/plot/meshplot.c)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c)
+set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c sched/schedule/team.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
     ${PTRIANGLE_SYSTEM_PROCESS_SOURCES}
     drivers/words.c

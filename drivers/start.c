@@ -8,7 +8,6 @@
 int main(int argc, char **given)
 {
     char **argv = tri_arguments(argc, given);
-    tasks_wait_idly(argv);
     return program_main(argc, argv);
 }
 
@@ -93,7 +92,6 @@ static int run_module(int argc, char **argv)
 int main(int argc, char **given)
 {
     char **argv = tri_arguments(argc, given);
-    tasks_wait_idly(argv);
     return needs_module(argc, argv) ? run_module(argc, argv) : program_main(argc, argv);
 }
 

@@ -22,11 +22,4 @@ extern const int program_trouble;
 /* How many tasks a launcher (mpirun, srun) has started, of which this is number *task, from 0; without a launcher 1. */
 int tasks_started(int *task);
 
-/* One of several tasks, and a process on a busy machine, does not let waiting threads spin: other threads would wait
- * for the cores on which they spin. OpenMP's library reads from the environment how threads wait when it is loaded,
- * before main(). So the program starts itself anew, once, as the same process, unless the caller has told how to wait.
- * To be called before anything else; argv: that of main(). A new start costs a millisecond. Where none is needed or
- * possible the function returns, after some microseconds. */
-void tasks_wait_idly(char **argv);
-
 #endif

@@ -115,7 +115,7 @@ def chosen(n, most):
 
 def run(program, words, folder, variables):
     """One run: exit code and both streams."""
-    environment = {**os.environ, "OMP_WAIT_POLICY": "passive", **variables}
+    environment = {**os.environ, **variables}
     done = subprocess.run([program, *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, timeout=LONGEST, check=False)
     return done.returncode, done.stdout, done.stderr.decode(errors="replace")

@@ -87,7 +87,8 @@ tested_by() {
     sched/schedule/collect.c) echo phase ;;
     sched/schedule/smoothing.c) echo smooth ;;
     sched/schedule/prerefine.c) echo theory ;;
-    sched/schedule/threads.c | sched/tiles/*) echo schedule ;;
+    sched/schedule/threads.c) echo team ;;
+    sched/tiles/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;
     esac
@@ -144,9 +145,9 @@ refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows
     $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_/]+' | sed 's/$/.c/; p; s/c$/h/')
 
 # One file runs anything in parallel: all else hands tasks to an executor.
-others=$(ls sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] | grep -vx sched/schedule/threads.c | tr '\n' ' ')
+others=$(ls sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] | grep -vxE 'sched/schedule/(threads|team)\.c' | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
-refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/schedule/threads.c' $others
+refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/schedule/team.c' $others
 
 # Arrays grow in one way; the mesh's own lie where a storage has them, or at a cache line.
 others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] |

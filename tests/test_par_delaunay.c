@@ -8,9 +8,10 @@ static void compare_threads(const struct tri_pslg *pslg, int32_t leaf_size)
     static const int threads[] = {1, 2, 3, 8};
     struct tri_mesh whole = support_delaunay(pslg, pslg->n_points + 1, NULL);
     for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
-        int n = threads[i];
-        const struct tri_executor executor = par_executor(&n);
+        struct par_team team = {.threads = threads[i]};
+        const struct tri_executor executor = par_executor(&team);
         struct tri_mesh mesh = support_delaunay(pslg, leaf_size, &executor);
+        par_team_end(&team);
         support_assert_same_bytes(&whole, &mesh);
         tri_mesh_free(&mesh);
     }

@@ -158,8 +158,8 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *qualit
 {
     struct tri_error error = {0};
     struct par_report report = {0};
-    int threads = options->threads;
-    struct par_run run = {.asked = {quality, options, par_executor(&threads), 0}, .place = {.phase = phase},
+    struct par_team team = {.threads = options->threads};
+    struct par_run run = {.asked = {quality, options, par_executor(&team), 0}, .place = {.phase = phase},
                           .mesh = mesh, .report = &report, .bounds = *quality};
     const struct par_turn turn = {.partition = p, .only = TRI_NONE};
     int32_t n_old = mesh->n_triangles;
@@ -174,6 +174,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *qualit
     assert_worklist_holds_all_that_is_bad(mesh, quality, &run.worklist, &report.total);
     *pauses += report.pauses;
     par_room_close(&run.spare, mesh, &run.asked.executor);
+    par_team_end(&team);
     assert_int_equal(tri_mesh_validate(mesh, &error), TRI_OK);
     int64_t inserted = report.total.inserted_free + report.total.inserted_on_segments;
     for (int32_t i = 0; i < report.n_blocks; i++)
@@ -229,10 +230,11 @@ static void test_four_phases_in_turn(void **state)
     for (int i = 0; i < N_TRIALS; i++) {
         struct tri_quality quality;
         struct par_options options = {.threads = 2};
+        struct par_team team = {.threads = options.threads};
         struct par_report report = {0};
         struct tri_mesh mesh = start_of(&trials[i], &quality);
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
-        struct par_run phases = {.asked = {&quality, &options, par_executor(&options.threads), 0}, .mesh = &mesh,
+        struct par_run phases = {.asked = {&quality, &options, par_executor(&team), 0}, .mesh = &mesh,
                                  .report = &report, .bounds = quality};
         const struct par_turn turn = {.partition = &partition, .only = TRI_NONE};
         phases.worklist = bad_triangles(&mesh, &quality);
@@ -245,6 +247,7 @@ static void test_four_phases_in_turn(void **state)
                       (int)phases.worklist.n, (long long)report.total.inserted_free);
         assert_true(phases.worklist.n < report.total.inserted_free / 4);
         par_room_close(&phases.spare, &mesh, &phases.asked.executor);
+        par_team_end(&team);
         assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
         support_assert_cdt(&mesh, false);
         par_report_free(&report);

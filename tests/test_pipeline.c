@@ -44,11 +44,14 @@ static enum tri_status take(void *context, int32_t i, int32_t slot, struct tri_e
 
 static enum tri_status run(struct trial *t, int threads, int32_t n_slots, struct tri_error *error)
 {
-    const struct tri_executor executor = par_executor(&threads);
+    struct par_team team = {.threads = threads};
+    const struct tri_executor executor = par_executor(&team);
     const struct par_pipeline p = {N, n_slots, threads, make, take, t};
     t->caller = pthread_self();
     t->in_order = t->by_caller = true;
-    return par_pipeline_run(&p, threads > 1 ? &executor : NULL, error);
+    const enum tri_status status = par_pipeline_run(&p, threads > 1 ? &executor : NULL, error);
+    par_team_end(&team);
+    return status;
 }
 
 static void all_are_taken_in_order(void **state)

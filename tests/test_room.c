@@ -262,9 +262,10 @@ static void test_closing_keeps_the_mesh(void **state)
         struct support_places places = support_places(&mesh);
         assert_true(vertices > mesh.n_input || seed > 0);
         if (seed % 2) {
-            int threads = 1 + (int)(seed % 3);
-            struct tri_executor executor = par_executor(&threads);
+            struct par_team team = {.threads = 1 + (int)(seed % 3)};
+            struct tri_executor executor = par_executor(&team);
             par_room_close(&spare, &mesh, &executor);
+            par_team_end(&team);
         } else {
             /* leaves out what is marked */
             struct par_partition tiles;

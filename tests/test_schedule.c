@@ -15,7 +15,6 @@
 #include "sched/tiles/numbering.h"
 #include "sched/tiles/park.h"
 #include "sched/tiles/tiles.h"
-#include "sched/schedule/threads.h"
 #include "tile_order.h"
 #include "triangle/mesh/topology.h"
 #include "trials.h"
@@ -1019,32 +1018,6 @@ static void test_callers_on_threads_of_their_own(void **state)
     end_callers(caller);
 }
 
-static void test_callers_in_a_parallel_region(void **state)
-{
-    (void)state;
-    struct caller caller[CALLERS];
-    start_callers(caller);
-#pragma omp parallel for num_threads(CALLERS) schedule(static, 1)
-    for (int i = 0; i < CALLERS; i++)
-        call(&caller[i]);
-    end_callers(caller);
-}
-
-static void count_task(void *context, size_t index) { atomic_fetch_add((atomic_int *)context + index, 1); }
-
-static void test_executor_runs_each_task_once(void **state)
-{
-    (void)state;
-    for (int threads = 1; threads < 5; threads++) {
-        atomic_int times[1000] = {0};
-        struct tri_executor executor = par_executor(&threads);
-        tri_execute(&executor, 1000, count_task, times);
-        for (int i = 0; i < 1000; i++)
-            assert_int_equal(times[i], 1);
-        tri_execute(&executor, 0, count_task, times);
-    }
-}
-
 #ifdef SUPPORT_WRAP
 /* One run in which the k-th allocation fails, alone or with all that follow; returns whether it was reached. */
 static bool fail_once(const struct start *start, const struct par_options *options, int64_t k, bool ever_after)
@@ -1177,8 +1150,6 @@ int main(void)
         cmocka_unit_test(test_a_trial_call_gives_nothing_up),
         cmocka_unit_test(test_progress_is_told_by_the_caller),
         cmocka_unit_test(test_callers_on_threads_of_their_own),
-        cmocka_unit_test(test_callers_in_a_parallel_region),
-        cmocka_unit_test(test_executor_runs_each_task_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

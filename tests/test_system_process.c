@@ -24,11 +24,9 @@ static void test_the_program_itself(void **state)
 {
     (void)state;
     char path[TRI_PATH];
-    long running, processors;
     if (tri_own_path(path))
         assert_non_null(strstr(path, "test_system_process"));
-    if (tri_work(&running, &processors))
-        assert_true(running >= 1 && processors >= 1);
+    assert_true(tri_processors() >= 1);
 }
 
 static volatile sig_atomic_t asked, alarms;

@@ -36,7 +36,7 @@ fuzz() { # fuzz TARGET
     [ ! -f "tests/fuzz/$target.dict" ] || dictionary="-dict=tests/fuzz/$target.dict"
     log=$folder/$target.log
     # shellcheck disable=SC2086 # one word or none
-    if OMP_NUM_THREADS=3 OMP_WAIT_POLICY=passive "$folder/bin/fuzz_$target" -max_total_time="$seconds" \
+    if OMP_NUM_THREADS=3 "$folder/bin/fuzz_$target" -max_total_time="$seconds" \
         -seed="${PTRIANGLE_FUZZ_SEED:-0}" -timeout=120 \
         -rss_limit_mb=4096 -max_len=4096 -artifact_prefix="$folder/found/$target-" $dictionary "$folder/corpus/$target" \
         >"$log" 2>&1; then

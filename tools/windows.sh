@@ -302,7 +302,7 @@ options=""
 [ ! -e "$work/cairo/complete" ] ||
     options="-DCAIRO_INCLUDE=$work/cairo/root/include/cairo -DCAIRO_LIBRARY=$work/cairo/root/lib/libcairo.a"
 # shellcheck disable=SC2086 # no blanks in them but between options
-build "$work/windows" -DCMAKE_TOOLCHAIN_FILE="$root/cmake/windows/mingw64.cmake" -DBUILD_SHARED_LIBS=ON -DOpenMP_gomp_LIBRARY=/usr/lib/gcc/x86_64-w64-mingw32/12-posix/libgomp.a $options
+build "$work/windows" -DCMAKE_TOOLCHAIN_FILE="$root/cmake/windows/mingw64.cmake" -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_OPENMP=OFF $options
 pack
 rm -rf "$work/unpacked"
 (mkdir "$work/unpacked" && cd "$work/unpacked" && unzip -q "$work/$name.zip")

@@ -341,12 +341,12 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     return 0;
 }
 
-static int run(const struct settings *s, struct judged_files *f)
+static int run(const struct settings *s, struct par_team *team, struct judged_files *f)
 {
     struct tri_error error = {0};
     struct tri_check_report report;
-    int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
-    const struct tri_executor executor = par_executor(&threads);
+    const int threads = team->threads;
+    const struct tri_executor executor = par_executor(team);
     const char *scratch = s->scratch != NULL ? s->scratch : tri_scratch_folder();
     struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
                              .scratch = scratch, .executor = &executor};
@@ -379,7 +379,10 @@ int program_main(int argc, char **argv)
     int code = parse_arguments(argc, argv, &settings);
     if (code != 0)
         return code < 0 ? EXIT_SUCCESS : code;
-    code = run(&settings, &files);
+    const int most = PAR_MOST_THREADS;
+    struct par_team team = {.threads = par_threads(settings.threads < most ? (int)settings.threads : most, false)};
+    code = run(&settings, &team, &files);
+    par_team_end(&team);
     judged_files_free(&files);
     return code;
 }

@@ -36,19 +36,21 @@ static const char PROGRAM[] = PTRIANGLE_NAME;
 
 /* All about this program, from its words to its files; all 0 until then. */
 struct program {
-    struct run run;            /* from files to files; not begun before the words have been taken */
+    struct run run;               /* from files to files; not begun before the words have been taken */
     struct long_options options;
-    char *scratch;             /* folder for what does not fit in memory, malloc'ed: options.scratch */
+    char *scratch;                /* folder for what does not fit in memory, malloc'ed: options.scratch */
     struct progress progress;
     struct restart restart;
     struct launch launch;
     struct streams streams;
-    struct joint_files joint;  /* on several ranks */
-    struct par_park *park;     /* of the mesh, as long as that lives; NULL: it is in memory, or swept */
-    int32_t n_before;          /* vertices there were before refinement */
-    bool refined;              /* the schedule has run: its report is filled */
+    struct joint_files joint;     /* on several ranks */
+    struct par_team team;
+    struct tri_executor executor; /* of the team */
+    struct par_park *park;        /* of the mesh, as long as that lives; NULL: it is in memory, or swept */
+    int32_t n_before;             /* vertices there were before refinement */
+    bool refined;                 /* the schedule has run: its report is filled */
     struct par_report schedule;
-    struct rank_report ranks;  /* n_ranks is 0: there is one process */
+    struct rank_report ranks;     /* n_ranks is 0: there is one process */
 };
 
 /* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
@@ -87,7 +89,7 @@ static struct par_options options_of(struct program *p)
     const struct run *run = &p->run;
     const struct tri_switches *s = &run->arguments->switches;
     struct par_options options = par_defaults();
-    options.threads = p->run.settings.threads;
+    options.team = &p->team;
     options.by_block = p->options.by_block;
     options.cell_triangles = for_tests("PTRIANGLE_TEST_BLOCK");
     options.progress = follow;
@@ -515,12 +517,11 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
     return TRI_OK;
 }
 
-/* executor: of these threads, as long as the run lives. */
-static struct run_settings settings_of(const struct program *p, int threads, const struct tri_executor *executor)
+static struct run_settings settings_of(const struct program *p)
 {
     const struct par_carrier *carrier = p->launch.carrier;
     const bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
-    return (struct run_settings){.options = &p->options, .executor = executor, .threads = threads,
+    return (struct run_settings){.options = &p->options, .executor = &p->executor, .threads = p->team.threads,
                                  .schedule_needs = schedule_needs, .n_ranks = carrier ? carrier->n_ranks : 0,
                                  .written_elsewhere = p->launch.rank > 0,
                                  .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0};
@@ -529,8 +530,8 @@ static struct run_settings settings_of(const struct program *p, int threads, con
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     struct tri_error own = {0};
-    int threads = par_threads(long_options_threads(&p->options), true);
-    const struct tri_executor executor = par_executor(&threads);
+    p->team = (struct par_team){.threads = par_threads(long_options_threads(&p->options), true)};
+    p->executor = par_executor(&p->team);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     p->options.scratch = p->scratch = scratch_of(&p->options, arguments);
     if (!p->scratch) {
@@ -541,7 +542,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     if (arguments->file) {
         progress_stage(&p->progress, "reading and triangulating");
         p->run = run_new(PROGRAM, arguments, &own);
-        p->run.settings = settings_of(p, threads, &executor);
+        p->run.settings = settings_of(p);
         p->run.options.refine_call = refine;
         p->run.options.refine_user = p;
         return make_mesh(p);
@@ -560,6 +561,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
 static void free_program(struct program *p)
 {
     par_park_close(p->park, NULL); /* the mesh has gone with its run */
+    par_team_end(&p->team);
     par_report_free(&p->schedule);
     free(p->scratch);
     free(p->ranks.number);

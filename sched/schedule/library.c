@@ -14,15 +14,14 @@ static void follow(void *user, const struct par_place *place)
     hooks->told(hooks->told_user, place->triangles);
 }
 
-/* A refine of struct tri_api_way: par_refine with the struct par_options that way->user points to, and with threads,
- * size test, figure and column of regions as settings and way say. */
+/* A refine of struct tri_api_way: par_refine with the struct par_options that way->user points to, and with size test,
+ * figure and column of regions as settings and way say. */
 static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *mesh, const struct tri_quality *quality,
                               const struct tri_refine_hooks *hooks, const struct tri_settings *settings,
                               struct tri_refine_report *report, struct tri_error *error)
 {
     struct par_options how = *(const struct par_options *)way->user;
     struct par_report schedule;
-    how.threads = settings->threads > 0 ? settings->threads : 0;
     how.size_test_in_parallel = settings->callbacks_in_parallel;
     how.figure = way->figure;
     how.region_column = way->has_attributes;
@@ -38,8 +37,8 @@ static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *me
 /* A call of one of the functions below. */
 struct call {
     struct tri_settings settings; /* the caller's, taken */
-    int threads;
-    struct tri_executor executor;
+    struct par_team team;
+    struct tri_executor executor; /* of the team */
     struct par_options how;
     struct tri_api_way way;
 };
@@ -49,11 +48,18 @@ static enum tri_status begin_call(struct call *call, const struct tri_settings *
     enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
     if (status)
         return status;
-    call->threads = par_threads(call->settings.threads, false);
-    call->executor = par_executor(&call->threads);
+    call->team = (struct par_team){.threads = par_threads(call->settings.threads, false)};
+    call->executor = par_executor(&call->team);
     call->how = par_defaults();
+    call->how.team = &call->team;
     call->way = (struct tri_api_way){.refine = refine, .executor = &call->executor, .user = &call->how};
     return TRI_OK;
+}
+
+static enum tri_status end_call(struct call *call, enum tri_status status)
+{
+    par_team_end(&call->team);
+    return status;
 }
 
 enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
@@ -65,7 +71,7 @@ enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *fi
     if (status)
         return status;
     call.how.by_block = call.settings.numbered_by_block;
-    return tri_api_mesh_new(mesh, figure, &call.settings, &call.way, error);
+    return end_call(&call, tri_api_mesh_new(mesh, figure, &call.settings, &call.way, error));
 }
 
 enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
@@ -75,7 +81,7 @@ enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings
     if (status)
         return status;
     call.how.by_block = call.settings.numbered_by_block;
-    return tri_api_mesh_refine(mesh, &call.settings, &call.way, error);
+    return end_call(&call, tri_api_mesh_refine(mesh, &call.settings, &call.way, error));
 }
 
 enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings, int64_t memory,
@@ -90,7 +96,7 @@ enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tr
     call.how.memory = memory;
     call.how.scratch = scratch;
     call.how.sink = sink;
-    return tri_api_mesh_stream(figure, &call.settings, &call.way, error);
+    return end_call(&call, tri_api_mesh_stream(figure, &call.settings, &call.way, error));
 }
 
 enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_figure *figure,
@@ -104,7 +110,7 @@ enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_fi
     if (!status) {
         call.how.carrier = carrier;
         call.how.sink = sink;
-        status = tri_api_mesh_stream(figure, &call.settings, &call.way, error);
+        status = end_call(&call, tri_api_mesh_stream(figure, &call.settings, &call.way, error));
     }
     return par_agree(carrier, status, error);
 }

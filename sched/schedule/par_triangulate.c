@@ -24,9 +24,11 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 static int run(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                struct triangulateio *vorout, const struct triangulate_options *options, bool aloud)
 {
-    int threads = par_threads(options ? options->threads : 0, false);
-    const struct tri_executor executor = par_executor(&threads);
-    return tri_io_triangulate(switches, in, out, vorout, options, aloud, refine, &executor);
+    struct par_team team = {.threads = par_threads(options ? options->threads : 0, false)};
+    const struct tri_executor executor = par_executor(&team);
+    const int code = tri_io_triangulate(switches, in, out, vorout, options, aloud, refine, &executor);
+    par_team_end(&team);
+    return code;
 }
 
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,

@@ -656,10 +656,12 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     assert(tri_mesh_is_sound(mesh));
     assert(!options->park || !options->sink);
     const bool alone = tri_asks_caller(quality) && !options->size_test_in_parallel;
-    *report = (struct par_report){.threads = par_threads(alone ? 1 : options->threads, false)};
+    struct par_team own = {.threads = alone ? 1 : par_threads(options->threads, false)};
+    struct par_team *team = options->team && !alone ? options->team : &own;
+    *report = (struct par_report){.threads = team->threads};
     if (options->park)
         *options->park = NULL;
-    struct timed timed = {par_executor(&report->threads), report->seconds_shared};
+    struct timed timed = {par_executor(team), report->seconds_shared};
     struct par_run run = {.asked = {quality, options, {run_timed, &timed}, mesh->n_vertices}, .mesh = mesh,
                           .report = report, .bounds = *quality};
     bool sequential = must_be_sequential(quality, options);
@@ -672,8 +674,10 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* else a sweep keeps the bound */
         status = par_park_open(&run.park, mesh, options->sink || options->park ? options->scratch : NULL,
                                options->memory, error);
-    if (status)
+    if (status) {
+        par_team_end(&own);
         return status;
+    }
     if (run.park)
         timed.executor = par_park_executor(run.park, timed.executor);
     /* Of the mesh as it came: a run that goes on from a checkpoint decides the same. */
@@ -686,6 +690,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
         tri_surface_settle(mesh, &run.asked.executor);
     status = par_park_status(run.park, status, error);
     clean_up(&run);
+    par_team_end(&own);
     assert(options->sink || tri_mesh_is_sound(mesh));
     report->seconds_total = tri_seconds() - began;
     return status;

@@ -17,6 +17,7 @@
 struct par_carrier;
 struct par_checkpoint;
 struct par_park;
+struct par_team;
 
 enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase */
 
@@ -31,7 +32,8 @@ struct par_place {
 };
 
 struct par_options {
-    int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
+    int threads;             /* as par_threads takes them: 0: OMP_NUM_THREADS, else all cores */
+    struct par_team *team;   /* the caller's, whose threads work instead; NULL: a team of its own */
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
     bool size_test_in_parallel; /* size function and size test may be called by several threads at once. Else with
                                    a size function one thread does all, and makes the same mesh; with a size test the

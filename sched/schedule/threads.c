@@ -1,24 +1,41 @@
 /* Threads are tried by making them, and letting them wait for each other, so that all are there at once. */
 #include "sched/schedule/threads.h"
 
-#include <assert.h>
-#ifdef _OPENMP
-#include <omp.h>
-#include <stdatomic.h>
+#include <stdlib.h>
 
 #include "triangle/base/system.h"
-#endif
 
 #ifdef _OPENMP
+#include <omp.h>
 
-/* A forked child has lost the threads that libgomp still counts on, and would wait for them for ever: it works alone.
- * That needs to be known process-wide, the one thing here that is. */
-static bool is_forked(void)
+static int default_threads(void) { return omp_in_parallel() ? 1 : omp_get_max_threads(); }
+static bool must_try(int threads, bool wary) { return wary || threads > omp_get_num_procs(); }
+
+#else
+
+#ifdef __ELF__ /* not NULL where the caller's program has an OpenMP */
+__attribute__((weak)) int omp_in_parallel(void);
+__attribute__((weak)) int omp_get_max_threads(void);
+#endif
+
+static int default_threads(void)
 {
-    static _Atomic(long) first_process;
-    long none = 0, self = tri_process();
-    return !atomic_compare_exchange_strong(&first_process, &none, self) && none != self;
+#ifdef __ELF__
+    if (omp_in_parallel && omp_get_max_threads)
+        return omp_in_parallel() ? 1 : omp_get_max_threads();
+#endif
+    const char *text = getenv("OMP_NUM_THREADS");
+    const long told = text ? strtol(text, NULL, 10) : 0;
+    return told > 0 && told < PAR_MOST_THREADS ? (int)told : tri_processors();
 }
+
+/* A team does without those that the system refuses. */
+static bool must_try(int threads, bool wary)
+{
+    (void)threads, (void)wary;
+    return false;
+}
+#endif
 
 static void *wait_for_end(void *gate)
 {
@@ -45,45 +62,12 @@ static int try_threads(int n)
     return made;
 }
 
-/* Whatever the system gives. */
-static int threads_wanted(int asked)
-{
-    if (is_forked())
-        return 1;
-    int threads = asked > 0 ? asked : omp_get_max_threads();
-    return threads < PAR_MOST_THREADS ? threads : PAR_MOST_THREADS;
-}
-
 int par_threads(int asked, bool wary)
 {
-    int threads = threads_wanted(asked);
-    if (threads <= 1 || (!wary && threads <= omp_get_num_procs()))
+    int threads = asked > 0 ? asked : default_threads();
+    threads = threads < PAR_MOST_THREADS ? threads : PAR_MOST_THREADS;
+    if (threads <= 1 || !must_try(threads, wary))
         return threads;
-    int made = try_threads(threads - 1);
-    return made == threads - 1 ? threads : made / 2 + 1; /* others, and memory, need some of what there is */
+    const int made = try_threads(threads); /* with the one that opens OpenMP's region, and without the caller's */
+    return made == threads ? threads : made / 2 + 1; /* others, and memory, need some of what there is */
 }
-#else
-static int threads_wanted(int asked)
-{
-    (void)asked;
-    return 1;
-}
-
-int par_threads(int asked, bool wary)
-{
-    (void)asked, (void)wary;
-    return 1;
-}
-#endif
-
-static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
-{
-    int threads = threads_wanted(*(int *)self);
-    assert(threads >= 1);
-    threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
-    for (size_t i = 0; i < n_tasks; i++)
-        task(context, i);
-}
-
-struct tri_executor par_executor(int *threads) { return (struct tri_executor){run_in_parallel, threads}; }

@@ -1,4 +1,8 @@
-/* How many threads there can be, and how they are given work. */
+/* The threads of a call: how many there can be, and the team that works on what a call hands out in tasks.
+ *
+ * A team lives as long as the call that made it, and its threads sleep while there is nothing to do: nothing of it is
+ * left when a process forks, when a library is unloaded, or when other threads call as well. They are made by OpenMP
+ * where the build has it, so that its settings hold (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE), else by the system. */
 #ifndef SCHED_SCHEDULE_THREADS_H
 #define SCHED_SCHEDULE_THREADS_H
 
@@ -8,16 +12,25 @@
 
 enum { PAR_MOST_THREADS = 1024 };
 
-/* How many threads there will be where so many are asked for (<= 0: what OpenMP would use: OMP_NUM_THREADS, else all
- * cores): no more than PAR_MOST_THREADS, and no more than the system gives, since OpenMP's library ends the program
- * where it is refused a thread; in a child that was forked after the first call 1. Limits on processes and on address
- * space are found by trying, if more threads are asked for than there are processors, or `wary`; 20 microseconds a
- * thread. What is left after that, and is not found, is memory that runs out later, while that library makes its
- * threads; it then prints a line and calls exit(1). */
+/* How many threads there will be if so many are asked for: at most PAR_MOST_THREADS. <= 0: one, if the caller is in a
+ * parallel region of OpenMP; else OMP_NUM_THREADS, if it is set; else one for each processor of this process.
+ * Where OpenMP makes the threads, at most as many as the system gives, because OpenMP's library ends the program if it
+ * is refused one. Limits on processes and on address space are found by trying, at 20 microseconds a thread, if more
+ * are asked for than there are processors, or `wary`. If memory runs out after that, while OpenMP makes
+ * its threads, its library prints a line and calls exit(1). */
 int par_threads(int asked, bool wary);
 
-/* An executor that runs tasks on this many threads (<= 0: what OpenMP would use); it lives as long as *threads. The one
- * way in which anything in sched/ runs in parallel. */
-struct tri_executor par_executor(int *threads);
+struct par_team {
+    int threads;           /* >= 1, the caller's one among them, as par_threads says */
+    struct par_crew *crew; /* the other ones; NULL: not needed yet, or refused: the caller works alone */
+};
+
+/* Runs tasks on the threads of the team, which are made when they are first needed; about 20 microseconds each. The
+ * executor lives as long as *team, and serves one caller at a time. The one way in which anything in sched/ runs in
+ * parallel. */
+struct tri_executor par_executor(struct par_team *team);
+
+/* Ends the team's threads and frees all it has. */
+void par_team_end(struct par_team *team);
 
 #endif

@@ -1,23 +1,6 @@
 # Starting: MPI and HDF5, which take longer to load than a small mesh to make, are loaded where they are needed only, from
 # a module beside the program, wherever both lie.
 
-# One of several tasks has threads that sleep where they wait, unless the caller wants it otherwise.
-waits() { # waits WORDS...: how the last start of the program waits, by what OpenMP's library tells
-    OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 OMP_DISPLAY_ENV=verbose env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT \
-        -u KMP_BLOCKTIME "$@" "$bin/ptriangle" --version 2>&1 |
-        sed -n "s/.*\(GOMP_SPINCOUNT\|KMP_BLOCKTIME\) *= *'\([0-9]*\).*/\2/p" | tr '\n' ' '
-}
-what="how tasks wait"
-if [ -e "$bin/ptriangle" ] && [ -n "$(waits OMP_WAIT_POLICY=passive)" ] && [ -e /proc/self/exe ]; then
-    check "they sleep: $(waits A=b)" sh -c 'case $1 in [1-9]*" 0 ") ;; *) exit 1 ;; esac' sh "$(waits A=b)"
-    check "as told: $(waits OMP_WAIT_POLICY=active)" sh -c 'case $1 in [1-9]*[0-9]" ") ;; *) exit 1 ;; esac' sh \
-        "$(waits OMP_WAIT_POLICY=active)"
-    check "one process starts but once, on a busy machine twice" test \
-        "$(OMP_DISPLAY_ENV=true "$bin/ptriangle" --version 2>&1 | grep -c 'BEGIN$')" -le 2
-    check "and once where it is told how to wait" test \
-        "$(OMP_WAIT_POLICY=active OMP_DISPLAY_ENV=true "$bin/ptriangle" --version 2>&1 | grep -c 'BEGIN$')" -eq 1
-fi
-
 # PTRIANGLE_MODULE_DIR: its folder, from that of the program; empty: programs have all themselves.
 far=${PTRIANGLE_MODULE_DIR:-}
 if [ -z "$far" ]; then

@@ -202,11 +202,12 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
 /* The points alone: in one leaf by one thread, and in tiny ones by three. */
 static void judge_points(const struct torture_case *c, struct verdict *verdict)
 {
-    int threads = 3;
-    const struct tri_executor executor = par_executor(&threads);
+    struct par_team team = {.threads = 3};
+    const struct tri_executor executor = par_executor(&team);
     enter(verdict, "triangulating points");
     struct tri_mesh whole = support_delaunay(&c->figure.pslg, c->figure.pslg.n_points + 1, NULL);
     struct tri_mesh parts = support_delaunay(&c->figure.pslg, 1 + c->figure.pslg.n_points % 40, &executor);
+    par_team_end(&team);
     if (!same_meshes(&whole, &parts))
         judge_fault(verdict, "points", "%d triangles in one leaf, another triangulation of %d in many",
                     (int)whole.n_triangles, (int)parts.n_triangles);

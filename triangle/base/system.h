@@ -228,6 +228,8 @@ bool tri_pause(double seconds);
 
 /* --- threads, for sched/ alone */
 
+int tri_processors(void); /* that this process may use; at least 1 */
+
 /* Starts a thread that interrupts do not find: they are for the others. NULL: there are no more. */
 struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user);
 void tri_thread_join(struct tri_thread *thread); /* waits for its end, and frees it */
@@ -256,13 +258,6 @@ const char *tri_word_quote(void);
 
 /* The path of the program's executable, by whatever links it was found. */
 bool tri_own_path(char path[TRI_PATH]);
-
-/* Threads on the machine that run or wait for a processor, this one among them, and processors. False: not known. */
-bool tri_work(long *running, long *processors);
-
-/* Starts the program at this path in place of this one, with the variable of the environment set. Returns where that
- * cannot be. */
-void tri_start_again(const char *path, char **argv, const char *variable, const char *value);
 
 /* --- the terminal */
 

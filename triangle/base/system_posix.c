@@ -1,6 +1,6 @@
 /* The system is POSIX 2008, with what Linux has beside it where it has that: files without a name, /proc, writing past
  * the cache. */
-#define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, mkostemp, sync_file_range, madvise, malloc_trim */
+#define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, mkostemp, sync_file_range, madvise, malloc_trim, CPU_COUNT */
 #include "triangle/base/system.h"
 
 #include <aio.h>
@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -562,6 +563,17 @@ bool tri_host_name(char *name, size_t room)
 }
 
 /* --- threads */
+
+int tri_processors(void)
+{
+#ifdef __linux__
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0)
+        return CPU_COUNT(&set);
+#endif
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n > 0 ? (int)n : 1;
+}
 
 struct tri_thread {
     pthread_t thread;

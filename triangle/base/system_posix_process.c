@@ -209,25 +209,6 @@ bool tri_own_path(char path[TRI_PATH])
     return whole;
 }
 
-/* The first word of /proc/loadavg behind the averages tells how many threads run or wait. */
-bool tri_work(long *running, long *processors)
-{
-    char text[128] = "";
-    FILE *file = fopen("/proc/loadavg", "r");
-    if (!file)
-        return false;
-    const bool is_read = fgets(text, sizeof text, file) != NULL;
-    fclose(file);
-    *processors = sysconf(_SC_NPROCESSORS_ONLN);
-    return is_read && sscanf(text, "%*s %*s %*s %ld/", running) == 1;
-}
-
-void tri_start_again(const char *path, char **argv, const char *variable, const char *value)
-{
-    if (setenv(variable, value, 1) == 0)
-        execv(path, argv);
-}
-
 /* --- the terminal */
 
 void tri_standard_open(void)

@@ -117,18 +117,6 @@ bool tri_own_path(char path[TRI_PATH])
     return n > 0 && n < TRI_PATH && to_utf8(wide, path);
 }
 
-bool tri_work(long *running, long *processors)
-{
-    (void)running, (void)processors;
-    return false;
-}
-
-/* A process cannot become another one. */
-void tri_start_again(const char *path, char **argv, const char *variable, const char *value)
-{
-    (void)path, (void)argv, (void)variable, (void)value;
-}
-
 /* --- the terminal */
 
 static UINT page_before; /* the console's code page; 0: it was UTF-8 */

@@ -89,6 +89,17 @@ bool tri_host_name(char *name, size_t room)
 
 /* --- threads */
 
+int tri_processors(void)
+{
+    DWORD_PTR own, all;
+    int n = 0;
+    if (!GetProcessAffinityMask(GetCurrentProcess(), &own, &all))
+        return 1;
+    for (; own; own &= own - 1)
+        n++;
+    return n > 0 ? n : 1;
+}
+
 struct tri_thread {
     HANDLE thread;
     void *(*run)(void *user);
