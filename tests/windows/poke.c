@@ -1,5 +1,5 @@
 /* Starts a program and does something to it after a time; ends with its exit code. For tools/windows.sh.
- * Usage: poke c|break|kill MILLISECONDS COMMAND_LINE     c, break: as if somebody pressed Ctrl-C, Ctrl-Break */
+ * Usage: poke c|kill MILLISECONDS COMMAND_LINE     c: as if somebody pressed Ctrl-C */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static char *command_of(char *line)
     return line;
 }
 
-static BOOL WINAPI go_on(DWORD event) { return event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT; }
+static BOOL WINAPI go_on(DWORD event) { return event == CTRL_C_EVENT; }
 
 int main(int argc, char **argv)
 {
@@ -33,7 +33,7 @@ int main(int argc, char **argv)
     if (WaitForSingleObject(made.hProcess, (DWORD)atoi(argv[2])) == WAIT_TIMEOUT) {
         if (strcmp(argv[1], "kill") == 0)
             TerminateProcess(made.hProcess, 137);
-        else if (!GenerateConsoleCtrlEvent(strcmp(argv[1], "break") == 0 ? CTRL_BREAK_EVENT : CTRL_C_EVENT, 0))
+        else if (!GenerateConsoleCtrlEvent(CTRL_C_EVENT, 0))
             fprintf(stderr, "poke: error %lu\n", GetLastError());
         if (WaitForSingleObject(made.hProcess, 60000) == WAIT_TIMEOUT)
             return 4;
