@@ -293,7 +293,7 @@ library() { # a C program that was linked with the import library, and finds the
     cp "$work/unpacked/$name/ptriangle.dll" .
     $triplet-gcc-posix -O1 -I"$work/unpacked/$name/include" "$root/examples/checkerboard.c" -o board.exe \
         "$work/unpacked/$name/lib/libptriangle.dll.a"
-    timeout 60 $wine board.exe </dev/null >out 2>err || true
+    timeout 60 $wine board.exe </dev/null 2>err | tr -d '\r' >out
     "$native/examples/checkerboard" >here.out 2>/dev/null || true
     check "a client of the DLL" cmp -s here.out out
     cd "$root"
