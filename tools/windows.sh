@@ -100,7 +100,9 @@ wine=/usr/lib/wine/wine64
 export WINEPREFIX="$work/wine" WINEDEBUG=-all
 unset DISPLAY
 
-start_wine() {
+start_wine() { # with one server for all programs, which would end and start in between
+    /usr/lib/wine/wineserver64 -p
+    trap '/usr/lib/wine/wineserver64 -k' EXIT
     [ ! -e "$WINEPREFIX/complete" ] || return 0
     $wine wineboot -i </dev/null >"$work/wine.log" 2>&1 || true
     $wine reg add 'HKCU\Software\Wine' /v Version /d win10 /f </dev/null >>"$work/wine.log" 2>&1
@@ -155,7 +157,7 @@ same() { # same INPUT PROGRAM ARGUMENT...
     there "$program" "$@" "${input##*/}" >out 2>err || code_there=$?
     plain >"$work/there.plain"
     cd "$root"
-    [ $code_here -eq $code_there ] && cmp -s "$work/here.plain" "$work/there.plain"
+    is $code_there $code_here && diff "$work/here.plain" "$work/there.plain" >&2
 }
 
 corpus() {
@@ -244,7 +246,7 @@ checkpoints() {
             *) poke $how 2500 ptriangle -pq30a0.00015 --checkpoint kept --every 0.01 $memory letter.poly ;;
             esac
             # shellcheck disable=SC2086
-            [ -e letter.1.ele ] || # a checkpoint is there, or not yet
+            { [ -e letter.1.ele ] && [ ! -e kept ]; } || # else a checkpoint is there, or not yet
                 there ptriangle -pq30a0.00015 --resume kept --checkpoint kept $memory letter.poly >out 2>err || true
             check "$how $memory: the mesh of a run without stop" like_here
             check "$how: no checkpoint is left" test ! -e kept
