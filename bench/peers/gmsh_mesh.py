@@ -1,5 +1,7 @@
 """Meshes a plain .poly file with gmsh: gmsh_mesh.py INPUT SIZE ALGORITHM [BASE]. SIZE: edge length everywhere (gmsh
-bounds neither angles nor areas), or H,GROWTH: H at the segments, growing by GROWTH for a distance of 1; ALGORITHM: Mesh.Algorithm, 5 Delaunay, 6 frontal-Delaunay.
+bounds neither angles nor areas), which the edges of the input may make shorter; or H,GROWTH: H at the segments, growing
+by GROWTH for a distance of 1, whatever the edges of the input. ALGORITHM: Mesh.Algorithm, 5 Delaunay,
+6 frontal-Delaunay.
 Prints the seconds of meshing curves and surface, the geometry being ready; BASE: writes the mesh there.
 """
 import json

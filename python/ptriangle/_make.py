@@ -41,7 +41,7 @@ def _outline(polygons: Any, calls: Calls) -> Tuple[Array, Array]:
     points, segments = _rings.segments_of(polygons, 0)
     if len(points) < 3:
         return points, segments
-    all_of_it, walls = _overlay.arrangement(points, segments, np.zeros(len(segments), np.int32), calls)
+    all_of_it, _, walls = _overlay.arrangement(points, segments, np.zeros(len(segments), np.int32), calls)
     return _union.outline_of(all_of_it.points, all_of_it.triangles, all_of_it.neighbors, walls, polygons)
 
 

@@ -34,14 +34,15 @@ class Overlay(NamedTuple):
     owners: Array           # [f] the polygon of each seed
 
 
-def arrangement(points: Array, segments: Array, markers: Array, calls: Calls) -> Tuple[Mesh, Array]:
-    """The triangulation of the convex hull, with points where segments cross; which edges are segments, [m, 3]."""
+def arrangement(points: Array, segments: Array, markers: Array, calls: Calls) -> Tuple[Mesh, Array, Array]:
+    """The triangulation of the convex hull, with points where segments cross; the edges opposite the corners,
+    [m, 3, 2]; which of them are segments, [m, 3]."""
     figure, kept = figure_of({"points": points, "segments": segments, "segment_markers": markers}, calls.who)
     whole = Mesh(made(figure, Settings(keep_hull=True), calls))
     del kept
     corners = whole.triangles
     sides = np.stack([corners[:, [1, 2]], corners[:, [2, 0]], corners[:, [0, 1]]], axis=1)
-    return whole, _union.is_among(sides.reshape(-1, 2), whole.segments).reshape(-1, 3)
+    return whole, sides, _union.is_among(sides.reshape(-1, 2), whole.segments).reshape(-1, 3)
 
 
 def _snapped(polygons: List[_rings.Polygon], grid: float, who: str) -> Tuple[Array, Array]:
@@ -73,17 +74,15 @@ class _Faces:
 
     def merge(self) -> None:
         """Faces of one owner become one; their widths, and which of them are open to the outside."""
-        self.beside = np.append(self.owner, -1)[self.neighbors]
-        self.borders = self.kept | (self.owner[:, None] != self.beside)
+        self.borders = self.kept | (self.owner[:, None] != np.append(self.owner, -1)[self.neighbors])
         self.label = _union.faces_of(self.neighbors, self.borders)
         corners = self.whole.points[self.whole.triangles]
-        lengths = np.hypot(*np.moveaxis(np.roll(corners, -1, 1) - np.roll(corners, -2, 1), 2, 0))
+        self.lengths = np.hypot(*np.moveaxis(np.roll(corners, -1, 1) - np.roll(corners, -2, 1), 2, 0))
         n = len(self.label)
-        perimeter = np.bincount(self.label, (lengths * self.borders).sum(axis=1), n)
+        perimeter = np.bincount(self.label, (self.lengths * self.borders).sum(axis=1), n)
         self.width = 2 * np.bincount(self.label, self.whole.areas, n) / np.where(perimeter > 0, perimeter, np.inf)
         self.open = np.zeros(n, bool)
         self.open[self.label[((self.neighbors < 0) & ~self.borders).any(axis=1)]] = True
-        self.lengths = lengths
 
     def absorb(self, width: float) -> None:
         """Faces that are no wider than this go to the owner of the face with which they share the longest border."""
@@ -126,13 +125,12 @@ def laid(points: Array, segments: Array, segment_markers: Optional[Array], items
     every = np.concatenate([points, ring_points])
     # Given segments come first, so that of several along one line a given one marks the piece: by its number, plus 2.
     number = np.concatenate([np.arange(2, given + 2), np.zeros(len(ring_segments))]).astype(np.int32)
-    whole, walls = arrangement(every, np.concatenate([segments, ring_segments + len(points)]), number, calls)
+    whole, sides, walls = arrangement(every, np.concatenate([segments, ring_segments + len(points)]), number, calls)
     if len(whole.triangles) == 0:
         none = np.empty((0, 2))
         return Overlay(every, np.empty((0, 2), int), np.empty(0, np.int32), none, none, np.empty(0, int))
     pieces = whole.segment_markers >= 2
     corners, neighbors = whole.triangles, whole.neighbors
-    sides = np.stack([corners[:, [1, 2]], corners[:, [2, 0]], corners[:, [0, 1]]], axis=1)
     faces = _Faces(whole, walls, _union.is_among(sides.reshape(-1, 2), whole.segments[pieces]).reshape(-1, 3))
     faces.own(polygons, item)
     faces.merge()

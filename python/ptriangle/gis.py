@@ -61,6 +61,8 @@ def cleaned(polygons: Any, min_edge: float) -> List[Any]:
     Polygons must not overlap."""
     who = "gis.cleaned()"
     shapely, before = _need("shapely", who), _shapes(polygons, who)
+    if not hasattr(shapely, "coverage_simplify"):
+        raise ImportError("%s needs shapely 2.1, and there is %s" % (who, shapely.__version__))
 
     def rings_of(polygon: Any) -> Any:
         holes = [hole for hole in polygon.interiors if shapely.Polygon(hole).area >= min_edge ** 2]
