@@ -54,10 +54,10 @@ def _shapes(given: Any, who: str) -> List[Any]:
 
 
 def cleaned(polygons: Any, min_edge: float) -> List[Any]:
-    """Polygons of shapely with less detail, and an InputWarning that says what went.
+    """Polygons of shapely with less detail. An InputWarning reports the changes.
 
-    Corners go by the method of Visvalingam and Whyatt if they cut less than min_edge^2 / 2 off, on borders that
-    polygons share from both. Nothing crosses or touches that did not. Islands and lakes smaller than min_edge^2 go.
+    Corners go by the method of Visvalingam and Whyatt if they cut less than min_edge^2 / 2 off, on shared
+    borders from both polygons. No new crossings or contacts arise. Islands and lakes smaller than min_edge^2 go.
     Polygons must not overlap."""
     who = "gis.cleaned()"
     shapely, before = _need("shapely", who), _shapes(polygons, who)
@@ -147,7 +147,7 @@ def _read_asc(path: str) -> Raster:
 
 def raster(path: Any, crs: Any = None, band: int = 1) -> Raster:
     """Values and extent of a raster, as mesh(size=) takes them. An ESRI ASCII grid (.asc) needs no package; GeoTIFF,
-    NetCDF and what else GDAL reads come through rasterio. crs: the coordinates that it is warped to."""
+    NetCDF and the other formats of GDAL come through rasterio. crs: the coordinates that it is warped to."""
     path = os.fspath(path)
     if path.lower().endswith(".asc") and crs is None:
         return _read_asc(path)
@@ -161,7 +161,7 @@ def raster(path: Any, crs: Any = None, band: int = 1) -> Raster:
 
 
 def sampled(values: Raster, points: npt.ArrayLike) -> Array:
-    """Values of a raster at places [n, 2]: bilinear between the values that there are; elsewhere the nearest counts."""
+    """Values of a raster at places [n, 2]: bilinear between known values; the nearest known value elsewhere."""
     who = "gis.sampled()"
     rows, (x_min, y_min, x_max, y_max) = numbers(values[0], who).astype(np.float64), values[1]
     at = numbers(points, who + ": points").astype(np.float64)
