@@ -94,7 +94,7 @@ def _lines(measured, judged):
 def run(settings):
     norway = inputs.norway(settings, 20, 0)
     wanted = [(_circle(settings), 0.05, 0.0), (norway, 1e4, GROWTH)] if settings.small else [
-        (_circle(settings), 0.005, 0.0), (norway, 4e3, 0.0), (norway, 1e3, GROWTH),
+        (_circle(settings), 0.01, 0.0), (norway, 4e3, 0.0), (norway, 1e3, GROWTH),
         *((domain, 0.004, GROWTH) for domain in _greece(settings))]
     texts, rows, repeats = [], [], min(3, settings.repeats)
     for domain, h, growth in wanted:
