@@ -48,7 +48,7 @@ def arrangement(points: Array, segments: Array, markers: Array, calls: Calls) ->
 def _snapped(polygons: List[_rings.Polygon], grid: float, who: str) -> Tuple[Array, Array]:
     """Points and segments of the rings, on a grid."""
     try:
-        import shapely  # type: ignore[import-untyped, unused-ignore]
+        import shapely  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ImportError:
         raise ImportError("%s: grid= needs shapely: pip install shapely" % who) from None
     rings = [shapely.LineString([*ring, ring[0]]) for polygon in polygons for ring in polygon if len(ring) > 1]
