@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import machine
 
-PARTS = ("table1", "table2", "stages", "peers", "scaling", "calls", "worst", "large")
+PARTS = ("table1", "table2", "stages", "peers", "scaling", "calls", "worst", "sizes", "large")
 
 
 @dataclass

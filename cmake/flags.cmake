@@ -33,6 +33,10 @@ set(PTRIANGLE_STRICT_WARNINGS
     $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
     $<$<COMPILE_LANGUAGE:C>:-Wold-style-definition>
     -Wno-unknown-pragmas) # OpenMP's, where it is left out
+if(MINGW) # printf() is that of C here, which the compiler does not know, and isfinite() a macro that looks at a float
+    add_compile_definitions(__USE_MINGW_ANSI_STDIO=1)
+    list(APPEND PTRIANGLE_WARNINGS -Wno-format -Wno-format-extra-args -Wno-float-conversion)
+endif()
 
 # Each operation on doubles is rounded to a double as it is written, or the exact predicates break and meshes differ
 # between compilers (triangle/base/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand
@@ -96,6 +100,15 @@ function(ptriangle_static_runtime target)
     if(PTRIANGLE_STATIC_RUNTIME AND PTRIANGLE_HAVE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
         target_link_options(${target} PRIVATE -static-libstdc++ -static-libgcc)
     endif()
+endfunction()
+
+# What a DLL lets out, from cmake/exports.map, less what is for MPI alone.
+function(ptriangle_write_exports file)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/exports.map names REGEX "^    [a-z_]+;$")
+    list(TRANSFORM names REPLACE ";" "")
+    list(FILTER names EXCLUDE REGEX "par_stream_on$")
+    list(JOIN names "\n" names)
+    file(WRITE ${file} "EXPORTS\n${names}\n")
 endfunction()
 
 # Numbers are read and written by <charconv>; with floating point since libstdc++ 11.

@@ -1,4 +1,7 @@
 # The executables, from drivers/, and the examples. They link the static libraries, whose inside they know.
+if(WIN32)
+    enable_language(RC)
+endif()
 
 # HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at
 # least 1.10.5, which writes chunks directly and tells where they lie; and zlib, which it needs itself.
@@ -61,6 +64,10 @@ function(ptriangle_program name)
     target_link_libraries(${name} PRIVATE ${arg_LIBS})
     ptriangle_compile_program(${name} ${output})
     ptriangle_static_runtime(${name})
+    if(WIN32) # names in UTF-8; a stack as large as that of Linux
+        target_sources(${name} PRIVATE cmake/windows/program.rc)
+        target_link_options(${name} PRIVATE LINKER:--stack,8388608)
+    endif()
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_EXECUTABLES ${name})
 endfunction()
 

@@ -2,6 +2,29 @@
 # cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what
 # it needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
 
+# On Windows there is one, with everything inside, its import library, and the list of its functions for other linkers.
+if(WIN32)
+    set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
+    if(TARGET libptriangle)
+        list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
+        list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
+    endif()
+    list(REMOVE_DUPLICATES sources)
+    add_library(libptriangle_shared SHARED ${sources} ${CMAKE_CURRENT_BINARY_DIR}/ptriangle.def)
+    add_library(ptriangle::ptriangle ALIAS libptriangle_shared)
+    ptriangle_library_settings(libptriangle_shared ptriangle)
+    ptriangle_dropin(libptriangle_shared)
+    ptriangle_static_runtime(libptriangle_shared)
+    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/ptriangle.def)
+    set_target_properties(libptriangle_shared PROPERTIES PREFIX "")
+    target_compile_options(libptriangle_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+    if(TARGET libptriangle)
+        target_link_libraries(libptriangle_shared PRIVATE $<BUILD_INTERFACE:ptriangle_threads>)
+    endif()
+    set_property(GLOBAL APPEND PROPERTY PTRIANGLE_LIBRARIES libptriangle_shared)
+    return()
+endif()
+
 # Before 1.0 every minor version may change the interface.
 function(ptriangle_shared name)
     set(target lib${name}_shared)

@@ -1,11 +1,19 @@
 # What is built from what: explicit lists, in the order in which data flows. No globs: a stray file is found by the test
 # `house_rules`, which also reads this file on its own.
 
+# The door to the system (triangle/base/system.h): what libraries use of it, and what programs use beside that.
+set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system_posix.c)
+set(PTRIANGLE_SYSTEM_PROCESS_SOURCES triangle/base/system_posix_process.c)
+if(WIN32)
+    set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system_windows.c triangle/base/system_windows_threads.c)
+    set(PTRIANGLE_SYSTEM_PROCESS_SOURCES triangle/base/system_windows_process.c)
+endif()
+
 # Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
     triangle/base/status.c
     triangle/base/order.c
-    triangle/base/system_posix.c
+    ${PTRIANGLE_SYSTEM_SOURCES}
     triangle/geometry/predicates.c
     triangle/mesh/pslg.c
     triangle/mesh/mesh.c
@@ -125,8 +133,8 @@ set(PTRIANGLE_HDF5_SOURCES
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
-set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c triangle/base/system_posix.c triangle/mesh/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c triangle/base/system_posix.c
+set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c ${PTRIANGLE_SYSTEM_SOURCES} triangle/mesh/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c ${PTRIANGLE_SYSTEM_SOURCES}
     triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
@@ -191,7 +199,7 @@ set(PTRIANGLE_MAIN_meshplot drivers/plot/meshplot.c)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c sched/schedule/team.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
-    triangle/base/system_posix_process.c
+    ${PTRIANGLE_SYSTEM_PROCESS_SOURCES}
     drivers/words.c
     drivers/judge/judged_text.c
     drivers/judge/judged_files.c)
@@ -213,7 +221,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/arguments.c
     drivers/mesh/console.c
     drivers/words.c
-    triangle/base/system_posix_process.c
+    ${PTRIANGLE_SYSTEM_PROCESS_SOURCES}
     drivers/interrupt.c
     drivers/mesh/mesh_files.c
     drivers/mesh/summary.c

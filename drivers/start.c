@@ -3,8 +3,11 @@
 
 #ifndef PTRIANGLE_MODULE
 
-int main(int argc, char **argv)
+#include "triangle/base/system.h"
+
+int main(int argc, char **given)
 {
+    char **argv = tri_arguments(argc, given);
     return program_main(argc, argv);
 }
 
@@ -86,8 +89,9 @@ static int run_module(int argc, char **argv)
     return begin ? begin(argc, argv) : complain(path, dlerror());
 }
 
-int main(int argc, char **argv)
+int main(int argc, char **given)
 {
+    char **argv = tri_arguments(argc, given);
     return needs_module(argc, argv) ? run_module(argc, argv) : program_main(argc, argv);
 }
 

@@ -3,6 +3,7 @@
 #include "drivers/words.h"
 
 #include <float.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <string.h>
 
@@ -48,7 +49,7 @@ void one_line_error(FILE *stream, const char *before, const struct tri_error *er
     if (error->file[0])
         one_line_put(stream, error->file);
     if (error->file[0] && error->line > 0)
-        fprintf(stream, ":%ld: ", error->line);
+        fprintf(stream, ":%" PRId64 ": ", error->line);
     else if (error->file[0])
         fputs(": ", stream);
     one_line_put(stream, error->text);

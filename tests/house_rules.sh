@@ -61,8 +61,8 @@ tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
     triangle/hdf5/*) echo hdf5 ;;
-    triangle/base/system_posix.c) echo system ;;
-    triangle/base/system_posix_process.c) echo system_process ;;
+    triangle/base/system_*_process.c) echo system_process ;;
+    triangle/base/system_*) echo system ;;
     triangle/api/* | sched/schedule/library.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
@@ -130,7 +130,7 @@ refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|threads)\.h>|tri_(thread_(start
 refuse '#[[:space:]]*include[[:space:]]*<((sys|net|netinet|arpa|mach)/|(aio|dirent|dlfcn|fcntl|getopt|malloc|netdb|poll|pthread|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|ucontext|unistd|utime|windows|io)\.h>)|_(POSIX_C|GNU|DEFAULT|XOPEN|DARWIN_C)_SOURCE|(^|[^a-z_>.])(open_memstream|posix_memalign|strerror_r|fileno|fdopen|dprintf|popen|setenv|mkstemp|strdup|clock_gettime|nanosleep|ssize_t|off_t)([^a-z_]|$)' \
     'calls the system past triangle/base/system.h' \
     $(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] |
-        grep -v -e '^triangle/base/system_posix' -e '^drivers/start\.c$' -e '^drivers/words\.h$')
+        grep -v -e '^triangle/base/system_' -e '^drivers/start\.c$' -e '^drivers/words\.h$')
 
 # The sweep and the ranks stand above the headers of the schedule: only sched/schedule/*.c, which choose between them,
 # include both.

@@ -107,10 +107,10 @@ static void add_pslg(struct dump *dump, const struct tri_pslg *p)
     add_reals(dump, "|r:", p->regions, 4 * (size_t)p->n_regions);
 }
 
-static void add_warning(void *user, const char *file, long line, const char *text)
+static void add_warning(void *user, const char *file, int64_t line, const char *text)
 {
     assert_non_null(strrchr(file, '/'));
-    add(user, "|w%ld:%s", line, text);
+    add(user, "|w%ld:%s", (long)line, text);
 }
 
 /* Everything that is read with other chunks or another executor must be the same. */
@@ -150,7 +150,7 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
         status = tri_read_poly(poly_path, node_path, &options, &pslg, &base, &points_in_poly, &error);
     assert_int_equal(status, error.status);
     if (status != TRI_OK) {
-        add(dump, "%d %ld %s", (int)status, error.line, error.text);
+        add(dump, "%d %ld %s", (int)status, (long)error.line, error.text);
         assert_null(pslg.points || pslg.segments || pslg.markers || elements.corners || elements.areas ? "not empty"
                                                                                                        : NULL);
         assert_non_null(strrchr(error.file, '/'));

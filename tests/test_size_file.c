@@ -63,7 +63,7 @@ static struct tri_size_file read_good(const char *name, const double *where)
     struct tri_error error = {0};
     const enum tri_status status = tri_size_file_read(&file, name, where, NULL, &error);
     if (status)
-        fail_msg("%s:%ld: %s", error.file, error.line, error.text);
+        fail_msg("%s:%ld: %s", error.file, (long)error.line, error.text);
     return file;
 }
 
@@ -221,7 +221,7 @@ static void check_refused(const char *name, const char *text, long line, const c
         write_text(name, text);
     assert_int_equal(tri_size_file_read(&file, name, NULL, NULL, &error), TRI_BAD_INPUT);
     if (!strstr(error.text, words) || error.line != line || strcmp(error.file, name) != 0)
-        fail_msg("%s:%ld: %s, not line %ld: %s", error.file, error.line, error.text, line, words);
+        fail_msg("%s:%ld: %s, not line %ld: %s", error.file, (long)error.line, error.text, line, words);
     tri_size_file_free(&file);
 }
 

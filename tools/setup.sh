@@ -1,12 +1,13 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
-# Usage: tools/setup.sh [coast|build|tests|ci|ports]
+# Usage: tools/setup.sh [coast|build|tests|ci|ports|windows]
 #   coast  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot)
 #   build  and jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the libraries)
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (what
 #          .ci/run needs)
 #   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
+#   windows  compiler and emulator for Windows (what tools/windows.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, says what it installs and for what, and does not touch a machine that has
 # everything. cairo, jansson, HDF5 and, for `build`, pkg-config can be done without: PTRIANGLE_SETUP=least leaves them
 # out; PTRIANGLE_SETUP=no installs nothing.
@@ -100,6 +101,14 @@ list_missing() {
         need python3-venv python3 -c 'import ensurepip, venv'
         return
     fi
+    if [ "$wanted" = windows ]; then
+        need g++-mingw-w64-x86-64-posix command -v x86_64-w64-mingw32-g++-posix
+        need wine64 test -x /usr/lib/wine/wine64
+        need libz-mingw-w64-dev test -e /usr/x86_64-w64-mingw32/include/zlib.h
+        need zip command -v zip
+        need unzip command -v unzip
+        return
+    fi
     need libcmocka-dev links cmocka.h cmocka
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
@@ -159,9 +168,9 @@ as_root() {
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
 case $wanted in
-coast | build | tests | ci | ports) ;;
+coast | build | tests | ci | ports | windows) ;;
 *)
-    echo "usage: tools/setup.sh [coast|build|tests|ci|ports]" >&2
+    echo "usage: tools/setup.sh [coast|build|tests|ci|ports|windows]" >&2
     exit 2
     ;;
 esac

@@ -22,6 +22,8 @@ pip_get() { # pip_get PACKAGE VERSION PROBE: without what the package needs; it 
 # triangle/__init__.py wants numpy; only the library inside is called, so that its files are enough.
 pip_get triangle 20250106 "import glob, sysconfig; glob.glob(sysconfig.get_path('platlib') + '/triangle/core*.so')[0]"
 pip_get gmsh 4.15.2 "import gmsh; gmsh.initialize()"
+pip_get numpy 2.4.6 "import numpy" # these two for the part `sizes`
+pip_get scipy 1.17.1 "import scipy.spatial"
 
 if [ ! "$work/cgal_mesh" -nt "$peers/cgal_mesh.cpp" ]; then
     rm -f "$work/cgal_mesh"

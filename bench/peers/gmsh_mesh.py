@@ -1,5 +1,7 @@
 """Meshes a plain .poly file with gmsh: gmsh_mesh.py INPUT SIZE ALGORITHM [BASE]. SIZE: edge length everywhere (gmsh
-bounds neither angles nor areas); ALGORITHM: Mesh.Algorithm, 5 Delaunay, 6 frontal-Delaunay.
+bounds neither angles nor areas), which the edges of the input may make shorter; or H,GROWTH: H at the segments, growing
+by GROWTH for a distance of 1, whatever the edges of the input. ALGORITHM: Mesh.Algorithm, 5 Delaunay,
+6 frontal-Delaunay.
 Prints the seconds of meshing curves and surface, the geometry being ready; BASE: writes the mesh there.
 """
 import json
@@ -69,13 +71,31 @@ def write(base):
     meshfiles.write_mesh(base, points, corners(2), corners(1))
 
 
+def grow(pslg, size, growth):
+    """Sizes by a field alone, of distances from places on all lines, that is as fine as `size` asks for."""
+    field, p, s = gmsh.model.mesh.field, pslg.points, pslg.segments
+    longest = max((abs(p[2 * a] - p[2 * b]) + abs(p[2 * a + 1] - p[2 * b + 1]) for a, b in zip(s[::2], s[1::2])))
+    field.add("Distance", 1)
+    field.setNumbers(1, "CurvesList", list(range(1, len(s) // 2 + 1)))
+    field.setNumber(1, "Sampling", min(200, max(3, int(longest / size))))
+    field.add("MathEval", 2)
+    field.setString(2, "F", f"{size!r}+{growth!r}*F1")
+    field.setAsBackgroundMesh(2)
+    for name in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+        gmsh.option.setNumber("Mesh.MeshSize" + name, 0)
+
+
 def main():
     path, size, algorithm = sys.argv[1:4]
+    size, growth = map(float, (size + ",nan").split(",")[:2])
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("General.NumThreads", 1)
     gmsh.option.setNumber("Mesh.Algorithm", int(algorithm))
-    build(meshfiles.read(path), float(size))
+    pslg = meshfiles.read(path)
+    build(pslg, size)
+    if growth >= 0:
+        grow(pslg, size, growth)
     start = time.perf_counter()
     gmsh.model.mesh.generate(2)
     print(json.dumps({"seconds": time.perf_counter() - start}), flush=True)

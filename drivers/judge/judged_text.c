@@ -76,7 +76,7 @@ static enum tri_status read_header(struct rows *r, int n, const char *nouns, str
     bool found;
     enum tri_status status = tri_window_next(r->window, &fields, &found, error);
     const char *name = r->window->text.name;
-    long line = (long)r->window->cursor.line;
+    int64_t line = r->window->cursor.line;
     if (!status && !found) /* in an empty file, too, on a line */
         return tri_fail(error, TRI_BAD_INPUT, name, line > 0 ? line : 1,
                         "unexpected end of file: the number of %s is missing", nouns);
@@ -251,7 +251,7 @@ static enum tri_status check_attributes(const struct rows *r, struct tri_error *
     enum { FREE_ATTRIBUTES = 64 };
     const int64_t n = r->fields[2];
     const char *name = r->window->text.name;
-    const long line = (long)r->window->cursor.line;
+    const int64_t line = r->window->cursor.line;
     struct tri_file_facts facts;
     if (n < 0)
         return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of attributes is negative");
@@ -273,7 +273,7 @@ static enum tri_status open_attributes(struct rows *r, const char *folder, struc
     free(r->further);
     r->further = n <= INT32_MAX ? malloc((size_t)(n * rows + 1) * sizeof *r->further) : NULL;
     if (!r->further)
-        return tri_fail(error, TRI_NO_MEMORY, r->window->text.name, (long)r->window->cursor.line,
+        return tri_fail(error, TRI_NO_MEMORY, r->window->text.name, r->window->cursor.line,
                         "no memory for %lld attributes", (long long)n);
     return n == 0 ? TRI_OK : open_array(r->text, TRI_CHECK_POINT_ATTRIBUTES, (size_t)n * sizeof(double), folder, error);
 }
@@ -283,7 +283,7 @@ static enum tri_status read_vertices(struct rows *r, const char *folder, struct 
 {
     struct judged_text *t = r->text;
     if (r->fields[1] != 2)
-        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
+        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, r->window->cursor.line,
                         "the vertices have %lld coordinates instead of 2", (long long)r->fields[1]);
     t->n_points = t->n_nodes = r->fields[0];
     enum tri_status status = detect_base(r, error);
@@ -320,7 +320,7 @@ static enum tri_status read_ele(struct rows *r, const char *folder, struct tri_e
     memcpy(r->fields, (int64_t[N_FIELDS]){0, 3, 0, 0}, sizeof r->fields);
     enum tri_status status = read_header(r, 3, "triangles", error);
     if (!status && r->fields[1] < 3)
-        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
+        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, r->window->cursor.line,
                         "the triangles have %lld nodes; 3 or more are needed", (long long)r->fields[1]);
     if (!status)
         status = check_attributes(r, error);

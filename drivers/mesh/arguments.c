@@ -10,7 +10,7 @@
 
 char *next_iteration(const char *name)
 {
-    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.'), *digits = dot ? dot + 1 : name;
+    const char *dot = strrchr(name + tri_path_folder_length(name), '.'), *digits = dot ? dot + 1 : name;
     size_t n = dot ? strspn(digits, "0123456789") : 0;
     if (n == 0 || digits[n] != 0)
         return tri_joined(name, ".1");

@@ -11,7 +11,6 @@
 void console_open(void)
 {
     tri_standard_open();
-    setvbuf(stdout, NULL, _IOLBF, 0); /* whoever reads it from a pipe or a log sees each line at once */
 }
 
 void console_print(const struct console *console, const char *before, const char *format, ...)
@@ -22,6 +21,7 @@ void console_print(const struct console *console, const char *before, const char
     va_start(arguments, format);
     fputs(before, stdout);
     one_line_print(stdout, format, arguments);
+    fflush(stdout); /* whoever reads it from a pipe or a log sees each line at once */
     va_end(arguments);
 }
 

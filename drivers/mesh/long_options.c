@@ -8,6 +8,7 @@
 
 #include "drivers/mesh/streams.h"
 #include "drivers/words.h"
+#include "triangle/base/system.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
@@ -166,7 +167,7 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
 /* Is its last part a name that suffixes can go behind? */
 static bool is_base(const char *value)
 {
-    const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
+    const char *last = value + tri_path_folder_length(value);
     return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, ".h5") &&
            !tri_name_ends(last, ".vtkhdf");
 }

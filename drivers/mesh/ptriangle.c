@@ -500,10 +500,10 @@ static char *scratch_of(const struct long_options *options, const struct argumen
 {
     const char *asked = options->scratch ? options->scratch : getenv("TMPDIR");
     const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
-    const char *slash = output ? strrchr(output, '/') : NULL;
+    const size_t folder = output ? tri_path_folder_length(output) : 0;
     if (asked && *asked)
         return tri_joined(asked, "");
-    return slash ? tri_name(output, (size_t)(slash - output) + 1, "") : tri_joined(".", "");
+    return folder > 0 ? tri_name(output, folder, "") : tri_joined(".", "");
 }
 
 /* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */

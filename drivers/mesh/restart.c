@@ -40,11 +40,12 @@ static void add(struct line *line, const char *text)
 static void add_word(struct line *to, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-_./=:,%@";
-    const bool is_plain = *word && strspn(word, plain) == strlen(word);
-    add(to, is_plain ? " " : " '");
+    const char *quote = strspn(word, plain) == strlen(word) && *word ? "" : tri_word_quote();
+    add(to, " ");
+    add(to, quote);
     for (; *word; word++)
-        add(to, *word == '\'' ? "'\\''" : (char[]){*word, 0});
-    add(to, is_plain ? "" : "'");
+        add(to, *word == '\'' && *quote == '\'' ? "'\\''" : (char[]){*word, 0});
+    add(to, quote);
 }
 
 /* Is this the option, in a word of its own or with its value behind a "="? */

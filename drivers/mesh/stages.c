@@ -52,11 +52,11 @@ static enum tri_status check_switches(struct run *r)
 
 /* --- input */
 
-static void warn_of_input(void *user, const char *file, long line, const char *text)
+static void warn_of_input(void *user, const char *file, int64_t line, const char *text)
 {
     struct run *r = user;
     if (r->input.warnings++ < CONSOLE_SERIES_LINES)
-        console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
+        console_warn(&r->console, "%s:%" PRId64 ": %s.\n", file, line, text);
 }
 
 static enum tri_status read_pslg(struct run *r, const struct tri_read_options *options)

@@ -5,6 +5,7 @@
 #include "drivers/interrupt.h"
 #include "sched/tiles/tiles.h"
 #include "sched/tunables.h"
+#include "triangle/base/system.h"
 
 static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
@@ -12,8 +13,7 @@ static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
 static const char *without_folder(const char *name)
 {
-    const char *slash = strrchr(name, '/');
-    return slash ? slash + 1 : name;
+    return name + tri_path_folder_length(name);
 }
 
 /* --- opening and closing */

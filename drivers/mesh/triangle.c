@@ -8,6 +8,7 @@
 #include "drivers/mesh/console.h"
 #include "drivers/mesh/stages.h"
 #include "drivers/mesh/summary.h"
+#include "triangle/base/system.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 
@@ -79,8 +80,9 @@ static int carry_out(const struct arguments *arguments)
     return console_close(&console) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int main(int argc, char **argv)
+int main(int argc, char **given)
 {
+    char **argv = tri_arguments(argc, given);
     struct arguments arguments = arguments_begin(argc, argv);
     struct tri_error error = {0};
     int code = EXIT_FAILURE;

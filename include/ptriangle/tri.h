@@ -49,7 +49,7 @@ enum tri_status {
 struct tri_error {
     enum tri_status status;
     char file[1024]; /* "" where no file is concerned */
-    long line;       /* 1-based; 0 where no line is concerned */
+    int64_t line;    /* 1-based; 0 where no line is concerned */
     char text[512];  /* one sentence without file, line or final newline */
 };
 

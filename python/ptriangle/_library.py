@@ -8,7 +8,7 @@ import ctypes
 import ctypes.util
 import os
 from ctypes import (CFUNCTYPE, POINTER, Structure, byref, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64,
-                    c_long, c_size_t, c_void_p, sizeof)
+                    c_size_t, c_void_p, sizeof)
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -26,7 +26,7 @@ class Ints(Structure):
 
 
 class ErrorDetail(Structure):
-    _fields_ = [("status", c_int), ("file", c_char * 1024), ("line", c_long), ("text", c_char * 512)]
+    _fields_ = [("status", c_int), ("file", c_char * 1024), ("line", c_int64), ("text", c_char * 512)]
 
 
 class Sized(Structure):

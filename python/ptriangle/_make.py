@@ -1,17 +1,16 @@
 """mesh() and read(): where everything begins."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _files, _rings, _union
-from ._arrays import Array, numbers
+from . import _files, _overlay, _rings, _union
+from ._arrays import Array, as_int32, numbers
 from ._calls import Calls
 from ._errors import InputError
 from ._figure import figure_of
-from ._library import Settings
 from ._mesh import Mesh, finished, made
 from ._settings import Progress, Unsuitable, Wanted, settings_of
 from ._signature import explained
@@ -42,28 +41,52 @@ def _outline(polygons: Any, calls: Calls) -> Tuple[Array, Array]:
     points, segments = _rings.segments_of(polygons, 0)
     if len(points) < 3:
         return points, segments
-    figure, kept = figure_of({"points": points, "segments": segments}, calls.who)
-    all_of_it = Mesh(made(figure, Settings(keep_hull=True), calls))
-    del kept
-    corners, neighbors = all_of_it.triangles, all_of_it.neighbors
-    sides = np.stack([corners[:, [1, 2]], corners[:, [2, 0]], corners[:, [0, 1]]], axis=1)
-    walls = _union.is_among(sides.reshape(-1, 2), all_of_it.segments).reshape(-1, 3)
-    return _union.outline_of(all_of_it.points, corners, neighbors, walls, polygons)
+    all_of_it, _, walls = _overlay.arrangement(points, segments, np.zeros(len(segments), np.int32), calls)
+    return _union.outline_of(all_of_it.points, all_of_it.triangles, all_of_it.neighbors, walls, polygons)
+
+
+def _given(points: Any, segments: Any, who: str) -> Tuple[Array, Array]:
+    return (np.empty((0, 2)) if points is None else numbers(points, who + ": points").reshape(-1, 2),
+            np.empty((0, 2), int) if segments is None else numbers(segments, who + ": segments").reshape(-1, 2))
 
 
 def _with_polygons(points: Any, segments: Any, polygons: List[_rings.Polygon], union: bool,
                    who: str) -> Tuple[Array, Array, int]:
     """Points and segments with those of polygons behind them; how many of the points were given as they are."""
-    points = np.empty((0, 2)) if points is None else numbers(points, who + ": points").reshape(-1, 2)
-    segments = np.empty((0, 2), int) if segments is None else numbers(segments, who + ": segments").reshape(-1, 2)
+    points, segments = _given(points, segments, who)
     behind = _outline(polygons, Calls(who)) if union else _rings.segments_of(polygons, 0)
     all_points = np.concatenate([points, behind[0]])
     return all_points, np.concatenate([segments, behind[1] + len(points)]), len(points if union else all_points)
 
 
+def _laid(given: Dict[str, Any], polygons: Any, columns: Mapping[str, Any], grid: Optional[float], keep_hull: bool,
+          who: str) -> Tuple[_overlay.Overlay, Dict[str, Array]]:
+    """Turns what mesh() was given into a figure of regions. Returns also the columns that are there, as numbers."""
+    for name in ("regions", "triangles"):
+        if given[name] is not None:
+            raise InputError("%s: %s= beside polygons that are regions (overlay)" % (who, name))
+    items, properties = _rings.items_of(polygons, who + ": polygons")
+    told = {name: _rings.column_of(column, properties, "%s: polygon_%s" % (who, name))
+            for name, column in columns.items() if column is not None}
+    markers = given["segment_markers"]
+    markers = None if markers is None else as_int32(markers, who + ": segment_markers").ravel()
+    points, segments = _given(given["points"], given["segments"], who)
+    if markers is not None and len(markers) != len(segments):
+        raise InputError("%s: %d segment_markers for %d segments" % (who, len(markers), len(segments)))
+    found = _overlay.laid(points, segments, markers, items, grid, keep_hull, Calls(who))
+    areas = told.get("areas", np.zeros(len(items)))
+    holes = numbers([] if given["holes"] is None else given["holes"], who + ": holes").reshape(-1, 2)
+    given.update(points=found.points, segments=found.segments, segment_markers=found.markers,
+                 holes=np.concatenate([holes, found.holes]),
+                 regions=_overlay.regions(found, np.where(areas > 0, np.minimum(areas, 1e300), 0)[found.owners]))
+    return found, told
+
+
 @explained
 def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLike] = None, *, polygons: Any = None,
-         union: bool = False, holes: Any = None, regions: Optional[npt.ArrayLike] = None,
+         union: bool = False, overlay: bool = False, polygon_attributes: Union[str, npt.ArrayLike, None] = None,
+         polygon_sizes: Union[str, npt.ArrayLike, None] = None, polygon_areas: Union[str, npt.ArrayLike, None] = None,
+         grid: Optional[float] = None, holes: Any = None, regions: Optional[npt.ArrayLike] = None,
          point_attributes: Optional[npt.ArrayLike] = None, point_markers: Optional[npt.ArrayLike] = None,
          segment_markers: Optional[npt.ArrayLike] = None, triangles: Optional[npt.ArrayLike] = None,
          triangle_attributes: Optional[npt.ArrayLike] = None, triangle_areas: Optional[npt.ArrayLike] = None,
@@ -85,6 +108,13 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         shapely's; a GeoSeries of geopandas, or GeoJSON. Places in an odd number of rings are meshed (the even-odd
         rule). An InputWarning says if polygons overlap, or lie in one another, or are not valid. z is dropped.
     union: places in any polygon are meshed: in its outline and in none of its holes. Borders inside vanish.
+    overlay: each polygon is a region, as on a map: later polygons lie on top of earlier ones, gaps between polygons are
+        not meshed, and borders are edges of the mesh. Mesh.triangle_polygons says which polygon each triangle lies in.
+        The next four keywords imply overlay. A feature, or a shape of several polygons, counts as one polygon.
+    polygon_attributes, polygon_sizes, polygon_areas: for each polygon an attribute of its triangles (default: its
+        number, counted from 1), the length of its edges, and the largest area of its triangles. An array [polygons], a
+        number, or the name of a column of geopandas or of a property of GeoJSON. None, or not above 0: no bound.
+    grid: borders are snapped to a grid of this width (by shapely), and faces that are narrower go to a neighbor.
     holes [h, 2]: places; or "auto": the segments are rings as above.
     regions [r, 4]: x, y, attribute, largest area (<= 0: any).
     point_attributes [n, k], point_markers [n], segment_markers [s].
@@ -130,32 +160,44 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     in one ends the work, and so does Ctrl-C.
     """
     who = "mesh()"
+    overlay = overlay or any(given is not None for given in (polygon_attributes, polygon_sizes, polygon_areas, grid))
+    if (union or overlay) and polygons is None:
+        raise InputError("%s: %s=True without polygons" % (who, "union" if union else "overlay"))
+    if union and overlay:
+        raise InputError("%s: union=True drops the borders that overlay=True keeps" % who)
+    if isinstance(holes, str):
+        if holes != "auto" or overlay:
+            raise InputError('%s: holes: %r is neither "auto" nor places' % (who, holes))
+    given = dict(points=points, segments=segments, holes=None if isinstance(holes, str) else holes, regions=regions,
+                 point_attributes=point_attributes, point_markers=point_markers, segment_markers=segment_markers,
+                 triangles=triangles, triangle_attributes=triangle_attributes, triangle_areas=triangle_areas)
+    shapes: List[_rings.Polygon] = []
+    laid, n_told = None, None
+    if overlay:
+        laid, columns = _laid(given, polygons, {"attributes": polygon_attributes, "sizes": polygon_sizes,
+                                                "areas": polygon_areas}, grid, keep_hull, who)
+        n_told = len(_given(points, segments, who)[0])
+        field = _overlay.background(laid, columns["sizes"], Calls(who)) if "sizes" in columns else None
+        if field:
+            size = [*(size if isinstance(size, list) else [] if size is None else [size]), field]
+    elif polygons is not None:
+        shapes = [polygon for item in _rings.items_of(polygons, who + ": polygons")[0] for polygon in item]
+        given["points"], given["segments"], n_told = _with_polygons(points, segments, shapes, union, who)
+    if given["points"] is None:
+        raise InputError("%s: neither points nor polygons are given" % who)
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
                                               max_new_points, gate, fence, threads, stop, progress, placement,
                                               size_near, gradation, min_size, max_size, optimise,
                                               elements_across, per_circle))
-    settings.even_odd = polygons is not None or isinstance(holes, str)
-    if union and polygons is None:
-        raise InputError("%s: union=True without polygons" % who)
-    shapes = [] if polygons is None else _rings.polygons_of(polygons, who + ": polygons")
-    only_polygons = polygons is not None and segments is None and holes is None and triangles is None
-    n_told = None
-    if polygons is not None:
-        points, segments, n_told = _with_polygons(points, segments, shapes, union, who)
-    if points is None:
-        raise InputError("%s: neither points nor polygons are given" % who)
-    if isinstance(holes, str):
-        if holes != "auto":
-            raise InputError('%s: holes: %r is neither "auto" nor places' % (who, holes))
-        holes = None
-    figure, kept = figure_of(dict(
-        points=points, segments=segments, holes=holes, regions=regions, point_attributes=point_attributes,
-        point_markers=point_markers, segment_markers=segment_markers, triangles=triangles,
-        triangle_attributes=triangle_attributes, triangle_areas=triangle_areas), who)
+    settings.even_odd = not overlay and (polygons is not None or isinstance(holes, str))
+    figure, kept = figure_of(given, who)
     found = finished(made(figure, settings, calls), order, calls)
     del kept  # which the library has looked at until here
     found._settle_points(figure.points.n, n_told, keep_unused)
-    if only_polygons and not union and not keep_hull and len(found.triangles) > 0:
+    if laid:
+        found._settle_polygons(columns.get("attributes"))
+    elif shapes and segments is None and holes is None and triangles is None and not (union or keep_hull) \
+            and len(found.triangles) > 0:
         _union.warn_of_overlaps(shapes, float(found.areas.sum()), who)
     return found
 

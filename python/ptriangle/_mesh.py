@@ -86,6 +86,7 @@ class Mesh:
         self._handle: Optional[Handle] = handle
         self._numbers: Optional[Array] = None  # of the library's points, where others have been dropped
         self._input_points: Array = np.empty(0, np.int32)
+        self._polygons: Optional[Array] = None  # of each triangle, where polygons were regions
         self._order = order
         self._arrays = _arrays_of(handle)
         self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
@@ -106,6 +107,16 @@ class Mesh:
                 arrays.update({name: numbers[arrays[name]] for name in ("triangles", "segments")})
                 freeze(arrays.values())
         freeze([self._input_points])
+
+    def _settle_polygons(self, attributes: Optional[Array] = None) -> None:
+        """The last attribute is the number of the polygon, from 1: it moves to triangle_polygons. attributes: for each
+        polygon, in its place."""
+        rows = self._arrays["triangle_attributes"]
+        polygons = rows[:, -1].astype(np.int32) - 1 if rows.shape[1] else np.full(len(rows), -1, np.int32)
+        if attributes is not None:
+            rows = np.append(np.nan_to_num(attributes), 0)[polygons][:, None]
+        self._polygons, self._arrays["triangle_attributes"] = polygons, rows
+        freeze([polygons, rows])
 
     # --- arrays
 
@@ -143,6 +154,12 @@ class Mesh:
     def triangle_attributes(self) -> Reals:
         """Attributes of the triangles, [m, k]: those of the regions that they lie in; k is 0 where there are none."""
         return np.asarray(self._arrays["triangle_attributes"])
+
+    @property
+    def triangle_polygons(self) -> Integers:
+        """The polygon that each triangle lies in, [m], with mesh(overlay=True): its number in `polygons`, counted from
+        0; -1 if there is none. refine() keeps it."""
+        return np.full(len(self._arrays["triangles"]), -1, np.int32) if self._polygons is None else self._polygons
 
     @property
     def segments(self) -> Integers:
@@ -269,12 +286,12 @@ class Mesh:
 
     def __getstate__(self) -> Mapping[str, Any]:
         return {"order": self._order, "arrays": {name: np.array(rows) for name, rows in self._arrays.items()},
-                "counts": self._counts, "input_points": self._input_points}
+                "counts": self._counts, "input_points": self._input_points, "polygons": self._polygons}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         self._handle = self._numbers = None
         self._order, self._arrays, self._counts = state["order"], dict(state["arrays"]), state["counts"]
-        self._input_points = state["input_points"]
+        self._input_points, self._polygons = state["input_points"], state["polygons"]
         freeze([*self._arrays.values(), self._input_points])
 
     def __copy__(self) -> "Mesh":
@@ -305,9 +322,15 @@ class Mesh:
                                                          protect, max_new_points, gate, fence, threads, stop, progress,
                                                          placement, size_near, gradation, min_size, max_size,
                                                          optimise, elements_across, per_circle))
-        figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
+        arrays: Dict[str, Any] = dict(self._arrays, triangle_areas=triangle_areas)
+        if self._polygons is not None:  # it comes back with the finer triangles
+            arrays["triangle_attributes"] = np.column_stack([self.triangle_attributes, self._polygons + 1])
+        figure, kept = figure_of(arrays, calls.who)
         finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
         finer._input_points = self._input_points
+        if self._polygons is not None:
+            finer._settle_polygons()
+            finer._arrays["triangle_attributes"] = finer._arrays["triangle_attributes"][:, :-1]
         del kept
         return finer
 

@@ -52,13 +52,32 @@ def _of_any(given: Any, name: str) -> Iterator[Polygon]:
         yield [_ring(given, name)]
 
 
-def polygons_of(given: Any, name: str) -> List[Polygon]:
-    geometry = getattr(given, "__geo_interface__", given)
+def items_of(given: Any, name: str) -> Tuple[List[List[Polygon]], List[Mapping[str, Any]]]:
+    """The polygons of each item (a feature, a shape, a list of rings), and its properties, by their names."""
+    geometry, one = getattr(given, "__geo_interface__", given), False
     if isinstance(geometry, Mapping):
-        return list(_of_mapping(geometry, name))
-    if not isinstance(given, Iterable):
+        kind = geometry.get("type")
+        one = kind not in ("FeatureCollection", "GeometryCollection")
+        given = [geometry] if one else geometry["features" if kind == "FeatureCollection" else "geometries"]
+    elif not isinstance(given, Iterable):
         raise InputError("%s: %r instead of a list of rings or polygons" % (name, type(given).__name__))
-    return [polygon for k, item in enumerate(given) for polygon in _of_any(item, "%s[%d]" % (name, k))]
+    items = list(given)
+    return ([list(_of_any(item, name if one else "%s[%d]" % (name, k))) for k, item in enumerate(items)],
+            [(item.get("properties") or {}) if isinstance(item, Mapping) else {} for item in items])
+
+
+def column_of(given: Any, properties: List[Mapping[str, Any]], name: str) -> Array:
+    """A number for each item: given for each, or for all, or the name of a property; NaN where there is none."""
+    if isinstance(given, str):
+        known = sorted({key for item in properties for key in item})
+        if given not in known:
+            raise InputError("%s: no polygon has the property %r, but %s" % (name, given, ", ".join(known) or "none"))
+        given = [item.get(given) for item in properties]
+        given = [np.nan if value is None else value for value in given]
+    values = numbers(given, name).astype(np.float64)
+    if values.shape not in ((), (len(properties),)):
+        raise InputError("%s: shape %s for %d polygons" % (name, values.shape, len(properties)))
+    return np.broadcast_to(values, len(properties)).copy()
 
 
 def _area(ring: Array) -> float:

@@ -58,20 +58,29 @@ def _is_inside(places: Array, polygon: Polygon) -> Array:
     return inside
 
 
-def inside_any(places: Array, polygons: List[Polygon]) -> Array:
-    """Which places lie in one of the polygons."""
-    found = np.zeros(len(places), bool)
-    for polygon in filter(None, polygons):
-        corners = polygon[0]
-        if len(corners) == 0:
+def last_around(places: Array, polygons: List[Polygon]) -> Array:
+    """The last of the polygons that each place lies in; -1 if it lies in none."""
+    found = np.full(len(places), -1)
+    order = np.argsort(places[:, 0])
+    x, y = places[order].T
+    for number in range(len(polygons) - 1, -1, -1):
+        polygon = polygons[number]
+        if not polygon or len(polygon[0]) == 0:
             continue
-        near = (places >= corners.min(axis=0)).all(axis=1) & (places <= corners.max(axis=0)).all(axis=1) & ~found
-        which = np.nonzero(near)[0]
+        low, high = polygon[0].min(axis=0), polygon[0].max(axis=0)
+        near = slice(np.searchsorted(x, low[0]), np.searchsorted(x, high[0], "right"))
+        which = order[near][(y[near] >= low[1]) & (y[near] <= high[1])]
+        which = which[found[which] < 0]
         step = max(1, _MOST // max(map(len, polygon)))
         for k in range(0, len(which), step):
             some = which[k:k + step]
-            found[some] = _is_inside(places[some], polygon)
+            found[some[_is_inside(places[some], polygon)]] = number
     return found
+
+
+def inside_any(places: Array, polygons: List[Polygon]) -> Array:
+    """Which places lie in one of the polygons."""
+    return last_around(places, polygons) >= 0
 
 
 def _inlay_of(polygons: List[Polygon]) -> Optional[Tuple[int, int]]:
@@ -102,7 +111,7 @@ def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
     warn("%s. The even-odd rule meshes an area of %g; union=True meshes what lies in any polygon" % (text, meshed), who)
 
 
-def _largest_of(label: Array, areas: Array) -> Array:
+def largest_of(label: Array, areas: Array) -> Array:
     """For each triangle, the largest of its face."""
     order = np.lexsort((areas, label))
     last = np.append(label[order][1:] != label[order][:-1], True)
@@ -116,7 +125,7 @@ def outline_of(points: Array, triangles: Array, neighbors: Array, walls: Array,
     """Points and segments of the union's border, of a triangulation of all rings that fills their convex hull."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    witness = _largest_of(faces_of(neighbors, walls), areas)
+    witness = largest_of(faces_of(neighbors, walls), areas)
     asked, of = np.unique(witness, return_inverse=True)
     inside = inside_any(((a + b + c) / 3)[asked], polygons)[of]
     outside_there = ~np.append(inside, False)[neighbors]  # -1, nobody, is the last

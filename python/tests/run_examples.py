@@ -1,4 +1,5 @@
-"""Runs the examples of a document as they are written, one after the other, in a folder of their own.
+"""Runs the examples of a document as they are written, one after the other, in a folder of their own, where `data` is
+that of the repository.
 
 Usage: run_examples.py DOCUMENT FOLDER     an example whose module cannot be imported is skipped, with a line
 """
@@ -29,6 +30,8 @@ if __name__ == "__main__":
     document = Path(sys.argv[1]).resolve()
     os.makedirs(sys.argv[2], exist_ok=True)
     os.chdir(sys.argv[2])
+    if not os.path.exists("data"):
+        os.symlink(document.parent.parent / "data", "data")
     n_run, skipped = run(document)
     print("%s: %d examples run as they are written, %d skipped" % (document.name, n_run, len(skipped)))
     for text in skipped:

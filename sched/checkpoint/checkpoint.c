@@ -35,7 +35,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
 bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file)
 {
     const tri_file folder = tri_folder_open(directory, true);
-    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, strrchr(path, '/') + 1, file) &&
+    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, path + tri_path_folder_length(path), file) &&
                       tri_file_sync(folder);
     (void)tri_file_close(folder);
     return done;
@@ -259,25 +259,25 @@ static bool remove_piece(void *user, const char *name)
 /* The manifest says of all the others that they are a run's: it goes last, and names no state as soon as that goes. */
 static void remove_all(struct par_checkpoint *c)
 {
-    const struct par_manifest m = c->manifest;
-    (void)write_manifest(c, manifest_of_none(&m, m.kind), NULL);
+    (void)write_manifest(c, manifest_of_none(&c->manifest, c->manifest.kind), NULL);
     (void)tri_folder_list(c->folder, remove_piece, c); /* of however many ranks there have been */
     (void)tri_folder_drop(c->folder, state_name[0]);
     (void)tri_folder_drop(c->folder, state_name[1]);
     (void)tri_folder_drop(c->folder, tiles_name);
     (void)tri_folder_drop(c->folder, fresh_name);
     (void)tri_folder_drop(c->folder, manifest_name);
-    if (m.made_directory)
-        (void)tri_folder_remove(c->directory);
 }
 
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
 {
+    const bool made_directory = c->manifest.made_directory;
     assert(!remove || c->lock != TRI_NO_FILE);
     if (remove)
         remove_all(c);
     (void)tri_file_close(c->lock);
     (void)tri_file_close(c->folder);
+    if (remove && made_directory) /* on Windows files that are open stay in it until they are closed */
+        (void)tri_folder_remove(c->directory);
     c->lock = c->folder = c->spool.file = TRI_NO_FILE;
 }
 

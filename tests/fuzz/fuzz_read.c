@@ -32,7 +32,7 @@ static int file_of(const uint8_t *data, size_t size, char name[32])
     return file;
 }
 
-static void heed(void *user, const char *file, long line, const char *text)
+static void heed(void *user, const char *file, int64_t line, const char *text)
 {
     *(size_t *)user += strlen(file) + strlen(text) + (size_t)line;
 }

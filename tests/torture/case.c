@@ -251,7 +251,7 @@ bool case_read(struct torture_case *c, const char *path)
         is_node ? tri_read_node(path, &options, &c->figure.pslg, &base, &error)
                 : tri_read_poly(path, node, &options, &c->figure.pslg, &base, &points_in_poly, &error);
     if (status)
-        fprintf(stderr, "torture: %s:%ld: %s\n", error.file, error.line, error.text);
+        fprintf(stderr, "torture: %s:%ld: %s\n", error.file, (long)error.line, error.text);
     c->family = path;
     return !status;
 }

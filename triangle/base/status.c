@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
+enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, int64_t line,
                          const char *format, ...)
 {
     if (error) {

@@ -15,7 +15,7 @@
 #if defined(__GNUC__)
 __attribute__((format(printf, 5, 6)))
 #endif
-enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
+enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, int64_t line,
                          const char *format, ...);
 
 /* The same with the system's words for error_number, an errno, behind `what`. */

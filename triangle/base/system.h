@@ -1,11 +1,13 @@
 /* The one door to the operating system: files, folders, maps, memory, time, threads, the terminal, interrupts.
  *
  * No other file names a function or a header of a system (tests/house_rules.sh). system_posix.c has the functions for
- * POSIX; those of the second half, which programs alone use, are in system_posix_process.c.
+ * POSIX, system_windows.c and system_windows_threads.c have those for Windows. Those of the second half, which programs
+ * alone use, are in system_posix_process.c and system_windows_process.c.
  *
  * ERRORS. A function that fails returns false, NULL, -1 or TRI_NO_FILE, and errno says why, by the codes of C's
  * library. EINTR: an interrupt came first; functions that do not name it go on instead.
- * NAMES of files hold '/' between folders. What a function returns as char * is malloc'ed. */
+ * NAMES of files hold '/' between folders; on Windows they are UTF-8, and '\' and "C:" are known, too. What a function
+ * returns as char * is malloc'ed. */
 #ifndef TRIANGLE_BASE_SYSTEM_H
 #define TRIANGLE_BASE_SYSTEM_H
 
@@ -31,7 +33,7 @@ tri_file tri_file_open(const char *path, enum tri_opening opening);
 
 /* A new, empty file in the folder without a name, to read and write: it goes with whoever has it open, however that
  * ends. Where the file system knows no such files, a process that is killed outright may leave an empty
- * ptriangle-XXXXXX. */
+ * ptriangle-XXXXXX; Windows shows the name until then. */
 tri_file tri_scratch_file(const char *folder);
 
 /* TRI_NO_FILE is fine. Some file systems report only here that what was written found no room: false. */
@@ -212,7 +214,7 @@ double tri_memory_of_stacks(int threads);
 /* Free on the file system that holds this file or folder; HUGE_VAL: not known. */
 double tri_disk_left(const char *path);
 
-/* The folder for scratch files: TMPDIR, otherwise /tmp. */
+/* The folder for scratch files: TMPDIR, otherwise /tmp, or on Windows what GetTempPath says. */
 const char *tri_scratch_folder(void);
 
 /* --- time: no decision about a mesh depends on it */
@@ -246,7 +248,13 @@ long tri_process(void); /* the number of this one */
 bool tri_process_is_gone(long process); /* on this host, as far as can be seen */
 bool tri_host_name(char *name, size_t room); /* cut, if it is longer; false: not known */
 
-/* ------ from here on in system_posix_process.c, for drivers/ alone */
+/* ------ from here on in system_posix_process.c or system_windows_process.c, for drivers/ alone */
+
+/* What main() was given, in UTF-8; no memory: as it was. */
+char **tri_arguments(int argc, char **argv);
+
+/* What the system's shells have around a word that is more than letters. */
+const char *tri_word_quote(void);
 
 /* The path of the program's executable, by whatever links it was found. */
 bool tri_own_path(char path[TRI_PATH]);

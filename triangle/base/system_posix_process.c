@@ -193,6 +193,14 @@ const char *tri_scratch_folder(void)
 
 /* --- the program */
 
+char **tri_arguments(int argc, char **argv)
+{
+    (void)argc;
+    return argv;
+}
+
+const char *tri_word_quote(void) { return "'"; }
+
 bool tri_own_path(char path[TRI_PATH])
 {
     const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+#include "triangle/base/system.h"
 #include "triangle/text/names.h"
 
 static const struct tri_format formats[] = {
@@ -26,7 +27,7 @@ const struct tri_format *tri_format_of(const char *name)
 /* Where the suffix begins, with its dot; NULL: there is none. */
 static const char *suffix_of(const char *name)
 {
-    const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name, *dot = strrchr(last, '.');
+    const char *last = name + tri_path_folder_length(name), *dot = strrchr(last, '.');
     return dot && dot > last ? dot : NULL;
 }
 

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "triangle/base/system.h"
 #include "triangle/text/names.h"
@@ -541,14 +540,13 @@ static bool put_words(char *at, size_t room, const char *text)
 bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
 {
     enum { MOST = 1 << 16 };
-    struct timespec now = {0};
     struct tri_file_facts facts;
     char *temporary = output->temporary ? tri_path_from_root(output->temporary) : NULL;
     bool made = put_words(ticket->temporary, TRI_TICKET_PATH, temporary) &&
                 put_words(ticket->path, TRI_TICKET_PATH, output->path) &&
-                tri_host_name(ticket->host, TRI_TICKET_HOST) && timespec_get(&now, TIME_UTC) == TIME_UTC;
+                tri_host_name(ticket->host, TRI_TICKET_HOST);
     free(temporary);
-    ticket->length = made ? 1 + (uint64_t)(now.tv_nsec / 16 + tri_process()) % MOST : 0;
+    ticket->length = made ? 1 + ((uint64_t)(1e9 * tri_seconds()) / 16 + (uint64_t)tri_process()) % MOST : 0;
     made = made && tri_file_cut(output->file, ticket->length) && tri_file_look(output->file, &facts);
     ticket->inode = made ? facts.node : 0;
     if (!made)

@@ -39,7 +39,7 @@ static void fail(struct reader *r, enum tri_status status, const char *format, .
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    r->status = tri_fail(r->error, status, r->text.name, (long)r->cursor.line, "%s", text);
+    r->status = tri_fail(r->error, status, r->text.name, r->cursor.line, "%s", text);
 }
 
 /* To be ended in any case. */
@@ -281,7 +281,7 @@ static void warn_of_segments(const struct reader *r, struct tri_cursor cursor)
         while (cursor.record <= first + i && tri_cursor_next(&cursor, &fields))
             continue;
         struct tri_error warning; /* as a buffer that prints */
-        tri_fail(&warning, TRI_BAD_INPUT, r->text.name, (long)cursor.line, "segment %lld is ignored: %s",
+        tri_fail(&warning, TRI_BAD_INPUT, r->text.name, cursor.line, "segment %lld is ignored: %s",
                  (long long)i + r->base, reason);
         o->warn(o->warn_user, r->text.name, warning.line, warning.text);
     }

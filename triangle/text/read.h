@@ -30,7 +30,7 @@ struct tri_read_options {
     const struct tri_executor *executor; /* NULL: one task after another */
     const struct tri_stop *stop;         /* asked whether to go on; NULL: nobody */
     /* Told of what is skipped, in the order of the lines, by the calling thread; text is one sentence. NULL: nobody. */
-    void (*warn)(void *user, const char *file, long line, const char *text);
+    void (*warn)(void *user, const char *file, int64_t line, const char *text);
     void *warn_user;
 };
 

@@ -15,7 +15,7 @@ bool tri_reading_fail(struct tri_reading *reading, enum tri_status status, size_
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    reading->status = tri_fail(reading->error, status, reading->path, (long)line, "%s", text);
+    reading->status = tri_fail(reading->error, status, reading->path, line, "%s", text);
     return false;
 }
 

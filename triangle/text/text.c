@@ -232,9 +232,9 @@ static void accumulate(struct tri_text *text)
 }
 
 /* The number of the line that holds the byte at `at`. */
-static long line_of(const char *begin, const char *at)
+static int64_t line_of(const char *begin, const char *at)
 {
-    long line = 1;
+    int64_t line = 1;
     for (; begin < at; begin++)
         line += *begin == '\n';
     return line;
@@ -246,8 +246,7 @@ static enum tri_status check_nul(const struct tri_text *text, struct tri_error *
     for (size_t i = 0; i < text->n_chunks; i++)
         if (text->chunks[i].has_nul) {
             const char *const nul = memchr(text->data, 0, text->size);
-            return tri_fail(error, TRI_BAD_INPUT, text->name,
-                            (long)text->lines_before + line_of(text->data, nul),
+            return tri_fail(error, TRI_BAD_INPUT, text->name, text->lines_before + line_of(text->data, nul),
                             "holds a NUL byte: this is not a text file");
         }
     return TRI_OK;
@@ -361,7 +360,7 @@ static enum tri_status conclude(const struct parse *parse, struct tri_cursor *cu
         const struct outcome *const outcome = &parse->outcomes[i];
         const int64_t row = (int64_t)(outcome->cursor.record - 1 - parse->begin.record);
         if (outcome->fault)
-            return tri_fail(error, TRI_BAD_INPUT, text->name, (long)outcome->cursor.line, "%s %lld %s",
+            return tri_fail(error, TRI_BAD_INPUT, text->name, outcome->cursor.line, "%s %lld %s",
                             parse->table->noun, (long long)(row + parse->table->base), outcome->fault);
         *cursor = outcome->cursor.text ? outcome->cursor : *cursor;
     }
@@ -523,7 +522,7 @@ enum tri_status tri_window_table(struct tri_window *w, const struct tri_table *t
                                  struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    const long line = (long)w->cursor.line;
+    const int64_t line = w->cursor.line;
     for (size_t done = 0, n; done < table->n && !status; done += n) {
         bool found;
         status = seek_record(w, &found, error);
