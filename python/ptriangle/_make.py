@@ -46,8 +46,13 @@ def _outline(polygons: Any, calls: Calls) -> Tuple[Array, Array]:
 
 
 def _given(points: Any, segments: Any, who: str) -> Tuple[Array, Array]:
-    return (np.empty((0, 2)) if points is None else numbers(points, who + ": points").reshape(-1, 2),
-            np.empty((0, 2), int) if segments is None else numbers(segments, who + ": segments").reshape(-1, 2))
+    """Points and segments that are given beside polygons. Segments end at given points."""
+    places = np.empty((0, 2)) if points is None else numbers(points, who + ": points").reshape(-1, 2)
+    ends = np.empty((0, 2), int) if segments is None else numbers(segments, who + ": segments").reshape(-1, 2)
+    if ends.size and not (ends.min() >= 0 and ends.max() < len(places)):
+        raise InputError("%s: segments: numbers from %g to %g for %d given points" % (
+            who, ends.min(), ends.max(), len(places)))
+    return places, ends
 
 
 def _with_polygons(points: Any, segments: Any, polygons: List[_rings.Polygon], union: bool,
@@ -62,10 +67,12 @@ def _with_polygons(points: Any, segments: Any, polygons: List[_rings.Polygon], u
 def _laid(given: Dict[str, Any], polygons: Any, columns: Mapping[str, Any], grid: Optional[float], keep_hull: bool,
           who: str) -> Tuple[_overlay.Overlay, Dict[str, Array]]:
     """Turns what mesh() was given into a figure of regions. Returns also the columns that are there, as numbers."""
-    for name in ("regions", "triangles"):
-        if given[name] is not None:
+    for name in ("regions", "triangles", "point_attributes", "point_markers", "triangle_attributes", "triangle_areas"):
+        if given.get(name) is not None:
             raise InputError("%s: %s= beside polygons that are regions (overlay)" % (who, name))
     items, properties = _rings.items_of(polygons, who + ": polygons")
+    if not any(items):
+        raise InputError("%s: no polygons" % who)
     told = {name: _rings.column_of(column, properties, "%s: polygon_%s" % (who, name))
             for name, column in columns.items() if column is not None}
     markers = given["segment_markers"]
@@ -162,12 +169,12 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     who = "mesh()"
     overlay = overlay or any(given is not None for given in (polygon_attributes, polygon_sizes, polygon_areas, grid))
     if (union or overlay) and polygons is None:
-        raise InputError("%s: %s=True without polygons" % (who, "union" if union else "overlay"))
+        raise InputError("%s: union, overlay, polygon_..= or grid= without polygons" % who)
     if union and overlay:
         raise InputError("%s: union=True drops the borders that overlay=True keeps" % who)
     if isinstance(holes, str):
         if holes != "auto" or overlay:
-            raise InputError('%s: holes: %r is neither "auto" nor places' % (who, holes))
+            raise InputError("%s: holes: %r instead of %s" % (who, holes, "places" if overlay else '"auto" or places'))
     given = dict(points=points, segments=segments, holes=None if isinstance(holes, str) else holes, regions=regions,
                  point_attributes=point_attributes, point_markers=point_markers, segment_markers=segment_markers,
                  triangles=triangles, triangle_attributes=triangle_attributes, triangle_areas=triangle_areas)
@@ -183,8 +190,8 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     elif polygons is not None:
         shapes = [polygon for item in _rings.items_of(polygons, who + ": polygons")[0] for polygon in item]
         given["points"], given["segments"], n_told = _with_polygons(points, segments, shapes, union, who)
-    if given["points"] is None:
-        raise InputError("%s: neither points nor polygons are given" % who)
+    if given["points"] is None or (polygons is not None and np.size(given["points"]) == 0):
+        raise InputError("%s: no points and no polygons" % who)
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
                                               max_new_points, gate, fence, threads, stop, progress, placement,
                                               size_near, gradation, min_size, max_size, optimise,

@@ -111,7 +111,7 @@ class _Faces:
             warn("polygons: %d faces are narrower than %.3g: polygons hardly overlap, or leave a gap. The narrowest is "
                  "about %.2g wide, at (%.12g, %.12g). %s" %
                  (len(narrow), limit, self.width[least], x, y, "A larger grid= snaps more borders together" if grid else
-                  "grid=%.1g snaps borders to a grid" % (2 * self.width[narrow].max())), who)
+                  "grid=%.1g snaps borders to a grid" % (10 * self.width[narrow].max())), who)
 
 
 def laid(points: Array, segments: Array, segment_markers: Optional[Array], items: List[List[_rings.Polygon]],

@@ -48,7 +48,7 @@ def _of_any(given: Any, name: str) -> Iterator[Polygon]:
         yield from _of_mapping(geometry, name)
     elif _is_list_of_rings(given):
         yield [_ring(ring, name) for ring in given]
-    else:
+    elif given is not None:
         yield [_ring(given, name)]
 
 
@@ -69,9 +69,9 @@ def items_of(given: Any, name: str) -> Tuple[List[List[Polygon]], List[Mapping[s
 def column_of(given: Any, properties: List[Mapping[str, Any]], name: str) -> Array:
     """A number for each item: given for each, or for all, or the name of a property; NaN where there is none."""
     if isinstance(given, str):
-        known = sorted({key for item in properties for key in item})
-        if given not in known:
-            raise InputError("%s: no polygon has the property %r, but %s" % (name, given, ", ".join(known) or "none"))
+        known = ", ".join(sorted({key for item in properties for key in item}))
+        if not any(given in item for item in properties):
+            raise InputError("%s: no polygon has the property %r%s" % (name, given, known and ", but " + known))
         given = [item.get(given) for item in properties]
         given = [np.nan if value is None else value for value in given]
     values = numbers(given, name).astype(np.float64)

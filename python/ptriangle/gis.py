@@ -20,11 +20,13 @@ from ._arrays import Array, as_int32, numbers
 from ._errors import FileError, InputError
 from ._mesh import Mesh
 from ._notes import warn
+from ._sizes import length
 
 Raster = Tuple[Array, Tuple[float, float, float, float]]
 """Values [rows, columns], the lowest row first, NaN for no data; and x_min, y_min, x_max, y_max of the outer values."""
 
 _GRAVITY = 9.81
+_HEAD = ("ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value")
 
 
 def _need(package: str, who: str) -> Any:
@@ -43,24 +45,31 @@ def read(path: Any, crs: Any = None, **wanted: Any) -> Any:
 
 
 def _shapes(given: Any, who: str) -> List[Any]:
-    """Shapely's geometry of each item; None goes."""
+    """Shapely's geometry of each item; None is skipped."""
     shapely = _need("shapely", who)
-    if hasattr(given, "geometry") and hasattr(given.geometry, "to_numpy"):
-        return [shape for shape in given.geometry.to_numpy() if shape is not None]
-    if all(isinstance(shape, shapely.Geometry) for shape in np.atleast_1d(given)):
-        return list(np.atleast_1d(given))
+    shapes = given.geometry.to_numpy() if hasattr(given, "geometry") and hasattr(given.geometry, "to_numpy") else \
+        given if isinstance(given, (list, tuple, np.ndarray)) else [given]
+    if all(shape is None or isinstance(shape, shapely.Geometry) for shape in shapes):
+        return [shape for shape in shapes if shape is not None]
     items = _rings.items_of(given, who)[0]
     return [shapely.MultiPolygon([(rings[0], rings[1:]) for rings in item]) for item in items]
+
+
+def _areas(given: Any, who: str) -> List[Any]:
+    """The shapes, each as a valid polygon, or several. Lines and points are dropped."""
+    shapely = _need("shapely", who)
+    return [shape if shape.is_valid and "Polygon" in shape.geom_type else
+            shapely.union_all(shapely.make_valid(shapely.get_parts(shape))).buffer(0) for shape in _shapes(given, who)]
 
 
 def cleaned(polygons: Any, min_edge: float) -> List[Any]:
     """Polygons of shapely with less detail. An InputWarning reports the changes.
 
-    Corners go by the method of Visvalingam and Whyatt if they cut less than min_edge^2 / 2 off, on shared
-    borders from both polygons. No new crossings or contacts arise. Islands and lakes smaller than min_edge^2 go.
-    Polygons must not overlap."""
+    Corners are removed by the method of Visvalingam and Whyatt if they cut less than min_edge^2 / 2 off, on shared
+    borders from both polygons. No new crossings or contacts arise. Islands and lakes smaller than min_edge^2 are
+    removed. Polygons must not overlap."""
     who = "gis.cleaned()"
-    shapely, before = _need("shapely", who), _shapes(polygons, who)
+    shapely, before, min_edge = _need("shapely", who), _areas(polygons, who), length(who, "min_edge", min_edge)
     if not hasattr(shapely, "coverage_simplify"):
         raise ImportError("%s needs shapely 2.1, and there is %s" % (who, shapely.__version__))
 
@@ -78,8 +87,9 @@ def cleaned(polygons: Any, min_edge: float) -> List[Any]:
         rings = shapely.get_rings(shapely.get_parts(shapes))
         return int(shapely.get_num_coordinates(rings).sum()) - len(rings), len(rings), float(shapely.area(shapes).sum())
     old, new = count(before), count(after)
-    warn("of %d corners %d are left, of %d rings %d; the area changes by %.2g%%" % (
-        old[0], new[0], old[1], new[1], 100 * abs(new[2] - old[2]) / old[2] if old[2] else 0), who)
+    warn("of %d corners %d are left, of %d rings %d; the area changes by %.2g%%%s" % (
+        old[0], new[0], old[1], new[1], 100 * abs(new[2] - old[2]) / old[2] if old[2] else 0,
+        "" if new[1] or not old[1] else ". No polygon is left: is min_edge a length in their coordinates?"), who)
     return after
 
 
@@ -112,7 +122,11 @@ def sea(land: Any, bounds: Sequence[float], *, min_edge: Optional[float] = None,
     """
     who = "gis.sea()"
     shapely = _need("shapely", who)
-    box, solid = shapely.box(*bounds), shapely.union_all(_shapes(land, who))
+    if np.shape(bounds) != (4,) or not np.isfinite(numbers(bounds, who + ": bounds")).all():
+        raise InputError("%s: bounds: %r instead of four finite numbers" % (who, bounds))
+    box, solid = shapely.box(*bounds), shapely.union_all(_areas(land, who))
+    if not solid.intersects(box):
+        warn("no land in the box %s: is it in the coordinates of the land (crs=)?" % (tuple(bounds),), who)
     if min_edge is not None:
         solid = shapely.union_all(cleaned([solid], min_edge))
     parts = shapely.get_parts(box.difference(solid))
@@ -129,17 +143,16 @@ def sea(land: Any, bounds: Sequence[float], *, min_edge: Optional[float] = None,
 def _read_asc(path: str) -> Raster:
     """An ESRI ASCII grid."""
     head: Dict[str, float] = {}
-    with open(path, encoding="utf-8") as file:
-        lines = file.read().split("\n")
-    while lines and lines[0][:1].isalpha():
-        name, value = lines.pop(0).split()
-        head[name.lower()] = float(value)
     try:
-        rows = np.array(" ".join(lines).split(), float).reshape(int(head["nrows"]), int(head["ncols"]))[::-1].copy()
+        with open(path, encoding="utf-8-sig") as file:
+            words = file.read().split()
+        while words and words[0].lower() in _HEAD:
+            head[words[0].lower()], words = float(words[1]), words[2:]
+        rows = np.array(words, float).reshape(int(head["nrows"]), int(head["ncols"]))[::-1].copy()
         step = [head.get("cellsize") or head["d" + axis] for axis in "xy"]
         low = [head[axis + "llcenter"] if axis + "llcenter" in head else head[axis + "llcorner"] + size / 2
                for axis, size in zip("xy", step)]
-    except (KeyError, ValueError) as fault:
+    except (LookupError, ValueError) as fault:
         raise FileError("%s: no ESRI ASCII grid (%s)" % (path, fault)) from None
     rows[rows == head.get("nodata_value", -9999)] = np.nan
     return rows, (low[0], low[1], low[0] + (rows.shape[1] - 1) * step[0], low[1] + (rows.shape[0] - 1) * step[1])
@@ -153,6 +166,8 @@ def raster(path: Any, crs: Any = None, band: int = 1) -> Raster:
         return _read_asc(path)
     rasterio, vrt = _need("rasterio", "gis.raster()"), _need("rasterio.vrt", "gis.raster()")
     with rasterio.open(path) as file:
+        if crs is not None and file.crs is None:
+            raise InputError("gis.raster(): %s: the file does not name its coordinates: crs= has no meaning" % path)
         with vrt.WarpedVRT(file, crs=crs or file.crs, resampling=rasterio.enums.Resampling.bilinear,
                            dtype="float64", nodata=np.nan) as warped:
             rows, (x_min, y_min, x_max, y_max) = warped.read(band)[::-1].copy(), warped.bounds
@@ -165,6 +180,8 @@ def sampled(values: Raster, points: npt.ArrayLike) -> Array:
     who = "gis.sampled()"
     rows, (x_min, y_min, x_max, y_max) = numbers(values[0], who).astype(np.float64), values[1]
     at = numbers(points, who + ": points").astype(np.float64)
+    if rows.ndim != 2 or at.ndim != 2 or at.shape[1] != 2:
+        raise InputError("%s: values of shape %s and points of shape %s" % (who, rows.shape, at.shape))
     high = np.array(rows.shape[::-1]) - 1
     step = np.array([x_max - x_min, y_max - y_min]) / np.maximum(high, 1)
     place = (at - [x_min, y_min]) / np.where(step > 0, step, 1)
@@ -192,8 +209,9 @@ def sampled(values: Raster, points: npt.ArrayLike) -> Array:
 
 
 def wave_sizes(depths: Raster, period: float, n: float = 20, min_depth: float = 1) -> Raster:
-    """Lengths of edges, so that n of them are as long as a wave of this period (seconds): sqrt(g depth) period / n.
+    """Lengths of edges, of which n fit into a wavelength for this period (seconds): sqrt(g depth) period / n.
     Depths are in metres, positive downwards; shallower places count as min_depth."""
+    period, n = (length("gis.wave_sizes()", name, given) for name, given in (("period", period), ("n", n)))
     return np.sqrt(_GRAVITY * np.maximum(depths[0], min_depth)) * period / n, depths[1]
 
 
@@ -206,8 +224,8 @@ def slope_sizes(depths: Raster, n: float = 15, min_depth: float = 1) -> Raster:
                     np.where(np.isnan(slope), np.nan, np.inf)), depths[1]
 
 
-def _write_ugrid(path: str, points: Array, triangles: Array, depths: Optional[Array]) -> None:
-    """NetCDF with the conventions of UGRID 1.0."""
+def _write_ugrid(path: str, points: Array, triangles: Array, depths: Optional[Array], metres: bool) -> None:
+    """NetCDF with the conventions of UGRID 1.0. metres: what the points are in; otherwise no unit is written."""
     with _need("scipy.io", "gis.write() of .nc").netcdf_file(path, "w", version=2) as file:
         file.Conventions = "CF-1.8 UGRID-1.0"
         for name, length in (("node", len(points)), ("face", len(triangles)), ("corner", 3)):
@@ -222,7 +240,8 @@ def _write_ugrid(path: str, points: Array, triangles: Array, depths: Optional[Ar
             node_coordinates="node_x node_y", face_node_connectivity="face_nodes")
         add("face_nodes", "i", ("face", "corner"), triangles, cf_role="face_node_connectivity", start_index=np.int32(0))
         for axis, values in zip("xy", points.T):
-            add("node_" + axis, "d", ("node",), values, standard_name="projection_%s_coordinate" % axis, units="m")
+            add("node_" + axis, "d", ("node",), values, **(
+                {"standard_name": "projection_%s_coordinate" % axis, "units": "m"} if metres else {}))
         if depths is not None:
             add("depth", "d", ("node",), depths, standard_name="sea_floor_depth_below_geoid", units="m",
                 positive="down", mesh="mesh2d", location="node")
@@ -236,16 +255,17 @@ def write(mesh: Mesh, path: Any, depths: Optional[npt.ArrayLike] = None,
     path, arrays = os.fspath(path), dict(mesh._arrays)
     if mesh.order != 1:
         raise InputError("%s: a mesh of second order" % who)
-    for name, given, shape in (("points", points, (len(mesh.points), 2)),
-                               ("point_attributes", depths, (len(mesh.points),))):
+    for name, key, given, shape in (("points", "points", points, (len(mesh.points), 2)),
+                                    ("depths", "point_attributes", depths, (len(mesh.points),))):
         if given is not None:
             rows = numbers(given, who + ": " + name).astype(np.float64)
-            if rows.shape != shape:
-                raise InputError("%s: %s of shape %s for %d points" % (who, name, rows.shape, len(mesh.points)))
-            arrays[name] = rows.reshape(len(rows), -1)
+            if rows.shape != shape or not np.isfinite(rows).all():
+                raise InputError("%s: %s of shape %s for %d points, %d of them not finite" % (
+                    who, name, rows.shape, len(mesh.points), np.count_nonzero(~np.isfinite(rows))))
+            arrays[key] = rows.reshape(len(rows), -1)
     if path.lower().endswith(".nc"):
         _write_ugrid(path, arrays["points"], arrays["triangles"],
-                     None if depths is None else arrays["point_attributes"][:, 0])
+                     None if depths is None else arrays["point_attributes"][:, 0], points is None)
     else:
         _files.write_arrays(path, arrays, 1, who)
 
@@ -254,6 +274,8 @@ def write_figure(polygons: Any, path: Any, *, attributes: Any = None, areas: Any
                  grid: Optional[float] = None) -> None:
     """Writes a .poly file with a region for each polygon, as mesh(overlay=True) sees them."""
     who = "gis.write_figure()"
+    if not os.fspath(path).lower().endswith(".poly"):
+        raise InputError("%s: %s: the name does not end in .poly" % (who, path))
     given: Dict[str, Any] = dict.fromkeys(("points", "segments", "segment_markers", "holes", "regions", "triangles"))
     found, told = _make._laid(given, polygons, {"attributes": attributes, "areas": areas}, grid, False, who)
     if "attributes" in told:
@@ -271,7 +293,10 @@ def _main() -> None:
     parser.add_argument("--grid", type=float, help="snaps borders to a grid of this width")
     parser.add_argument("--crs", help='coordinates, such as EPSG:3035, or utm')
     told = parser.parse_args()
-    write_figure(read(told.map, told.crs), told.poly, attributes=told.attributes, areas=told.areas, grid=told.grid)
+    try:
+        write_figure(read(told.map, told.crs), told.poly, attributes=told.attributes, areas=told.areas, grid=told.grid)
+    except Exception as fault:
+        parser.error(str(fault))
 
 
 if __name__ == "__main__":

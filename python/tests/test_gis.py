@@ -97,6 +97,51 @@ def test_rasters(tmp_path):
         assert other[1] == pytest.approx(depths[1]) and np.array_equal(other[0], depths[0], equal_nan=True)
 
 
+    with pytest.raises(ptriangle.InputError, match="does not name its coordinates"):
+        gis.raster(tmp_path / "depth.asc", crs="EPSG:4326")
+    (tmp_path / "depth.prj").write_text(rasterio.crs.CRS.from_epsg(32633).to_wkt())
+    for path in tmp_path / "depth.asc", tmp_path / "depth.tif":
+        assert gis.raster(path, crs="EPSG:4326")[1][0] == pytest.approx(10.51, abs=0.01)  # degrees
+
+
+@pytest.mark.parametrize("text", [b"ncols 2\nnrows", b"ncols 2\nnrows 1\ncellsize 1\nfoo 3\n1 2", b"\xff\xfe"])
+def test_asc_files_that_are_none(tmp_path, text):
+    (tmp_path / "bad.asc").write_bytes(text)
+    with pytest.raises(ptriangle.FileError, match="no ESRI"):
+        gis.raster(tmp_path / "bad.asc")
+    (tmp_path / "good.asc").write_text("\n " + ASC.replace("\n", "\n ").replace("0 1 2 3", "nan 1 2 3"))
+    assert np.isnan(gis.raster(tmp_path / "good.asc")[0]).sum() == 2
+
+
+def test_land_in_other_coordinates():
+    metres = (5e5, 5.5e6, 6e5, 5.6e6)
+    with pytest.warns(ptriangle.InputWarning, match="no land in the box .*crs="):
+        gis.sea([box(8, 50, 1, 1)], metres)
+    with pytest.warns(ptriangle.InputWarning, match="No polygon is left"):
+        gis.cleaned([box(8, 50, 1, 1)], 5000)
+
+
+def test_land_that_is_not_valid():
+    bow = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
+    rings = [[[(0, 0), (1, 1), (0, 2)]], [[(1, 1), (2, 0), (2, 2)]], [[(1, 1), (3, 1), (3, 3), (1, 3)]]]
+    for land in ([bow, box(1, 1, 2, 2), None], rings):
+        assert ptriangle.mesh(**gis.sea(land, (-1, -1, 4, 4))).areas.sum() == pytest.approx(25 - 2 - 4 + 0.5)
+    if hasattr(shapely, "coverage_simplify"):
+        with pytest.warns(ptriangle.InputWarning, match="changes by 0%"):
+            assert sum(shapely.area(gis.cleaned([bow], 0.1))) == pytest.approx(2)
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda: gis.sea(LAND, (0, 0, 1)), "bounds"), (lambda: gis.sea(LAND, (0, 0, 1, np.nan)), "bounds"),
+    (lambda: gis.sea(LAND, BOUNDS, min_edge=0), "min_edge"),
+    (lambda: gis.wave_sizes((np.ones((2, 2)), BOUNDS), 0), "period"),
+    (lambda: gis.sampled((np.ones((2, 2)), BOUNDS), [1, 2]), "shape"),
+    (lambda: gis.write_figure(LAND, "fig.vtu"), r"\.poly")])
+def test_errors(call, words):
+    with pytest.raises(ptriangle.InputError, match=r"^gis\.\w+\(\): .*" + words):
+        call()
+
+
 def test_sizes_of_depths():
     x, y = np.meshgrid(np.linspace(0, 100, 101), np.linspace(0, 50, 51))
     depths = (10 + x, (0, 0, 100, 50))
@@ -124,12 +169,17 @@ def test_files_with_depths(tmp_path):
     assert np.abs(ptriangle.read(tmp_path / "degrees.14")["points"]).max() <= 0.1
     with pytest.raises(ptriangle.InputError, match="shape"):
         gis.write(m, tmp_path / "fort.14", depths=depths[1:])
+    with pytest.raises(ptriangle.InputError, match="depths of .* 1 of them not finite"):
+        gis.write(m, tmp_path / "fort.14", depths=np.append(depths[1:], np.nan))
     io = pytest.importorskip("scipy.io")
     gis.write(m, tmp_path / "sea.nc", depths)
     with io.netcdf_file(tmp_path / "sea.nc", mmap=False) as file:
         assert np.array_equal(file.variables["face_nodes"][:], m.triangles)
         assert np.array_equal(file.variables["depth"][:], depths)
-        assert file.variables["mesh2d"].cf_role == b"mesh_topology"
+        assert file.variables["mesh2d"].cf_role == b"mesh_topology" and file.variables["node_x"].units == b"m"
+    gis.write(m, tmp_path / "degrees.nc", points=m.points / 1000)
+    with io.netcdf_file(tmp_path / "degrees.nc", mmap=False) as file:
+        assert not {"units", "standard_name"} & set(file.variables["node_x"]._attributes)
 
 
 def test_a_map_for_the_programs(tmp_path):
@@ -139,6 +189,9 @@ def test_a_map_for_the_programs(tmp_path):
     frame.to_file(tmp_path / "map.gpkg")
     subprocess.run([sys.executable, "-m", "ptriangle.gis", tmp_path / "map.gpkg", tmp_path / "map.poly",
                     "--attributes", "code", "--areas", "most"], check=True)
+    wrong = subprocess.run([sys.executable, "-m", "ptriangle.gis", tmp_path / "map.gpkg", tmp_path / "map.poly",
+                            "--areas", "zz"], stderr=subprocess.PIPE, text=True)
+    assert wrong.returncode == 2 and "'zz', but code, most" in wrong.stderr and "Traceback" not in wrong.stderr
     m = ptriangle.mesh(**ptriangle.read(tmp_path / "map.poly"), min_angle=25)
     of = m.triangle_attributes[:, 0]
     assert m.areas[of == 5].sum() == pytest.approx(12) and m.areas[of == 9].sum() == pytest.approx(15)

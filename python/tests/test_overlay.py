@@ -1,5 +1,6 @@
 """Polygons as regions: every triangle lies in the polygon that shapely finds around it."""
 import pickle
+import re
 import warnings
 
 import numpy as np
@@ -166,10 +167,13 @@ def test_slivers_are_told_and_snapped():
     noise = np.random.default_rng(3).uniform(-1e-5, 1e-5, border.shape) * [1, 0]
     left = shapely.Polygon([*border, (0, 3), (0, 0)])
     right = shapely.Polygon([*(border + noise), (4, 3), (4, 0)])
-    with pytest.warns(ptriangle.InputWarning, match=r"\d+ faces are narrower than .* grid="):
+    with pytest.warns(ptriangle.InputWarning, match=r"\d+ faces are narrower than .* grid=") as caught:
         rough = ptriangle.mesh(polygons=[left, right], overlay=True, min_angle=25, max_area=0.01)
+    advised = float(re.search("grid=([^ ]*) ", str(caught[0].message))[1])
+    assert advised > 2e-5
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        ptriangle.mesh(polygons=[left, right], grid=advised)
         m = ptriangle.mesh(polygons=[left, right], grid=1e-3, min_angle=25, max_area=0.01)
     assert m.check(min_angle=20) and m.areas.sum() == pytest.approx(12, abs=1e-9)
     assert max(len(m.triangles), len(rough.triangles)) < 4000
@@ -201,7 +205,12 @@ def test_polygons_at_random(seed):
     (dict(polygons=None, points=[[0, 0]]), "without polygons"), (dict(union=True), "union"),
     (dict(holes="auto"), "holes"), (dict(regions=[[0, 0, 1, 0]]), "regions="), (dict(grid=0), "grid"),
     (dict(polygon_sizes=[1, 2]), r"polygon_sizes: shape \(2,\) for 1"), (dict(polygon_areas=["x"]), "polygon_areas"),
-    (dict(points=[[0, 0], [1, 1]], segments=[[0, 1]], segment_markers=[1, 2]), "2 segment_markers for 1")])
+    (dict(points=[[0, 0], [1, 1]], segments=[[0, 1]], segment_markers=[1, 2]), "2 segment_markers for 1"),
+    (dict(points=[[0.1, 0.1]], segments=[[0, 1]]), "segments: numbers from 0 to 1 for 1"),
+    (dict(points=[[0.1, 0.1]], segments=[[0, -1]]), "segments"), (dict(polygons=[None]), "no polygons"),
+    (dict(points=[[0.1, 0.1]], segments=[[0, 1]], overlay=False), "segments"),
+    (dict(points=[[0.1, 0.1]], point_attributes=[[1]]), "point_attributes="),
+    (dict(polygon_sizes="zz"), "no polygon has the property 'zz'$")])
 def test_errors(wanted, words):
     with pytest.raises(ptriangle.InputError, match=r"^mesh\(\): .*" + words):
         ptriangle.mesh(**dict(dict(polygons=[box(0, 0, 1, 1)], overlay=True), **wanted))
