@@ -191,7 +191,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
         shapes = [polygon for item in _rings.items_of(polygons, who + ": polygons")[0] for polygon in item]
         given["points"], given["segments"], n_told = _with_polygons(points, segments, shapes, union, who)
     if given["points"] is None or (polygons is not None and np.size(given["points"]) == 0):
-        raise InputError("%s: no points and no polygons" % who)
+        raise InputError("%s: neither points nor polygons are given" % who)
     settings, calls = settings_of(who, Wanted(min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
                                               max_new_points, gate, fence, threads, stop, progress, placement,
                                               size_near, gradation, min_size, max_size, optimise,

@@ -15,7 +15,7 @@ def _ring(given: Any, name: str) -> Array:
     ring = numbers(given, name).astype(np.float64, copy=False)
     if ring.ndim != 2 or ring.shape[1] not in (2, 3, 4):
         raise InputError("%s: a ring of shape %s instead of (n, 2)" % (name, ring.shape))
-    ring = ring[:, :2]  # z goes
+    ring = ring[:, :2]  # z is dropped
     return ring[:-1] if len(ring) > 1 and np.array_equal(ring[0], ring[-1]) else ring
 
 

@@ -56,7 +56,7 @@ def test_cleaned_coasts():
     coast = found["segments"][found["segment_markers"] == 1]
     a, b = (found["points"][coast[:, k]] for k in (0, 1))
     assert np.median(np.hypot(*(b - a).T)) > 2 and (np.hypot(*(b - a).T) < 1).mean() < 0.05
-    assert np.abs(found["points"] - [70, 30]).sum(axis=1).min() > 2  # the small island went
+    assert np.abs(found["points"] - [70, 30]).sum(axis=1).min() > 2  # the small island is removed
 
 
 def test_figures_with_markers():
