@@ -95,8 +95,6 @@ def test_rasters(tmp_path):
     tif = gis.raster(tmp_path / "depth.tif")
     for other in same, tif:
         assert other[1] == pytest.approx(depths[1]) and np.array_equal(other[0], depths[0], equal_nan=True)
-
-
     with pytest.raises(ptriangle.InputError, match="does not name its coordinates"):
         gis.raster(tmp_path / "depth.asc", crs="EPSG:4326")
     (tmp_path / "depth.prj").write_text(rasterio.crs.CRS.from_epsg(32633).to_wkt())
