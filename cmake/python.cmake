@@ -8,21 +8,29 @@ add_library(libptriangle_python SHARED ${sources})
 ptriangle_library_settings(libptriangle_python ptriangle_python)
 ptriangle_dropin(libptriangle_python)
 ptriangle_static_runtime(libptriangle_python)
-set_target_properties(libptriangle_python PROPERTIES
-    C_VISIBILITY_PRESET default INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
-    LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
 target_compile_options(libptriangle_python PRIVATE
     -fno-semantic-interposition $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
-include(CheckLinkerFlag)
-check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
-check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: exports.map names MPI's, too
-target_link_options(libptriangle_python PRIVATE
-    # the path as a word of its own: in LINKER: a comma would end it
-    "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
-    $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
-    $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)
+if(WIN32)
+    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/python.def)
+    target_sources(libptriangle_python PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/python.def)
+    set_target_properties(libptriangle_python PROPERTIES PREFIX lib)
+else()
+    set_target_properties(libptriangle_python PROPERTIES
+        C_VISIBILITY_PRESET default INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
+        LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+    include(CheckLinkerFlag)
+    check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
+    check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: exports.map names MPI's, too
+    target_link_options(libptriangle_python PRIVATE
+        # the path as a word of its own: in LINKER: a comma would end it
+        "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
+        $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
+        $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)
+endif()
 target_link_libraries(libptriangle_python PRIVATE m ptriangle_threads)
-install(TARGETS libptriangle_python LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
+install(TARGETS libptriangle_python
+        LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL
+        RUNTIME DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
 
 add_custom_target(python_package DEPENDS libptriangle_python)
 foreach(program IN ITEMS ptriangle trianglecheck meshplot)

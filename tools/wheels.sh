@@ -1,26 +1,27 @@
 #!/bin/sh
 # Python wheels for the systems that a Linux machine can build for: one wheel for each system serves all versions of
-# Python from 3.9 on. The compiler is zig of PyPI, which carries the C libraries of all of them. The wheels for macOS and
-# Windows are made by .github/workflows/wheels.yml on machines of these systems.
+# Python from 3.9 on. For Linux the compiler is zig of PyPI, which carries the C libraries; for Windows mingw-w64
+# (tools/setup.sh windows). The wheels for macOS are made by .github/workflows/wheels.yml on machines of Apple.
 # Usage: tools/wheels.sh [FOLDER] [SYSTEM...]   FOLDER: build/wheels without. Systems: manylinux_x86_64 manylinux_aarch64
-#        musllinux_x86_64 musllinux_aarch64; all without. The wheels lie in FOLDER/dist afterwards.
+#        musllinux_x86_64 musllinux_aarch64 win_amd64; all without. The wheels lie in FOLDER/dist afterwards.
 # The first build for a system compiles its C and C++ libraries, some minutes of a core; then one minute each.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
 work=$root/build/wheels
 case ${1:-} in
-'' | manylinux* | musllinux*) ;;
+'' | manylinux* | musllinux* | win*) ;;
 *) work=$1; shift ;;
 esac
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
-[ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64
+[ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
 
 triple() { # what zig calls the system, with the oldest C library that the wheel needs
     case $1 in
     manylinux_*) echo "${1#manylinux_}-linux-gnu.2.17" ;;
     musllinux_*) echo "${1#musllinux_}-linux-musl" ;;
+    win_amd64) ;;
     *) echo "wheels: no system $1" >&2; return 2 ;;
     esac
 }
@@ -29,10 +30,12 @@ tag() { # of the wheel's platform, in words of PEP 600 and 656
     case $1 in
     manylinux_*) echo "manylinux_2_17_${1#manylinux_}" ;;
     musllinux_*) echo "musllinux_1_1_${1#musllinux_}" ;;
+    win_*) echo "$1" ;;
     esac
 }
 
 toolchain() { # toolchain SYSTEM FOLDER: the compiler as CMake wants it
+    [ "$1" != win_amd64 ] || { mkdir -p "$2" && cp cmake/windows/mingw64.cmake "$2/toolchain.cmake" && return; }
     mkdir -p "$2"
     for driver in cc c++ ar ranlib; do
         target=

@@ -115,7 +115,7 @@ def _candidates() -> Iterator[str]:
         yield os.environ["PTRIANGLE_LIBRARY"]
         return
     here = Path(__file__).resolve().parent
-    for name in ("libptriangle_python.so", "libptriangle_python.dylib"):
+    for name in ("libptriangle_python.so", "libptriangle_python.dylib", "libptriangle_python.dll"):
         if (here / name).exists():
             yield str(here / name)
     found = ctypes.util.find_library("ptriangle")

@@ -2,17 +2,21 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
 
 def _become(name: str) -> int:
-    """Only comes back where there is no such program."""
-    path = Path(__file__).resolve().parent / "programs" / name
+    """Runs the program, on POSIX in the place of this one. Returns its exit code."""
+    windows = os.name == "nt"
+    path = Path(__file__).resolve().parent / "programs" / (name + ".exe" * windows)
     if not path.exists():
         print("%s: this build of the Python package has no such program" % name, file=sys.stderr)
         return 1
     try:
+        if windows:  # where the shell would not wait for a program that takes the place of this one
+            return subprocess.call([str(path), *sys.argv[1:]])
         os.execv(path, [name, *sys.argv[1:]])
     except OSError as fault:
         print("%s: cannot be started: %s" % (name, fault), file=sys.stderr)

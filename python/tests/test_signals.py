@@ -11,6 +11,8 @@ import pytest
 
 import ptriangle
 
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGALRM"), reason="signals of POSIX")
+
 N = int(os.environ.get("PTRIANGLE_SIGNALS", "20"))
 SQUARE = [[0, 0], [4, 0], [4, 3], [0, 3]], [[0, 1], [1, 2], [2, 3], [3, 0]]
 
