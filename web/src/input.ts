@@ -30,7 +30,8 @@ function extentOf(lines: Line[]): number {
 
 /** Coordinates to nine digits of the extent: places that differ by rounding alone are one. */
 function rounded(lines: Line[]): Line[] {
-  const extent = extentOf(lines), unit = extent > 0 && extent < Infinity ? 10 ** (8 - Math.floor(Math.log10(extent))) : 1;
+  const extent = extentOf(lines), known = extent > 0 && extent < Infinity;
+  const unit = known ? 10 ** (8 - Math.floor(Math.log10(extent))) : 1;
   const round = (v: number) => Math.round(v * unit) / unit + 0;
   return lines.map((l) => ({ ...l, points: l.points.map(([x, y]) => [round(x), round(y)]) }));
 }
@@ -200,14 +201,16 @@ function fromSvg(text: string): Line[] {
   };
   if (text.trimStart().startsWith("<")) {
     const page = new DOMParser().parseFromString(text, "image/svg+xml"), bad = page.querySelector("parsererror");
-    if (bad) throw new Error(`this is no valid XML: ${/error on line[^\n]*?(?=\n|Below|$)/.exec(bad.textContent!) ?? ""}`);
+    if (bad)
+      throw new Error(`this is no valid XML: ${/error on line[^\n]*?(?=\n|Below|$)/.exec(bad.textContent!) ?? ""}`);
     const root = page.documentElement, box = (root.getAttribute("viewBox") ??
       `0 0 ${root.getAttribute("width")} ${root.getAttribute("height")}`).split(/[\s,]+/).map(parseFloat);
     for (const e of page.querySelectorAll("path, polygon, polyline, rect, circle, ellipse")) {
       if (e.closest("defs, clipPath, mask, symbol, pattern, marker")) continue;
       const n = (name: string) => {
         const [, v, unit] = /^\s*([-+.\de]*\d\.?)\s*(\S*)/.exec(e.getAttribute(name) ?? "0") ?? [];
-        const whole = /x|width/.test(name) ? box[2]! : name === "r" ? Math.hypot(box[2]!, box[3]!) / Math.SQRT2 : box[3]!;
+        const [, , wide, high] = box as [number, number, number, number];
+        const whole = /x|width/.test(name) ? wide : name === "r" ? Math.hypot(wide, high) / Math.SQRT2 : high;
         return parseFloat(v!) * (unit === "%" ? whole / 100 : units[unit!] ?? NaN);
       };
       const w = n("width"), h = n("height"), rx = n("rx") || n("r") || n("ry"), ry = n("ry") || n("r") || rx;
@@ -234,7 +237,8 @@ export function parse(name: string, text: string): Figure {
     return { ...outlines(lines), note };
   }
   if (/^(#|[-+.\d])/.test(start)) {
-    const rows = text.split("\n").map((row) => row.replace(/#.*/, "").trim()).filter(Boolean), n = parseInt(rows[0] ?? "");
+    const rows = text.split("\n").map((row) => row.replace(/#.*/, "").trim()).filter(Boolean);
+    const n = parseInt(rows[0] ?? "");
     if (n === 0) throw new Error("its points are in another file: paste those of the .node file into it");
     const node = /\.node$/i.test(name) || (!/\.poly$/i.test(name) && rows.length === n + 1);
     return { name: stem, poly: text, evenOdd: false, file: name, ...(node && { node }) };

@@ -114,7 +114,8 @@ function accept(r: NonNullable<typeof result>): void {
   result = r;
   show("empty", false);
   show("result", r.triangles > 0);
-  if (!r.triangles) fail(`${r.figure.name}: ${r.notes.trim() || "the mesh is empty"}`);
+  if (!r.triangles)
+    fail(`${r.figure.name}: ${r.notes.trim().replace(/open at .*/, "open at the red points") || "the mesh is empty"}`);
   view.setLayout(r.layout);
   const box = r.triangles ? r.layout.box : boxOf(r.outline);
   extent = Math.max(box[2]! - box[0]!, box[3]! - box[1]!) || 1;
@@ -344,7 +345,11 @@ $("draw").onclick = () => {
   $("name").textContent = "drawing";
   drawing.enter();
 };
-$("stop").onclick = () => { stop(); if (result?.figure !== figure) clear(); fail("Stopped. Change a bound to mesh again."); };
+$("stop").onclick = () => {
+  stop();
+  if (result?.figure !== figure) clear();
+  fail("Stopped. Change a bound to mesh again.");
+};
 $("error").querySelector("button")!.onclick = () => show("error", false);
 
 let depth = 0;
@@ -472,8 +477,9 @@ async function fromLink(): Promise<boolean> {
     const v = Number(words.get(name) ?? otherwise);
     return Number.isFinite(v) && v >= 0 ? v : otherwise;
   };
-  Object.assign(settings, { minAngle: Math.min(38, value("angle", 30)), maxArea: value("area", 0), size: value("size", 0),
-    growth: value("growth", 0.12), conforming: words.has("conforming"), protect: words.has("protect") });
+  Object.assign(settings, { minAngle: Math.min(38, value("angle", 30)), maxArea: value("area", 0),
+    size: value("size", 0), growth: value("growth", 0.12), conforming: words.has("conforming"),
+    protect: words.has("protect") });
   const wish = CSS.escape(words.get("colour") ?? "angle");
   const colour = document.querySelector<HTMLInputElement>(`input[name=colour][value="${wish}"]`);
   if (colour) { colour.checked = true; view.colour = colour.value as Colour; }

@@ -32,7 +32,8 @@ export function zip(files: [string, Uint8Array][]): Uint8Array {
   const parts: Uint8Array[] = [], directory: Uint8Array[] = [];
   let at = 0;
   const record = (size: number, values: [number, number, number][], name = "") => {
-    const letters = new TextEncoder().encode(name), bytes = new Uint8Array(size + letters.length), view = new DataView(bytes.buffer);
+    const letters = new TextEncoder().encode(name), bytes = new Uint8Array(size + letters.length);
+    const view = new DataView(bytes.buffer);
     for (const [place, width, v] of values) width === 2 ? view.setUint16(place, v, true) : view.setUint32(place, v,
       true);
     bytes.set(letters, size);

@@ -136,7 +136,7 @@ function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet" | "
 /** Even-odd figures get hole points: other programs, and ptriangle without even-odd, find the same domain then. Holes
  * are what the triangulation of all that is enclosed has, and that of the domain has not: a point for each face. */
 function withHoles(mesher: Mesher, text: string): string {
-  const { points: p, triangles: t, segments } = copied(mesher.mesh());
+  const all = mesher.mesh(), p = all.points.slice(), t = all.triangles.slice(), segments = all.segments.slice();
   const domain = mesher.mesh({ evenOdd: true }).triangles;
   if (domain.length === t.length) return text;
   const corners = (of: Int32Array, i: number) => `${of.subarray(i, i + 3).slice().sort()}`;
@@ -162,7 +162,6 @@ function withHoles(mesher: Mesher, text: string): string {
   return text.replace(/\n0\n$/, `\n${largest.size}\n` +
     [...largest.values()].map(([, x, y], i) => `${i + 1} ${x} ${y}\n`).join(""));
 }
-const copied = (m: Mesh) => ({ points: m.points.slice(), triangles: m.triangles.slice(), segments: m.segments.slice() });
 
 let loading: Promise<Mesher>, meshed = 0; // the job whose mesh is there
 let last = 0;
