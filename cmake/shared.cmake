@@ -62,6 +62,9 @@ list(REMOVE_ITEM mesher triangle/dropin/triangulate.c) # its triangulate() is th
 ptriangle_shared(ptriangle ${mesher} ${PTRIANGLE_SCHED_SOURCES})
 ptriangle_dropin(libptriangle_shared)
 target_link_libraries(libptriangle_shared PRIVATE m $<BUILD_INTERFACE:ptriangle_threads>)
+if(OpenMP_C_FOUND) # whose runtime has threads that live on for a while: it must not be unloaded
+    target_link_options(libptriangle_shared PRIVATE LINKER:-z,nodelete)
+endif()
 if(TARGET libptriangle-mpi)
     ptriangle_shared(ptriangle-mpi ${PTRIANGLE_MPI_SOURCES})
     target_link_libraries(libptriangle-mpi_shared PUBLIC libptriangle_shared MPI::MPI_C)

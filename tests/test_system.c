@@ -284,6 +284,24 @@ static void *count_one(void *user)
     return NULL;
 }
 
+static void *look_at_mask(void *mask)
+{
+    pthread_sigmask(SIG_SETMASK, NULL, mask);
+    return NULL;
+}
+
+/* Else a crash on another thread would end the program past its handler. */
+static void test_threads_hear_of_their_own_faults_alone(void **state)
+{
+    (void)state;
+    sigset_t mask;
+    struct tri_thread *thread = tri_thread_start(look_at_mask, &mask);
+    assert_non_null(thread);
+    tri_thread_join(thread);
+    assert_true(sigismember(&mask, SIGTERM) && sigismember(&mask, SIGINT));
+    assert_false(sigismember(&mask, SIGSEGV) || sigismember(&mask, SIGBUS));
+}
+
 static void test_threads_meet_in_a_monitor(void **state)
 {
     (void)state;
@@ -335,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_links_are_resolved),
         cmocka_unit_test(test_folder_of_a_path),
         cmocka_unit_test(test_files_in_a_folder),
+        cmocka_unit_test(test_threads_hear_of_their_own_faults_alone),
         cmocka_unit_test(test_threads_meet_in_a_monitor),
         cmocka_unit_test(test_facts),
     };

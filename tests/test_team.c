@@ -147,9 +147,19 @@ static void test_without_memory_the_caller_works_alone(void **state)
     }
 }
 
+static void ask(void *context, size_t index) { ((int *)context)[index] = par_threads(0, false); }
+
 static void test_how_many_there_will_be(void **state)
 {
     (void)state;
+    int asked[3] = {0};
+    struct par_team team = {.threads = 3};
+    const struct tri_executor executor = par_executor(&team);
+    executor.run(executor.self, 3, ask, asked); /* its other threads have the other processors */
+    par_team_end(&team);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(asked[i], 1);
+    assert_false(par_team_works());
     assert_int_equal(par_threads(1, true), 1);
     assert_int_equal(par_threads(3, false), 3);
     assert_in_range(par_threads(INT_MAX, true), 1, PAR_MOST_THREADS);
@@ -160,7 +170,7 @@ static void test_how_many_there_will_be(void **state)
 #pragma omp parallel for num_threads(2) schedule(static, 1)
     for (int i = 0; i < 2; i++)
         found[i] = par_threads(0, false);
-    assert_int_equal(found[0], 1); /* its other threads have the other processors */
+    assert_int_equal(found[0], 1);
     assert_int_equal(found[1], 1);
 #else
     setenv("OMP_NUM_THREADS", "3,2", 1);

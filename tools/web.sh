@@ -108,5 +108,5 @@ if command -v cc >/dev/null && [ -e /usr/include/cmocka.h ]; then # decimal.cpp 
 fi
 [ -x "$bin/triangle" ] || tools/build.sh release >"$work/native.log" 2>&1 || { tail "$work/native.log"; exit 1; }
 PACKAGE=$work/package NATIVE=$bin DATA=$root/data node --test --test-reporter=spec web/test/mesher.test.mjs
-PAGE=$work/ptriangle.html DATA=$root/data SHOTS=$work/shots node --test --test-reporter=spec \
+PAGE=$work/ptriangle.html PACKAGE=$work/package DATA=$root/data SHOTS=$work/shots node --test --test-reporter=spec \
     "$work/npm/web/test/page.test.mjs"

@@ -21,6 +21,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 triplet=x86_64-w64-mingw32
 version=$(sed -n 's/^project(ptriangle VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 name=ptriangle-$version-windows-x86_64
+[ $quick = no ] || name=$name-without-meshplot
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
 
@@ -101,6 +102,7 @@ export WINEPREFIX="$work/wine" WINEDEBUG=-all
 unset DISPLAY
 
 start_wine() { # with one server for all programs, which would end and start in between
+    mkdir -p "$WINEPREFIX"
     /usr/lib/wine/wineserver64 -p
     trap '/usr/lib/wine/wineserver64 -k' EXIT
     [ ! -e "$WINEPREFIX/complete" ] || return 0

@@ -35,10 +35,17 @@ struct par_crew {
     struct tri_thread *thread[];
 };
 
+static _Thread_local bool works; /* in work() */
+
+bool par_team_works(void) { return works; }
+
 static void work(struct job *job)
 {
+    const bool before = works;
+    works = true;
     for (size_t i; (i = atomic_fetch_add_explicit(&job->next, 1, memory_order_relaxed)) < job->n;)
         job->task(job->context, i);
+    works = before;
 }
 
 /* --- threads of the crew */

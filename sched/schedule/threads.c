@@ -26,14 +26,14 @@ static int default_threads(void)
 #endif
     const char *text = getenv("OMP_NUM_THREADS");
     const long told = text ? strtol(text, NULL, 10) : 0;
-    return told > 0 && told < PAR_MOST_THREADS ? (int)told : tri_processors();
+    return told <= 0 ? tri_processors() : told < PAR_MOST_THREADS ? (int)told : PAR_MOST_THREADS;
 }
 
-/* A team does without those that the system refuses. */
+/* A team does without those that the system refuses; but who plans for their memory is wary. */
 static bool must_try(int threads, bool wary)
 {
-    (void)threads, (void)wary;
-    return false;
+    (void)threads;
+    return wary;
 }
 #endif
 
@@ -64,7 +64,7 @@ static int try_threads(int n)
 
 int par_threads(int asked, bool wary)
 {
-    int threads = asked > 0 ? asked : default_threads();
+    int threads = asked > 0 ? asked : par_team_works() ? 1 : default_threads();
     threads = threads < PAR_MOST_THREADS ? threads : PAR_MOST_THREADS;
     if (threads <= 1 || !must_try(threads, wary))
         return threads;

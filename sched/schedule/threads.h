@@ -1,7 +1,7 @@
 /* The threads of a call: how many there can be, and the team that works on what a call hands out in tasks.
  *
  * A team lives as long as the call that made it, and its threads sleep while there is nothing to do: nothing of it is
- * left when a process forks, when a library is unloaded, or when other threads call as well. They are made by OpenMP
+ * left behind for a fork, or for other threads that call as well. They are made by OpenMP
  * where the build has it, so that its settings hold (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE), else by the system. */
 #ifndef SCHED_SCHEDULE_THREADS_H
 #define SCHED_SCHEDULE_THREADS_H
@@ -13,12 +13,14 @@
 enum { PAR_MOST_THREADS = 1024 };
 
 /* How many threads there will be if so many are asked for: at most PAR_MOST_THREADS. <= 0: one, if the caller is in a
- * parallel region of OpenMP; else OMP_NUM_THREADS, if it is set; else one for each processor of this process.
- * Where OpenMP makes the threads, at most as many as the system gives, because OpenMP's library ends the program if it
- * is refused one. Limits on processes and on address space are found by trying, at 20 microseconds a thread, if more
- * are asked for than there are processors, or `wary`. If memory runs out after that, while OpenMP makes
- * its threads, its library prints a line and calls exit(1). */
+ * parallel region of OpenMP or in a task of a team; else OMP_NUM_THREADS, if it is set; else one for each processor of
+ * this process. `wary`, or with OpenMP more than there are processors: at most as many as the system gives, which is
+ * found by trying, at 20 microseconds a thread. For OpenMP's library ends the program if it is refused a thread: it
+ * prints a line and calls exit(1), which can still happen if memory runs out later. */
 int par_threads(int asked, bool wary);
+
+/* Is this thread at work on a task? */
+bool par_team_works(void);
 
 struct par_team {
     int threads;           /* >= 1, the caller's one among them, as par_threads says */

@@ -230,7 +230,8 @@ bool tri_pause(double seconds);
 
 int tri_processors(void); /* that this process may use; at least 1 */
 
-/* Starts a thread that interrupts do not find: they are for the others. NULL: there are no more. */
+/* Starts a thread that interrupts do not find, but for those that its own fault raises: they are for the others. NULL:
+ * there are no more. */
 struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user);
 void tri_thread_join(struct tri_thread *thread); /* waits for its end, and frees it */
 

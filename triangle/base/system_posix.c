@@ -230,9 +230,12 @@ bool tri_file_keeps_apart(tri_file file, const char *host)
 /* The name is taken back before a signal to this thread can end the process (but for SIGKILL). */
 static tri_file make_nameless(char *path)
 {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP, SIGPROF};
+    sigset_t others, before;
+    sigfillset(&others);
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        sigdelset(&others, own[i]);
+    pthread_sigmask(SIG_SETMASK, &others, &before);
     const int file = mkostemp(path, O_CLOEXEC), fault = errno;
     if (file >= 0)
         (void)unlink(path);

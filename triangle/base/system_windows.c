@@ -328,7 +328,16 @@ bool tri_path_allows(const char *path, enum tri_access allowed)
     return file != TRI_NO_FILE && tri_file_close(file);
 }
 
-static bool remove_wide(const wchar_t *path) { return DeleteFileW(path) || fail(); }
+/* A file that is to be read alone goes, too, as on POSIX. */
+static bool remove_wide(const wchar_t *path)
+{
+    if (DeleteFileW(path))
+        return true;
+    if (GetLastError() == ERROR_ACCESS_DENIED && (GetFileAttributesW(path) & FILE_ATTRIBUTE_READONLY) &&
+        SetFileAttributesW(path, FILE_ATTRIBUTE_NORMAL) && DeleteFileW(path))
+        return true;
+    return fail();
+}
 
 /* Scanners for viruses and indexers hold new files for moments. */
 static bool rename_wide(const wchar_t *from, const wchar_t *to)

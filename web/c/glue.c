@@ -8,6 +8,7 @@
 
 #include "ptriangle/files.h"
 #include "ptriangle/tri.h"
+#include "triangle/base/status.h"
 #include "triangle/base/system.h"
 #include "web/c/system_memory.h"
 
@@ -46,6 +47,8 @@ int EXPORT(web_read)(const char *name)
 {
     if (figure.size)
         tri_file_free(&figure);
+    tri_mesh_delete(mesh);
+    mesh = NULL;
     error = (struct tri_error){0};
     figure = tri_no_figure();
     return tri_file_read(name, &figure, &error);
@@ -160,6 +163,8 @@ int EXPORT(web_unmet)(double min_angle, int flags, int reason)
 int EXPORT(web_write)(const char *name, int first)
 {
     struct tri_figure out = tri_no_figure();
+    if (!mesh)
+        return tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "there is no mesh to write");
     tri_mesh_figure(mesh, &out);
     out.holes = figure.holes;
     out.regions = figure.regions;
@@ -196,6 +201,8 @@ static struct rows of_ints(struct tri_ints r) { return (struct rows){r.at, r.n, 
 
 static struct rows rows_of(int what)
 {
+    if (!mesh && what < FIGURE_POINTS)
+        return (struct rows){0};
     switch (what) {
     case POINTS: return of_reals(tri_mesh_points(mesh));
     case POINT_MARKERS: return of_ints(tri_mesh_point_markers(mesh));

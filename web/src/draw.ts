@@ -5,7 +5,7 @@ import type { View } from "./view";
 
 export class Drawing {
   on = false;
-  private rings: Ring[] = [];
+  rings: Ring[] = [];
   private open: Ring = [];
   private held: [number, number] | null = null; // ring and corner that the hand drags
   private mouse: [number, number] | null = null;
@@ -13,9 +13,9 @@ export class Drawing {
   constructor(private view: View, private under: HTMLElement, private canvas: HTMLCanvasElement,
     private changed: (rings: Ring[]) => void) {}
 
-  enter(): void {
+  enter(rings: Ring[] = []): void {
     this.on = true;
-    this.rings = [];
+    this.rings = rings;
     this.open = [];
     this.sign();
   }

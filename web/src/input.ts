@@ -9,9 +9,45 @@ export interface Figure {
   evenOdd: boolean;
   /** Whose lines errors count. */
   file?: string;
+  /** The text is a .node file. */
+  node?: boolean;
+  /** What was left out. */
+  note?: string;
+  /** Of the example that it is. */
+  key?: string;
 }
 export type Ring = [number, number][];
 interface Line { points: Ring; closed: boolean }
+
+function extentOf(lines: Line[]): number {
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+  for (const l of lines) for (const p of l.points) for (const k of [0, 1]) {
+    low[k] = Math.min(low[k]!, p[k]!);
+    high[k] = Math.max(high[k]!, p[k]!);
+  }
+  return Math.max(high[0]! - low[0]!, high[1]! - low[1]!);
+}
+
+/** Coordinates to nine digits of the extent: places that differ by rounding alone are one. */
+function rounded(lines: Line[]): Line[] {
+  const extent = extentOf(lines), known = extent > 0 && extent < Infinity;
+  const unit = known ? 10 ** (8 - Math.floor(Math.log10(extent))) : 1;
+  const round = (v: number) => Math.round(v * unit) / unit + 0;
+  return lines.map((l) => ({ ...l, points: l.points.map(([x, y]) => [round(x), round(y)]) }));
+}
+
+/** Ends of lines that lie within 1e-6 of the extent become one place. */
+function joined(lines: Line[]): Line[] {
+  const reach = extentOf(lines) * 1e-6, cells = new Map<string, [number, number]>();
+  for (const { points } of lines.filter((l) => !l.closed))
+    for (const k of [0, points.length - 1]) {
+      const [x, y] = points[k]!, i = Math.floor(x / reach), j = Math.floor(y / reach);
+      const near = [0, -1, 1].flatMap((a) => [0, -1, 1].map((b) => cells.get(`${i + a} ${j + b}`)))
+        .find((p) => p && Math.hypot(p[0] - x, p[1] - y) <= reach);
+      if (near) points[k] = near; else cells.set(`${i} ${j}`, points[k]!);
+    }
+  return lines;
+}
 
 /** Points that lie at one place become one, so that lines that meet are joined. */
 function toPoly(lines: Line[]): string {
@@ -52,7 +88,7 @@ function fromGeoJson(text: string): Line[] {
   };
   const visit = (g: any): void => {
     switch (g?.type) {
-      case "FeatureCollection": return g.features.forEach(visit);
+      case "FeatureCollection": return g.features?.forEach(visit);
       case "Feature": return visit(g.geometry);
       case "GeometryCollection": return g.geometries.forEach(visit);
       case "Polygon": return g.coordinates.forEach((r: number[][]) => add(r, true));
@@ -61,7 +97,7 @@ function fromGeoJson(text: string): Line[] {
       case "MultiLineString": return g.coordinates.forEach((r: number[][]) => add(r, false));
     }
   };
-  visit(root);
+  try { visit(root); } catch { throw new Error("coordinates or parts are missing in this GeoJSON"); }
   if (!lines.length) throw new Error("no polygons or lines are in this GeoJSON");
   const all = lines.flatMap((l) => l.points);
   if (!all.every(([x, y]) => Math.abs(x) <= 360 && Math.abs(y) <= 90)) return lines;
@@ -69,9 +105,7 @@ function fromGeoJson(text: string): Line[] {
     p[k]); }
     return (a + b) / 2; };
   const x0 = middle(0), y0 = middle(1), wide = Math.cos(y0 * Math.PI / 180) * 111.32;
-  const rounded = (v: number) => Math.round(v * 1e6) / 1e6;
-  for (const l of lines) l.points = l.points.map(([x, y]) => [rounded((x - x0) * wide), rounded((y - y0) * 110.57)]);
-  return lines;
+  return rounded(lines.map((l) => ({ ...l, points: l.points.map(([x, y]) => [(x - x0) * wide, (y - y0) * 110.57]) })));
 }
 
 // --- DXF: lines, polylines with bulges, circles, arcs, ellipses, splines
@@ -95,13 +129,13 @@ function bulged(p: any, q: any): Ring {
   return points;
 }
 
-function fromDxf(text: string): Line[] {
+function fromDxf(text: string): { lines: Line[]; note: string } {
   let entities: any[];
   try { entities = new DxfParser().parseSync(text)?.entities ?? []; }
   catch (fault) { throw new Error(`this DXF cannot be read: ${(fault as Error).message}`); }
-  const lines: Line[] = [], unit = (v: number) => Math.round(v * 1e9) / 1e9;
-  const add = (points: Ring, closed: boolean) =>
-    lines.push({ points: points.map(([x, y]) => [unit(x), unit(y)]), closed });
+  const lines: Line[] = [];
+  let left = 0;
+  const add = (points: Ring, closed: boolean) => points.length && lines.push({ points, closed });
   for (const e of entities) {
     const v = e.vertices ?? [];
     if (e.type === "LINE") add(v.map((p: any) => [p.x, p.y]), false);
@@ -121,9 +155,11 @@ function fromDxf(text: string): Line[] {
       add(whole ? points.slice(0, -1) : points, whole);
     } else if (e.type === "SPLINE" && e.fitPoints?.length) add(e.fitPoints.map((p: any) => [p.x, p.y]),
       Boolean(e.closed));
+    else if (["SPLINE", "INSERT", "3DFACE"].includes(e.type)) left++;
   }
-  if (!lines.length) throw new Error("no lines, polylines, circles or arcs are in this DXF");
-  return lines;
+  const note = left ? `${left} spline${left > 1 ? "s" : ""}, blocks or faces were left out` : "";
+  if (!lines.length) throw new Error("no lines, polylines, circles or arcs are in this DXF" + (note && `; ${note}`));
+  return { lines: joined(rounded(lines)), note };
 }
 
 // --- SVG: paths and simple shapes, or the text of one path; y points upwards afterwards
@@ -132,8 +168,7 @@ function pathLines(d: string): Line[] {
   const lines: Line[] = [];
   let line: Line = { points: [], closed: false }, at: [number, number] = [0, 0];
   const end = () => { if (line.points.length > 1) lines.push(line); };
-  const unit = (v: number) => Math.round(v * 1e6) / 1e6;
-  const go = (x: number, y: number) => { at = [x, y]; line.points.push([unit(x), unit(-y) + 0]); };
+  const go = (x: number, y: number) => { at = [x, y]; line.points.push([x, -y]); };
   const curve = (f: (t: number) => [number, number]) => { for (let i = 1; i <= 16; i++) go(...f(i / 16)); };
   for (const c of new SVGPathData(d).toAbs().normalizeHVZ(false).normalizeST().qtToC().aToC().commands as any[]) {
     const [x, y] = at;
@@ -154,26 +189,40 @@ function pathLines(d: string): Line[] {
   return lines.map((l) => ({ points: l.points, closed: true }));
 }
 
+const units: Record<string, number> = { "": 1, px: 1, mm: 96 / 25.4, cm: 96 / 2.54, in: 96, pt: 4 / 3, pc: 16 };
+
+/** Shapes that are empty, or that cannot be read, are dropped, as browsers do. */
 function fromSvg(text: string): Line[] {
-  const paths: string[] = [];
+  const lines: Line[] = [];
+  let fault = "";
+  const add = (d: string) => {
+    try { lines.push(...pathLines(d).filter((l) => l.points.every((p) => p.every(Number.isFinite)))); }
+    catch (error) { fault = (error as Error).message; }
+  };
   if (text.trimStart().startsWith("<")) {
-    const page = new DOMParser().parseFromString(text, "image/svg+xml");
-    const fault = page.querySelector("parsererror");
-    if (fault) throw new Error(`this SVG cannot be read: ${fault.textContent?.split("\n")[1] ?? "no XML"}`);
+    const page = new DOMParser().parseFromString(text, "image/svg+xml"), bad = page.querySelector("parsererror");
+    if (bad)
+      throw new Error(`this is no valid XML: ${/error on line[^\n]*?(?=\n|Below|$)/.exec(bad.textContent!) ?? ""}`);
+    const root = page.documentElement, box = (root.getAttribute("viewBox") ??
+      `0 0 ${root.getAttribute("width")} ${root.getAttribute("height")}`).split(/[\s,]+/).map(parseFloat);
     for (const e of page.querySelectorAll("path, polygon, polyline, rect, circle, ellipse")) {
-      const n = (name: string) => Number(e.getAttribute(name) ?? 0);
-      const rx = n("rx") || n("r"), ry = n("ry") || n("r");
-      if (e.tagName === "path") paths.push(e.getAttribute("d") ?? "");
-      else if (e.tagName.startsWith("poly")) paths.push(`M${e.getAttribute("points")}Z`);
-      else if (e.tagName === "rect") paths.push(`M${n("x")} ${n("y")}h${n("width")}v${n("height")}h${-n("width")}z`);
-      else paths.push(`M${n("cx") - rx} ${n("cy")}a${rx} ${ry} 0 1 0 ${2 * rx} 0a${rx} ${ry} 0 1 0 ${-2 * rx} 0z`);
+      if (e.closest("defs, clipPath, mask, symbol, pattern, marker")) continue;
+      const n = (name: string) => {
+        const [, v, unit] = /^\s*([-+.\de]*\d\.?)\s*(\S*)/.exec(e.getAttribute(name) ?? "0") ?? [];
+        const [, , wide, high] = box as [number, number, number, number];
+        const whole = /x|width/.test(name) ? wide : name === "r" ? Math.hypot(wide, high) / Math.SQRT2 : high;
+        return parseFloat(v!) * (unit === "%" ? whole / 100 : units[unit!] ?? NaN);
+      };
+      const w = n("width"), h = n("height"), rx = n("rx") || n("r") || n("ry"), ry = n("ry") || n("r") || rx;
+      if (e.localName === "path") add(e.getAttribute("d") ?? "");
+      else if (e.localName.startsWith("poly")) add(`M${e.getAttribute("points") ?? ""}Z`);
+      else if (e.localName === "rect") { if (w > 0 && h > 0) add(`M${n("x")} ${n("y")}h${w}v${h}h${-w}z`); }
+      else if (rx > 0 && ry > 0)
+        add(`M${n("cx") - rx} ${n("cy")}a${rx} ${ry} 0 1 0 ${2 * rx} 0a${rx} ${ry} 0 1 0 ${-2 * rx} 0z`);
     }
-  } else paths.push(text);
-  let lines: Line[];
-  try { lines = paths.flatMap(pathLines); } catch (fault) {
-    throw new Error(`a path cannot be read: ${(fault as Error).message}`); }
-  if (!lines.length) throw new Error("no paths are in this SVG");
-  return lines;
+  } else add(text);
+  if (!lines.length) throw new Error(fault ? `a path cannot be read: ${fault}` : "no paths are in this SVG");
+  return rounded(lines);
 }
 
 /** Which format it is, by its content: names lie. */
@@ -183,7 +232,16 @@ export function parse(name: string, text: string): Figure {
   if (!start) throw new Error("the file is empty");
   if (start.startsWith("{") || start.startsWith("[")) return outlines(fromGeoJson(text));
   if (start.startsWith("<") || /^[Mm]\s*[-+.\d]/.test(start)) return outlines(fromSvg(text));
-  if (/^(999[^]*?\n)?0\s*\n\s*SECTION/m.test(start)) return outlines(fromDxf(text));
-  if (/^(#|[-+.\d])/.test(start)) return { name: stem, poly: text, evenOdd: false, file: name };
+  if (/^(999[^]*?\n)?0\s*\n\s*SECTION/m.test(start)) {
+    const { lines, note } = fromDxf(text);
+    return { ...outlines(lines), note };
+  }
+  if (/^(#|[-+.\d])/.test(start)) {
+    const rows = text.split("\n").map((row) => row.replace(/#.*/, "").trim()).filter(Boolean);
+    const n = parseInt(rows[0] ?? "");
+    if (n === 0) throw new Error("its points are in another file: paste those of the .node file into it");
+    const node = /\.node$/i.test(name) || (!/\.poly$/i.test(name) && rows.length === n + 1);
+    return { name: stem, poly: text, evenOdd: false, file: name, ...(node && { node }) };
+  }
   throw new Error("this is no .poly, GeoJSON, DXF or SVG");
 }

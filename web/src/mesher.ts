@@ -70,6 +70,7 @@ const statusWords = ["", "out of memory", "too large", "bad input", "cannot read
   "internal error", "stopped"];
 
 export class Mesher {
+  private hasFigure = false;
   private constructor(private readonly c: Exports) {}
 
   /** Starts the module: its bytes, or a module that is compiled already. */
@@ -88,9 +89,10 @@ export class Mesher {
 
   get version(): string { return this.text(this.c.web_version()); }
 
-  /** Reads a figure; the name's ending, .poly or .node, names the format. */
+  /** Reads a figure; the name's ending, .poly or .node, names the format. The last figure and its mesh go. */
   read(name: string, content: string | Uint8Array): void {
     const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
+    this.hasFigure = false;
     this.named(name, (at) => {
       const place = this.c.web_file(at, bytes.length);
       if (!place) throw new MeshError(1, "out of memory", 0);
@@ -98,6 +100,7 @@ export class Mesher {
       const status = this.c.web_read(at);
       this.c.web_file_remove(at);
       this.check(status);
+      this.hasFigure = true;
     });
   }
 
@@ -108,6 +111,9 @@ export class Mesher {
 
   /** Meshes the figure that was read. Without bounds: its constrained Delaunay triangulation. */
   mesh(s: Settings = {}): Mesh {
+    if (!this.hasFigure) throw new MeshError(3, "no figure has been read", 0);
+    for (const key of ["minAngle", "maxArea", "size", "growth"] as const)
+      if (!((s[key] ?? 0) >= 0)) throw new MeshError(3, `${key} is ${s[key]}, and must be 0 or more`, 0);
     this.check(this.c.web_mesh(s.minAngle ?? 0, s.maxArea ?? 0, s.size ?? 0, s.growth ?? 0, this.flags(s)));
     return this.current();
   }

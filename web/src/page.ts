@@ -4,7 +4,7 @@ import { Drawing } from "./draw";
 import type { Settings } from "./mesher";
 import { bytesOf, pack, save, unpack, unzip, zip } from "./share";
 import { Colour, paletteOf, View } from "./view";
-import type { Answer, Question, Result } from "./worker";
+import type { Answer, Job, Question, Result } from "./worker";
 
 declare const WORKER: string, WASM: string, EXAMPLES: string;
 type Element = HTMLElement & HTMLInputElement & HTMLCanvasElement;
@@ -15,8 +15,8 @@ const short = (v: number) => v === 0 ? "" : String(Number(v.toPrecision(3)));
 
 interface Example { key: string; name: string; poly: string }
 let examples: Example[] = [];
-let figure: Figure | null = null, figureKey = ""; // the key of an example, or ""
-let result: Result | null = null;
+let figure: Figure | null = null, drawn: Figure | null = null; // drawn: what the drawing's rings became
+let result: Result & { figure: Figure; job: Job } | null = null; // what is shown
 let extent = 1; // of the figure, the larger side
 const settings = { minAngle: 30, maxArea: 0, size: 0, growth: 0.12, conforming: false, protect: false };
 
@@ -63,6 +63,13 @@ function stop(): void {
   startWorker();
 }
 
+/** Nothing is shown. */
+function clear(): void {
+  result = null;
+  view.setLayout(null);
+  show("result", false);
+}
+
 function fail(text: string): void {
   $("error").querySelector("span")!.textContent = text;
   show("error", true);
@@ -74,36 +81,41 @@ let later = 0;
 function soon(): void { clearTimeout(later); later = window.setTimeout(run, 40); }
 
 function wanted(): Settings {
-  return { ...settings, growth: settings.size ? settings.growth : 0, evenOdd: figure?.evenOdd ?? false };
+  return { ...settings, growth: settings.size ? settings.growth : 0, evenOdd: figure?.evenOdd ?? false,
+    regionAreas: true };
 }
 
 async function run(): Promise<void> {
+  clearTimeout(later);
   if (!figure || !ready) return;
   if (busy) stop();
-  const job = busy = ++jobs, now = figure;
+  const now = figure, id = busy = ++jobs;
+  const job = { id, name: `${now.name}.${now.node ? "node" : "poly"}`, text: now.poly, settings: wanted() };
   $("busy-text").textContent = "Meshing";
   $("progress").removeAttribute("value");
   busySign = window.setTimeout(() => show("busy", true), 250);
   const answer = await new Promise<Answer>((done) => {
-    waiters.set(job, done);
-    ask({ kind: "mesh", job: { id: job, name: now.name, poly: now.poly, settings: wanted() } });
+    waiters.set(id, done);
+    ask({ kind: "mesh", job });
   });
-  if (busy !== job) return;
+  if (busy !== id) return;
   idle();
   if (answer.kind === "error") {
     fail(`${now.file ?? now.name}${now.file && answer.line ? `, line ${answer.line}` : ""}: ${answer.text}`);
-    if (!result) { view.setLayout(null); show("result", false); show("empty", !drawing.on); }
+    if (result?.figure !== now) { clear(); show("empty", !drawing.on); }
   } else if (answer.kind === "result") {
     show("error", false);
-    accept(answer.result);
+    accept({ ...answer.result, figure: now, job });
   }
 }
 
 let fitNext = false;
-function accept(r: Result): void {
+function accept(r: NonNullable<typeof result>): void {
   result = r;
   show("empty", false);
-  show("result", true);
+  show("result", r.triangles > 0);
+  if (!r.triangles)
+    fail(`${r.figure.name}: ${r.notes.trim().replace(/open at .*/, "open at the red points") || "the mesh is empty"}`);
   view.setLayout(r.layout);
   const box = r.triangles ? r.layout.box : boxOf(r.outline);
   extent = Math.max(box[2]! - box[0]!, box[3]! - box[1]!) || 1;
@@ -120,23 +132,25 @@ function boxOf(p: Float64Array): number[] {
 }
 
 /** Why angles are smaller than asked. */
-function unmet(r: Result): string {
+function unmet(r: Result & { job: Job }): string {
+  const bound = r.job.settings.minAngle!;
+  if (Math.floor(r.minAngle * 100 + 1e-6) >= bound * 100) return ""; // by rounding alone
   const reasons = ["at small angles of the figure", "in gaps too narrow to fill",
     "at the boundary, which is to keep its points",
     "because points would run away", "where coordinates end to resolve"];
   const parts = r.unmet.slice(0, 5)
     .map((n, i) => n ? `${number.format(n)} triangle${n > 1 ? "s" : ""} ${reasons[i]}` : "").filter(Boolean);
-  return parts.length ? `Below ${settings.minAngle}°: ${parts.join(", ")}.` : "";
+  return parts.length ? `Below ${bound}°: ${parts.join(", ")}.` : "";
 }
 
-function tell(r: Result): void {
+function tell(r: NonNullable<typeof result>): void {
   const text = (id: string, value: string) => { $(id).textContent = value; };
   text("s-triangles", number.format(r.triangles));
   text("s-points", number.format(r.points));
   text("s-angle", r.triangles ? `${(Math.floor(r.minAngle * 100 + 1e-6) / 100).toFixed(2)}°` : "–");
   text("s-large", r.triangles ? `${r.maxAngle.toFixed(1)}°` : "–");
   text("s-time", r.ms < 1000 ? `${r.ms < 10 ? r.ms.toFixed(1) : r.ms.toFixed(0)} ms` : `${(r.ms / 1000).toFixed(2)} s`);
-  text("notes", [r.notes.trim(), unmet(r)].filter(Boolean).join("\n"));
+  text("notes", [r.figure.note, r.notes.trim(), unmet(r)].filter(Boolean).join("\n"));
   const most = Math.max(1, ...r.histogram), n = r.histogram.length, palette = paletteOf("angle", view.dark);
   $("histogram").innerHTML = r.histogram.map((c, i) => {
     const h = c ? Math.max(0.8, 62 * c / most) : 0, angle = (i + 0.5) * 180 / n;
@@ -147,10 +161,8 @@ function tell(r: Result): void {
   }).join("");
 }
 
-function take(f: Figure, key = "", keep = false): void {
+function take(f: Figure, keep = false): void {
   figure = f;
-  figureKey = key;
-  result = null;
   fitNext = true;
   if (!keep) settings.maxArea = settings.size = 0;
   $("name").textContent = f.name;
@@ -161,7 +173,7 @@ function take(f: Figure, key = "", keep = false): void {
 }
 
 function takeText(name: string, text: string): void {
-  drawing.leave();
+  leaveDrawing();
   try { take(parse(name, text)); } catch (fault) { fail(`${name}: ${(fault as Error).message}`); }
 }
 
@@ -213,7 +225,7 @@ for (const [id, s] of Object.entries(scales)) {
   $(id).addEventListener("input", () => { s.set(s.from(Number($(id).value))); fill(); soon(); });
   $(id + "-text").addEventListener("change", () => {
     const v = parseFloat($(id + "-text").value.replace(",", "."));
-    s.set(Number.isFinite(v) && v > 0 ? v : 0);
+    if (v >= 0 || !$(id + "-text").value.trim()) s.set(Number.isFinite(v) ? v : 0);
     $(id + "-text").blur();
     fill();
     soon();
@@ -234,12 +246,30 @@ const themed = () => { view.dark = dark.matches; view.repaint(); fill(); if (res
 const drawing = new Drawing(view, $("gl"), $("over"), (rings) => {
   if (!rings.length) return;
   const fitted = fitNext;
-  figure = fromRings(rings);
-  figureKey = "";
+  figure = drawn = fromRings(rings);
   fitNext = fitted && false;
   soon();
 });
-view.onframe = () => drawing.paint();
+view.onframe = () => {
+  drawing.paint();
+  if (result && !result.triangles && !drawing.on) outline(result.outline);
+};
+
+/** The figure where there is no mesh; its open ends are marked. */
+function outline(p: Float64Array): void {
+  const c = $("over").getContext("2d")!, ends = new Map<string, [number, number]>();
+  c.beginPath();
+  for (let i = 0; i < p.length; i += 2) {
+    const at = view.toScreen(p[i]!, p[i + 1]!), key = `${p[i]} ${p[i + 1]}`;
+    if (i % 4) c.lineTo(...at); else c.moveTo(...at);
+    if (!ends.delete(key)) ends.set(key, at);
+  }
+  c.lineWidth = 2;
+  c.strokeStyle = getComputedStyle(document.body).color;
+  c.stroke();
+  c.fillStyle = getComputedStyle(document.body).getPropertyValue("--warn");
+  for (const at of ends.values()) { c.beginPath(); c.arc(...at, 6, 0, 7); c.fill(); }
+}
 
 const fingers = new Map<number, [number, number]>();
 $("gl").addEventListener("pointerdown", (e) => {
@@ -288,28 +318,38 @@ $("file").onchange = () => { takeFile($("file").files?.[0]); $("file").value = "
 $("paste").onclick = () => { $("paste-text").value = ""; ($("paste-box") as unknown as HTMLDialogElement).showModal();
   };
 $("paste-go").onclick = () => takeText("pasted", $("paste-text").value);
-$("examples").onclick = () => {
-  drawing.leave();
+function startPage(): void {
+  if (busy) stop();
+  figure = null;
+  clear();
+  show("error", false);
   show("empty", true);
-  view.setLayout(null);
-  show("result", false);
   $("name").textContent = "";
-  gallery(); // once more: a run that was stopped may have cut it short
-};
+}
+/** Without a figure the start page comes back. */
+function leaveDrawing(): void {
+  if (drawing.on) drawing.leave();
+  if (!figure) startPage();
+}
+$("examples").onclick = () => { drawing.leave(); startPage(); };
 $("draw").onclick = () => {
-  if (drawing.on) { drawing.leave(); return; }
+  if (drawing.on) { leaveDrawing(); return; }
+  if (figure && figure === drawn) { drawing.enter(drawing.rings); return; } // goes on
   show("empty", false);
   show("error", false);
   if (busy) stop();
-  figure = result = null;
+  figure = null;
+  clear();
   settings.maxArea = settings.size = 0;
-  view.setLayout(null);
   view.fitTo([0, 0, 100, 70]);
   $("name").textContent = "drawing";
-  show("result", false);
   drawing.enter();
 };
-$("stop").onclick = () => { stop(); fail("Stopped. Change a bound to mesh again."); };
+$("stop").onclick = () => {
+  stop();
+  if (result?.figure !== figure) clear();
+  fail("Stopped. Change a bound to mesh again.");
+};
 $("error").querySelector("button")!.onclick = () => show("error", false);
 
 let depth = 0;
@@ -330,22 +370,36 @@ addEventListener("paste", (e) => {
   if (file) takeFile(file); else if (text) takeText("pasted", text);
 });
 addEventListener("keydown", (e) => {
-  if (!(e.target as HTMLElement).closest("input, textarea, dialog")) drawing.key(e);
+  if (!(e.target as HTMLElement).closest("input, textarea, dialog") && drawing.on) {
+    drawing.key(e);
+    if (!drawing.on) leaveDrawing();
+  }
 });
 
-async function gallery(): Promise<void> {
+const ofExample = (e: Example): Figure => ({ ...e, evenOdd: false });
+
+let painter: Worker | null = null;
+/** The thumbnails, meshed by a Worker of their own. */
+function gallery(): void {
+  painter?.terminate();
+  const own = painter = new Worker(source), canvases: HTMLCanvasElement[] = [];
+  own.postMessage({ kind: "start", module: wasm });
   $("gallery").textContent = "";
-  for (const example of examples) {
+  for (const [id, example] of examples.entries()) {
     const button = document.createElement("button"), canvas = document.createElement("canvas");
     canvas.width = 400;
     canvas.height = 300;
+    canvases.push(canvas);
     button.append(canvas, example.name);
-    button.onclick = () => take({ name: example.name, poly: example.poly, evenOdd: false }, example.key);
+    button.onclick = () => take(ofExample(example));
     $("gallery").append(button);
-    const answer = await call((id) => ({ kind: "mesh",
-      job: { id, name: example.key, poly: example.poly, settings: { minAngle: 26 } } }));
-    if (answer.kind === "result") thumbnail(canvas, answer.result);
+    own.postMessage({ kind: "mesh", job: { id, name: "x.poly", text: example.poly, settings: { minAngle: 26 } } });
   }
+  own.onmessage = ({ data }: MessageEvent<Answer>) => {
+    if (data.kind !== "result") return;
+    thumbnail(canvases[data.result.id]!, data.result);
+    if (data.result.id === examples.length - 1) own.terminate();
+  };
 }
 
 function thumbnail(canvas: HTMLCanvasElement, r: Result): void {
@@ -373,37 +427,42 @@ function thumbnail(canvas: HTMLCanvasElement, r: Result): void {
 // --- downloads and links
 
 $("download").onclick = async () => {
-  if (!figure || !result) return;
-  const format = $("format").value, name = figure.name.replace(/[^\w.-]+/g, "-").toLowerCase() || "mesh";
+  if (!result) return;
+  const { figure, job } = result, format = $("format").value;
+  const name = figure.name.replace(/[^\p{L}\p{N}_.-]+/gu, "-").toLowerCase() || "mesh";
   if (format === "png") { $("gl").toBlob((b) => b && save(name + ".png", b)); return; }
-  if (format === "poly") { save(name + ".poly", figure.poly); return; }
-  const answer = await call((id) => ({ kind: "write", id, name: format === "zip" ? name : `${name}.${format}` }));
+  if (format === "poly") { save(name + (figure.node ? ".node" : ".poly"), result.text); return; }
+  $("busy-text").textContent = "Writing";
+  if (!busy) busySign = window.setTimeout(() => show("busy", true), 250);
+  const answer = await call((id) => ({ kind: "write", id, job, name: format === "zip" ? name : `${name}.${format}` }));
+  if (!busy) idle();
   if (answer.kind === "error") fail(answer.text);
   else if (answer.kind === "files")
     format === "zip" ? save(name + ".zip", zip(answer.files)) : save(answer.files[0]![0], answer.files[0]![1]);
 };
 
-async function hash(): Promise<string> {
-  const words = new URLSearchParams({ angle: String(settings.minAngle) });
-  for (const [key, v] of [["area", settings.maxArea], ["size", settings.size]] as const) if (v) words.set(key,
-    String(v));
-  if (settings.size) words.set("growth", String(settings.growth));
-  if (settings.conforming) words.set("conforming", "1");
-  if (settings.protect) words.set("protect", "1");
+/** Of what is shown. */
+async function hash({ figure, job: { settings: s } }: NonNullable<typeof result>): Promise<string> {
+  const words = new URLSearchParams({ angle: String(s.minAngle) });
+  if (s.maxArea) words.set("area", String(s.maxArea));
+  if (s.size) { words.set("size", String(s.size)); words.set("growth", String(s.growth)); }
+  if (s.conforming) words.set("conforming", "1");
+  if (s.protect) words.set("protect", "1");
   if (view.colour !== "angle") words.set("colour", view.colour);
-  if (figureKey) words.set("example", figureKey);
-  else if (figure) words.set("figure", await pack(JSON.stringify(figure)));
+  if (figure.key) words.set("example", figure.key);
+  else words.set("figure", await pack(JSON.stringify(figure)));
   return "#" + words;
 }
 
 /** The address follows the mesh; large figures go into a link only when it is asked for. */
 async function remember(): Promise<void> {
-  if (!figure || (!figureKey && figure.poly.length > 20000)) return;
-  history.replaceState(null, "", await hash());
+  if (!result || (!result.figure.key && result.figure.poly.length > 20000)) return;
+  history.replaceState(null, "", await hash(result));
 }
 
 $("link").onclick = async () => {
-  const link = location.href.replace(/#.*/, "") + await hash(), button = $("link");
+  if (!result) return;
+  const link = location.href.replace(/#.*/, "") + await hash(result), button = $("link");
   history.replaceState(null, "", link);
   let said = "Link copied";
   try { await navigator.clipboard.writeText(link); } catch { said = "The address bar holds the link"; }
@@ -418,15 +477,15 @@ async function fromLink(): Promise<boolean> {
     const v = Number(words.get(name) ?? otherwise);
     return Number.isFinite(v) && v >= 0 ? v : otherwise;
   };
-  Object.assign(settings, { minAngle: value("angle", 30), maxArea: value("area", 0), size: value("size", 0),
-    growth: value("growth", 0.12), conforming: words.has("conforming"), protect: words.has("protect") });
+  Object.assign(settings, { minAngle: Math.min(38, value("angle", 30)), maxArea: value("area", 0),
+    size: value("size", 0), growth: value("growth", 0.12), conforming: words.has("conforming"),
+    protect: words.has("protect") });
   const wish = CSS.escape(words.get("colour") ?? "angle");
   const colour = document.querySelector<HTMLInputElement>(`input[name=colour][value="${wish}"]`);
   if (colour) { colour.checked = true; view.colour = colour.value as Colour; }
   const example = examples.find((e) => e.key === key);
   try {
-    if (example) take({ name: example.name, poly: example.poly, evenOdd: false }, example.key, true);
-    else take(JSON.parse(await unpack(packed ?? "")), "", true);
+    take(example ? ofExample(example) : JSON.parse(await unpack(packed ?? "")), true);
   } catch { fail("This link is damaged: it holds no figure."); return false; }
   return true;
 }

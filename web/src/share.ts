@@ -32,19 +32,19 @@ export function zip(files: [string, Uint8Array][]): Uint8Array {
   const parts: Uint8Array[] = [], directory: Uint8Array[] = [];
   let at = 0;
   const record = (size: number, values: [number, number, number][], name = "") => {
-    const bytes = new Uint8Array(size + name.length), view = new DataView(bytes.buffer);
+    const letters = new TextEncoder().encode(name), bytes = new Uint8Array(size + letters.length);
+    const view = new DataView(bytes.buffer);
     for (const [place, width, v] of values) width === 2 ? view.setUint16(place, v, true) : view.setUint32(place, v,
       true);
-    bytes.set(new TextEncoder().encode(name), size);
+    bytes.set(letters, size);
     return bytes;
   };
   for (const [name, bytes] of files) {
-    const sum = crc(bytes), n = bytes.length, day = 0x5821;
-    const head = record(30, [[0, 4, 0x04034b50], [4, 2, 20], [12, 2, day], [14, 4, sum], [18, 4, n], [22, 4, n], [26,
-      2, name.length]], name);
-    directory.push(record(46, [[0, 4, 0x02014b50], [4, 2, 20], [6, 2, 20], [14, 2, day], [16, 4, sum], [20, 4, n],
-      [24, 4, n],
-      [28, 2, name.length], [42, 4, at]], name));
+    const sum = crc(bytes), n = bytes.length, day = 0x5821, long = new TextEncoder().encode(name).length;
+    const head = record(30, [[0, 4, 0x04034b50], [4, 2, 20], [6, 2, 0x800], [12, 2, day], [14, 4, sum], [18, 4, n],
+      [22, 4, n], [26, 2, long]], name); // 0x800: names are UTF-8
+    directory.push(record(46, [[0, 4, 0x02014b50], [4, 2, 20], [6, 2, 20], [8, 2, 0x800], [14, 2, day], [16, 4, sum],
+      [20, 4, n], [24, 4, n], [28, 2, long], [42, 4, at]], name));
     parts.push(head, bytes);
     at += head.length + n;
   }

@@ -1,11 +1,12 @@
 // The Worker: meshes, measures, and lays the triangles out for the view.
 import { Mesh, MeshError, Mesher, Settings } from "./mesher";
 
-export interface Job { id: number; name: string; poly: string; settings: Settings }
+/** A figure, by the name of a .poly or .node file, and what its mesh is to keep. */
+export interface Job { id: number; name: string; text: string; settings: Settings }
 export type Question =
   | { kind: "start"; module: WebAssembly.Module }
   | { kind: "mesh"; job: Job }
-  | { kind: "write"; id: number; name: string };
+  | { kind: "write"; id: number; job: Job; name: string }; // the mesh of this job, made again if it is gone
 
 /** Triangles in chunks that lie together. Positions are relative to each chunk's origin, so that any zoom is exact. */
 export interface Layout {
@@ -17,7 +18,8 @@ export interface Layout {
 export interface Result {
   id: number; ms: number; points: number; triangles: number; segments: number; minAngle: number; maxAngle: number;
   area: number; histogram: number[]; regions: number[]; notes: string; unmet: number[]; layout: Layout;
-    outline: Float64Array;
+  outline: Float64Array;
+  text: string; // of the figure, with hole points
 }
 export type Answer =
   | { kind: "ready"; version: string }
@@ -78,7 +80,7 @@ function boxOf(p: Float64Array, t: Int32Array): number[] {
   return [x0, y0, x1, y1];
 }
 
-function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet"> {
+function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet" | "text"> {
   const { points: p, triangles: t } = mesh, n = t.length / 3, box = boxOf(p, t);
   const positions = new Float32Array(6 * n), values = new Uint8Array(12 * n), chunks: number[] = [];
   const histogram = new Array<number>(BINS).fill(0), isSegment = pairSet(mesh.segments);
@@ -131,31 +133,72 @@ function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet"> {
   };
 }
 
-let mesher: Mesher;
+/** Even-odd figures get hole points: other programs, and ptriangle without even-odd, find the same domain then. Holes
+ * are what the triangulation of all that is enclosed has, and that of the domain has not: a point for each face. */
+function withHoles(mesher: Mesher, text: string): string {
+  const all = mesher.mesh(), p = all.points.slice(), t = all.triangles.slice(), segments = all.segments.slice();
+  const domain = mesher.mesh({ evenOdd: true }).triangles;
+  if (domain.length === t.length) return text;
+  const corners = (of: Int32Array, i: number) => `${of.subarray(i, i + 3).slice().sort()}`;
+  const inside = new Set<string>(), isSegment = pairSet(segments), sides = new Map<string, number>();
+  for (let i = 0; i < domain.length; i += 3) inside.add(corners(domain, i));
+  const face = new Int32Array(t.length).map((_, i) => i), largest = new Map<number, [number, number, number]>();
+  const root = (i: number): number => { while (face[i] !== i) i = face[i] = face[face[i]!]!; return i; };
+  for (let i = 0; i < t.length; i += 3) {
+    if (inside.has(corners(t, i))) { face[i] = -1; continue; }
+    for (let k = 0; k < 3; k++) {
+      const a = t[i + k]!, b = t[i + (k + 1) % 3]!, other = sides.get(`${b} ${a}`);
+      if (isSegment(a, b)) continue;
+      if (other === undefined) sides.set(`${a} ${b}`, i); else face[root(i)] = root(other);
+    }
+  }
+  for (let i = 0; i < t.length; i += 3) {
+    if (face[i]! < 0) continue;
+    const [a, b, c] = [2 * t[i]!, 2 * t[i + 1]!, 2 * t[i + 2]!];
+    const twice = (p[b]! - p[a]!) * (p[c + 1]! - p[a + 1]!) - (p[c]! - p[a]!) * (p[b + 1]! - p[a + 1]!);
+    if (twice > (largest.get(root(i))?.[0] ?? 0))
+      largest.set(root(i), [twice, (p[a]! + p[b]! + p[c]!) / 3, (p[a + 1]! + p[b + 1]! + p[c + 1]!) / 3]);
+  }
+  return text.replace(/\n0\n$/, `\n${largest.size}\n` +
+    [...largest.values()].map(([, x, y], i) => `${i + 1} ${x} ${y}\n`).join(""));
+}
+
+let loading: Promise<Mesher>, meshed = 0; // the job whose mesh is there
 let last = 0;
+
+function run(mesher: Mesher, { id, name, text, settings }: Job): Result {
+  meshed = 0;
+  last = performance.now();
+  mesher.read(name, text);
+  if (settings.evenOdd) mesher.read(name, text = withHoles(mesher, text));
+  const f = mesher.figure(), outline = new Float64Array(f.segments.length * 2);
+  f.segments.forEach((v, i) => { outline[2 * i] = f.points[2 * v] ?? NaN;
+    outline[2 * i + 1] = f.points[2 * v + 1] ?? NaN; });
+  const start = performance.now(), mesh = mesher.mesh(settings), ms = performance.now() - start;
+  meshed = id;
+  return { ...measure(mesh), id, ms, outline, unmet: mesher.unmet(settings), text };
+}
 
 self.onmessage = async ({ data }: MessageEvent<Question>) => {
   const id = data.kind === "mesh" ? data.job.id : data.kind === "write" ? data.id : 0;
   try {
     if (data.kind === "start") {
-      mesher = await Mesher.load(data.module, (done, triangles) => {
+      loading = Mesher.load(data.module, (done, triangles) => {
         if (performance.now() - last < 80) return;
         last = performance.now();
         say({ kind: "progress", done, triangles });
       });
-      say({ kind: "ready", version: mesher.version });
-    } else if (data.kind === "mesh") {
-      const { job } = data;
-      last = performance.now();
-      mesher.read(job.name + ".poly", job.poly);
-      const f = mesher.figure(), outline = new Float64Array(f.segments.length * 2);
-      f.segments.forEach((v, i) => { outline[2 * i] = f.points[2 * v] ?? NaN;
-        outline[2 * i + 1] = f.points[2 * v + 1] ?? NaN; });
-      const start = performance.now(), mesh = mesher.mesh(job.settings), ms = performance.now() - start;
-      const result: Result = { ...measure(mesh), id, ms, outline, unmet: mesher.unmet(job.settings) };
-      const { positions, values, chunks } = result.layout;
-      say({ kind: "result", result }, [positions.buffer, values.buffer, chunks.buffer, outline.buffer]);
-    } else say({ kind: "files", id, files: [...mesher.write(data.name)] });
+      say({ kind: "ready", version: (await loading).version });
+      return;
+    }
+    const mesher = await loading;
+    if (data.kind === "mesh") {
+      const result = run(mesher, data.job), { positions, values, chunks } = result.layout;
+      say({ kind: "result", result }, [positions.buffer, values.buffer, chunks.buffer, result.outline.buffer]);
+    } else {
+      if (meshed !== data.job.id) run(mesher, data.job);
+      say({ kind: "files", id, files: [...mesher.write(data.name)] });
+    }
   } catch (fault) {
     const at = fault instanceof MeshError ? fault : { line: 0, status: 7 };
     const text = fault instanceof MeshError ? fault.message : `the mesher failed: ${(fault as Error).message}`;

@@ -101,8 +101,9 @@ test("every format is written, and Triangle's own is read again", () => {
   const own = mesher.write("x");
   assert.deepEqual([...own.keys()], ["x.node", "x.ele", "x.poly"]);
   assert.throws(() => mesher.write("x.shp"), /there is no format \.shp/);
+  const n_points = mesher.current().points.length;
   mesher.read("again.node", own.get("x.node"));
-  assert.equal(mesher.figure().points.length, mesher.current().points.length);
+  assert.equal(mesher.figure().points.length, n_points);
 });
 
 test("an error names the line, and the module goes on", () => {
@@ -111,6 +112,21 @@ test("an error names the line, and the module goes on", () => {
   assert.throws(() => mesher.read("figure.shp", "1"), /\.shp|not a file/);
   mesher.read("square.poly", readFileSync(join(data, "square.poly")));
   assert(mesher.mesh({ minAngle: 30 }).triangles.length > 0);
+});
+
+test("calls out of order, and bounds without meaning, are refused", async () => {
+  const fresh = await load();
+  assert.throws(() => fresh.mesh({ minAngle: 30 }), /no figure has been read/);
+  assert.throws(() => fresh.write("x.vtu"), /there is no mesh to write/);
+  fresh.read("letter.poly", readFileSync(join(data, "letter.poly")));
+  assert.throws(() => fresh.mesh({ size: -1 }), /size is -1/);
+  assert.throws(() => fresh.mesh({ maxArea: NaN }), /maxArea is NaN/);
+  assert.throws(() => fresh.write("x"), /there is no mesh to write/);
+  fresh.mesh();
+  fresh.write("x");
+  fresh.read("square.poly", readFileSync(join(data, "square.poly")));
+  assert.throws(() => fresh.write("x"), /there is no mesh to write/);
+  assert.equal(fresh.current().triangles.length, 0);
 });
 
 test("speed is like the native program's", () => {

@@ -1,5 +1,5 @@
 // The page in headless Chromium, from file://, by real mouse events; pictures are left in SHOTS.
-// Environment: PAGE, the HTML file; DATA, a folder with inputs; SHOTS, a folder.
+// Environment: PAGE, the HTML file; PACKAGE, the npm package's folder; DATA, a folder with inputs; SHOTS, a folder.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -7,6 +7,8 @@ import test, { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
+const { load } = await import(join(process.env.PACKAGE, "index.js"));
+const mesher = await load();
 const url = pathToFileURL(process.env.PAGE).href, shots = process.env.SHOTS, data = process.env.DATA;
 mkdirSync(shots, { recursive: true });
 let browser;
@@ -175,6 +177,10 @@ test("an outline and a hole are drawn with the mouse", async () => {
   await page.click("#draw");
   const box = await page.locator("#stage").boundingBox(), at = (x, y) => [box.x + x * box.width,
     box.y + y * box.height];
+  await page.mouse.click(...at(0.5, 0.5));
+  await page.click("#draw"); // one corner is no figure
+  assert(await page.isVisible("#gallery"));
+  await page.click("#draw");
   const outline = [[0.2, 0.25], [0.55, 0.15], [0.8, 0.4], [0.7, 0.8], [0.3, 0.75]];
   for (const p of outline) await page.mouse.click(...at(...p));
   await page.mouse.click(...at(...outline[0]));
@@ -183,6 +189,12 @@ test("an outline and a hole are drawn with the mouse", async () => {
   await page.keyboard.press("Enter");
   const m = await meshed(page, n);
   assert(m > n, `${m} with a hole, ${n} without`);
+  await shot(page, "drawing-hint");
+  await page.click("#draw");
+  await page.click("#draw"); // goes on with the same rings
+  assert.equal(await triangles(page), m);
+  const hint = await page.locator("#hint").boundingBox(); // lets clicks through
+  assert.equal(await page.evaluate(([x, y]) => document.elementFromPoint(x, y).id, [hint.x + 9, hint.y + 9]), "gl");
   await page.mouse.move(...at(0.8, 0.4));
   await page.mouse.down();
   await page.mouse.move(...at(0.88, 0.5), { steps: 5 });
@@ -218,6 +230,112 @@ test("downloads have the C writers' bytes", async () => {
     if (format === "zip") for (const end of [".node", ".ele", ".poly"]) assert(bytes.includes("retaining-wall" + end));
   }
   await page.done();
+});
+
+async function downloaded(page, format) {
+  await page.selectOption("#format", format);
+  const [download] = await Promise.all([page.waitForEvent("download", { timeout: 10000 }), page.click("#download")]);
+  return readFileSync(await download.path());
+}
+/** The same file by the package. */
+function byPackage(name, text, settings, out) {
+  mesher.read(name, text);
+  mesher.mesh(settings);
+  return Buffer.from(mesher.write(out).get(out));
+}
+const says = (page, words) => page.waitForFunction((w) => document.querySelector("#error span").textContent.includes(w),
+  words, { timeout: 20000 });
+const equal = (a, b) => assert(a.equals(b), `${a.length} and ${b.length} bytes differ`);
+
+test("a download has the mesh that is shown, whatever was meshed or stopped since", async () => {
+  const page = await open("#example=letter&angle=28"), letter = readFileSync(join(data, "letter.poly"));
+  await meshed(page);
+  await page.waitForTimeout(1500); // for the gallery
+  const wanted = byPackage("letter.poly", letter, { minAngle: 28 }, "letter-r.2dm");
+  equal(await downloaded(page, "2dm"), wanted);
+  await page.emulateMedia({ colorScheme: "dark" }); // draws the gallery again
+  await page.waitForTimeout(1500);
+  equal(await downloaded(page, "2dm"), wanted);
+  await page.fill("#area-text", "0.00001");
+  await page.keyboard.press("Enter");
+  await page.click("#stop", { timeout: 20000 });
+  equal(await downloaded(page, "2dm"), wanted);
+  await page.fill("#area-text", "1e-300"); // refused
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => !/^Stopped/.test(document.querySelector("#error span").textContent));
+  equal(await downloaded(page, "2dm"), wanted);
+  await page.click("#link");
+  await page.waitForFunction(() => document.getElementById("link").textContent.includes("ink"));
+  assert.equal(await page.evaluate(() => location.hash), "#angle=28&example=letter");
+  await page.click("#examples");
+  await page.dblclick("#examples");
+  await page.fill("#area-text", "0.1"); // brings nothing back
+  await page.keyboard.press("Enter");
+  await page.waitForTimeout(500);
+  assert(await page.isVisible("#gallery") && await page.isHidden("#result"));
+  assert.equal(await page.locator("#gallery button").count(), 6);
+  await page.done();
+});
+
+test("points alone, from a file and by a link", async () => {
+  const page = await open(), text = "6 2 0 0\n1 0 0\n2 9 0\n3 9 7\n4 1 8\n5 4 4\n6 6 3\n";
+  await drop(page, "spots.node", text);
+  const n = await meshed(page);
+  equal(await downloaded(page, "2dm"), byPackage("spots.node", text, { minAngle: 30 }, "spots.2dm"));
+  const again = await open(await page.evaluate(() => location.hash));
+  assert.equal(await meshed(again), n);
+  await drop(again, "apart.poly", "0 2 0 0\n1 0\n1 1 2\n0\n");
+  await says(again, "its points are in another file");
+  await again.done();
+  await page.done();
+});
+
+test("figures by the even-odd rule keep their holes in .poly files", async () => {
+  const page = await open(), box = (x, y, r) => `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`;
+  await drop(page, "rings.svg", `<svg xmlns='http://www.w3.org/2000/svg'><path d='${box(50, 50, 40)}` +
+    `${box(50, 50, 30)}${box(50, 50, 15)}${box(45, 50, 4)}${box(56, 50, 2)}'/></svg>`);
+  const n = await meshed(page), figure = await downloaded(page, "poly");
+  assert.equal(figure.toString().trim().split("\n").at(-4), "3", figure.toString());
+  mesher.read("rings.poly", figure);
+  assert.equal(mesher.mesh({ minAngle: 30 }).triangles.length, 3 * n);
+  await page.done();
+});
+
+test("odd drawings: what can be read is read, open outlines are shown", async () => {
+  const page = await open();
+  await drop(page, "odd.svg", `<s:svg xmlns:s='http://www.w3.org/2000/svg' viewBox='0 0 200 100'><s:defs><s:path
+    d='M0 0h900v900z'/></s:defs><s:rect width='100%' height='100%'/><s:rect width='2em' height='5'/><s:rect/>
+    <s:path d='M1 1 L oops'/><s:polygon/><s:circle cx='50' cy='50' r='5mm'/></s:svg>`);
+  await meshed(page);
+  assert.deepEqual(await page.evaluate(() => window.ptriangle.result().layout.box), [0, -100, 200, 0]);
+  const line = (...p) => ["0", "LINE", "8", "0", ...[10, 20, 11, 21].flatMap((code, i) => [code, p[i]])];
+  const dxf = (...lines) => ["0", "SECTION", "2", "ENTITIES", ...lines.flat(), "0", "ENDSEC", "0", "EOF"].join("\n");
+  await drop(page, "open.dxf", dxf(line(0, 0, 10, 0), line(10, 0, 5, 8), line(5, 8, 1, 1)));
+  await says(page, "open: the mesh is empty: the outline is open at the red points");
+  assert(await page.isHidden("#result"));
+  await page.waitForTimeout(200);
+  await shot(page, "open-outline");
+  assert(await page.evaluate(() => { const c = document.getElementById("over");
+    return c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v) => v); }));
+  await drop(page, "gaps.dxf", dxf(line(0, 0, 10, 0), line(10.000004, 0, 5, 8), line(5, 8.000003, 0, 0.000002),
+    ["0", "INSERT", "8", "0", "2", "B", "10", "0", "20", "0"]));
+  await page.waitForFunction(() => !document.getElementById("result").hidden);
+  assert.match(await page.textContent("#notes"), /^1 spline, blocks or faces/);
+  await drop(page, "bad.svg", "<svg><path></svg>");
+  await says(page, "bad.svg: this is no valid XML: error on line 1");
+  await drop(page, "none.json", '{"type":"FeatureCollection"}');
+  await says(page, "none.json: no polygons or lines");
+  await drop(page, "fine.poly", "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n3 0\n1 1 2\n2 2 3\n3 3 1\n0\n1\n1 0.2 0.2 7 0.001\n");
+  await page.waitForFunction(() => window.ptriangle.result()?.figure.name === "fine");
+  assert(await triangles(page) > 500); // the region's own bound on areas
+  await page.fill("#angle-text", "wide");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.inputValue("#angle-text"), "30°");
+  await page.done();
+  const steep = await open("#example=letter&angle=89");
+  await meshed(steep);
+  assert.equal(await steep.inputValue("#angle-text"), "38°");
+  await steep.done();
 });
 
 test("a long run is stopped, and the next one works", async () => {
