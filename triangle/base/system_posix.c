@@ -230,12 +230,9 @@ bool tri_file_keeps_apart(tri_file file, const char *host)
 /* The name is taken back before a signal to this thread can end the process (but for SIGKILL). */
 static tri_file make_nameless(char *path)
 {
-    static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP, SIGPROF};
-    sigset_t others, before;
-    sigfillset(&others);
-    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-        sigdelset(&others, own[i]);
-    pthread_sigmask(SIG_SETMASK, &others, &before);
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     const int file = mkostemp(path, O_CLOEXEC), fault = errno;
     if (file >= 0)
         (void)unlink(path);
@@ -584,12 +581,15 @@ struct tri_thread {
 
 struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user)
 {
-    sigset_t all, before;
+    static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP, SIGPROF};
+    sigset_t others, before;
     struct tri_thread *thread = malloc(sizeof *thread);
     if (!thread)
         return NULL;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    sigfillset(&others);
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        sigdelset(&others, own[i]);
+    pthread_sigmask(SIG_SETMASK, &others, &before);
     const bool started = pthread_create(&thread->thread, NULL, run, user) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (started)
