@@ -1,4 +1,5 @@
-/* Starts a program and does something to it after a time; ends with its exit code. For tools/windows.sh.
+/* Starts a program and does something to it, so long after it has written the first line to its output, a file; ends
+ * with its exit code. For tools/windows.sh.
  * Usage: poke c|kill MILLISECONDS COMMAND_LINE     c: as if somebody pressed Ctrl-C */
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +31,8 @@ int main(int argc, char **argv)
     if (argc < 4 || !AllocConsole() || !SetConsoleCtrlHandler(go_on, TRUE) ||
         !CreateProcessA(NULL, command_of(GetCommandLineA()), NULL, NULL, TRUE, 0, NULL, NULL, &start, &made))
         return 3;
+    while (GetFileSize(start.hStdOutput, NULL) == 0 && WaitForSingleObject(made.hProcess, 10) == WAIT_TIMEOUT) {
+    }
     if (WaitForSingleObject(made.hProcess, (DWORD)atoi(argv[2])) == WAIT_TIMEOUT) {
         if (strcmp(argv[1], "kill") == 0)
             TerminateProcess(made.hProcess, 137);
