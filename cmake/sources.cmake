@@ -2,10 +2,11 @@
 # `house_rules`, which also reads this file on its own.
 
 # The door to the system (triangle/base/system.h): what libraries use of it, and what programs use beside that.
-set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system_posix.c)
+set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system.c triangle/base/system_posix.c)
 set(PTRIANGLE_SYSTEM_PROCESS_SOURCES triangle/base/system_posix_process.c)
 if(WIN32)
-    set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system_windows.c triangle/base/system_windows_threads.c)
+    set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system.c triangle/base/system_windows.c
+        triangle/base/system_windows_threads.c)
     set(PTRIANGLE_SYSTEM_PROCESS_SOURCES triangle/base/system_windows_process.c)
 endif()
 

@@ -62,27 +62,8 @@ sysroot() {
     apt=$work/$port/apt
     [ ! -e "$work/$port/root/complete" ] || return 0
     rm -rf "$apt" "$work/$port/root"
-    mkdir -p "$apt/lists/partial" "$apt/cache/archives/partial" "$apt/parts" "$apt/packages" "$work/$port/root"
-    : >"$apt/status"
-    cat >"$apt/parts/debian.sources" <<EOF
-Types: deb
-URIs: http://deb.debian.org/debian
-Suites: $(. /etc/os-release && echo "$VERSION_CODENAME")
-Components: main
-Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
-EOF
-    cat >"$apt/conf" <<EOF
-APT::Architecture "$port";
-APT::Architectures { "$port"; };
-APT::Sandbox::User "root";
-Acquire::Languages "none";
-Dir::State::Lists "$apt/lists";
-Dir::State::status "$apt/status";
-Dir::Cache "$apt/cache";
-Dir::Etc::SourceList "/dev/null";
-Dir::Etc::SourceParts "$apt/parts";
-EOF
-    APT_CONFIG=$apt/conf apt-get -qq update
+    mkdir -p "$apt/packages" "$work/$port/root"
+    tools/private_apt.sh "$work/$port" deb "$port"
     (cd "$apt/packages" && APT_CONFIG=$apt/conf apt-get -qq download \
         libcmocka0 libcmocka-dev libgmp10 libgmp-dev libjansson4 libjansson-dev)
     for package in "$apt"/packages/*.deb; do

@@ -50,7 +50,7 @@ flags="--target=wasm32-wasi -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -
     -fno-tree-slp-vectorize -Wall -Wextra -Werror -Wno-unused-function -U__SIZEOF_INT128__ -I$root -I$root/include"
 sources=$(sed -n '/^set(PTRIANGLE_\(MESHER\|TEXT\)_SOURCES/,/)/p' cmake/sources.cmake |
     grep -oE 'triangle/[a-z_0-9/]+\.c(pp)?' |
-    grep -vE '/dropin/|/system_|text/(read_[a-z0-9]+|reading|size_file|words|stream)\.')
+    grep -vE '/dropin/|/system[_.]|text/(read_[a-z0-9]+|reading|size_file|words|stream)\.')
 objects=""
 cache=$(command -v ccache || true)
 compile() {

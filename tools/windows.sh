@@ -35,23 +35,8 @@ fi
 cairo() {
     [ ! -e "$work/cairo/complete" ] || return 0
     rm -rf "$work/cairo"
-    mkdir -p "$work/cairo/apt/lists/partial" "$work/cairo/apt/cache/archives/partial" "$work/cairo/apt/parts"
+    tools/private_apt.sh "$work/cairo" deb-src "$(dpkg --print-architecture)"
     cd "$work/cairo"
-    cat >apt/parts/debian.sources <<EOF
-Types: deb-src
-URIs: http://deb.debian.org/debian
-Suites: $(. /etc/os-release && echo "$VERSION_CODENAME")
-Components: main
-Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
-EOF
-    cat >apt/conf <<EOF
-APT::Sandbox::User "root";
-Dir::State::Lists "$PWD/apt/lists";
-Dir::Cache "$PWD/apt/cache";
-Dir::Etc::SourceList "/dev/null";
-Dir::Etc::SourceParts "$PWD/apt/parts";
-EOF
-    APT_CONFIG=$PWD/apt/conf apt-get -qq update
     for package in libpng1.6 pixman cairo; do # whose patches for Debian are not needed
         APT_CONFIG=$PWD/apt/conf apt-get -qq source --download-only "$package" || true
         tar xf "$package"_*.orig.tar.*z

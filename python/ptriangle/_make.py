@@ -183,7 +183,7 @@ def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLik
     if overlay:
         laid, columns = _laid(given, polygons, {"attributes": polygon_attributes, "sizes": polygon_sizes,
                                                 "areas": polygon_areas}, grid, keep_hull, who)
-        n_told = len(_given(points, segments, who)[0])
+        n_told = 0 if points is None else np.size(points) // 2
         field = _overlay.background(laid, columns["sizes"], Calls(who)) if "sizes" in columns else None
         if field:
             size = [*(size if isinstance(size, list) else [] if size is None else [size]), field]

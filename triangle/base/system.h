@@ -1,8 +1,8 @@
 /* The one door to the operating system: files, folders, maps, memory, time, threads, the terminal, interrupts.
  *
- * No other file names a function or a header of a system (tests/house_rules.sh). system_posix.c has the functions for
- * POSIX, system_windows.c and system_windows_threads.c have those for Windows. Those of the second half, which programs
- * alone use, are in system_posix_process.c and system_windows_process.c.
+ * No other file names a function or a header of a system (tests/house_rules.sh). system_posix.c implements it for
+ * POSIX, system_windows.c and system_windows_threads.c for Windows; system.c has the functions that both share.
+ * The second half, for programs alone, is in system_posix_process.c and system_windows_process.c.
  *
  * ERRORS. A function that fails returns false, NULL, -1 or TRI_NO_FILE, and errno says why, by the codes of C's
  * library. EINTR: an interrupt came first; functions that do not name it go on instead.
@@ -159,6 +159,14 @@ bool tri_folder_rename(tri_file folder, const char *from, const char *to);
 bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name), void *user);
 
 /* --- files in memory */
+
+/* Reserves disk space for the file's bytes from `from` up to `size`. Returns 0 or an errno: EFBIG beyond a limit. */
+int tri_file_reserve(tri_file file, uint64_t from, uint64_t size);
+
+/* Maps the first `size` bytes of the file, to read and write; NULL and errno on failure. */
+void *tri_file_map(tri_file file, size_t size);
+void tri_file_unmap(void *at, size_t size);
+void tri_file_release_pages(void *at, size_t size); /* the system may drop the pages from memory; the bytes stay */
 
 /* An array in a scratch file that is mapped into memory, so that it may be larger than memory. */
 struct tri_mapped_file {

@@ -4,7 +4,6 @@
 #include "triangle/base/system.h"
 
 #include <aio.h>
-#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -101,14 +100,6 @@ int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
         done += got > 0 ? (size_t)got : 0;
     }
     return (int64_t)done;
-}
-
-bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place)
-{
-    const int64_t got = tri_read_at(file, at, n, place);
-    if (got >= 0 && (uint64_t)got < n)
-        errno = EIO;
-    return got >= 0 && (uint64_t)got == n;
 }
 
 bool tri_write_at(tri_file file, const void *at, size_t n, uint64_t place)
@@ -344,16 +335,6 @@ char *tri_path_resolve(const char *path)
     return NULL;
 }
 
-void tri_path_folder(const char *path, char folder[TRI_PATH])
-{
-    struct tri_file_facts facts;
-    const size_t length = tri_path_folder_length(path);
-    if (tri_path_look(path, &facts) && facts.kind == TRI_FOLDER)
-        snprintf(folder, TRI_PATH, "%s", path);
-    else
-        snprintf(folder, TRI_PATH, "%.*s", length > 0 ? (int)length : 1, length > 0 ? path : ".");
-}
-
 /* --- folders */
 
 bool tri_folder_make(const char *path) { return mkdir(path, 0777) == 0; }
@@ -431,81 +412,27 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
 
 /* --- files in memory */
 
-static bool has_file(struct tri_mapped_file *f, const char *folder)
-{
-    if (f->file == TRI_NO_FILE)
-        f->file = tri_scratch_file(folder);
-    return f->file != TRI_NO_FILE;
-}
-
-/* 0, or an errno. A file beyond the limit would bring a signal. */
-static int reserve_space(struct tri_mapped_file *f, size_t size)
+/* A file beyond the limit would bring a signal. */
+int tri_file_reserve(tri_file file, uint64_t from, uint64_t size)
 {
     struct rlimit limit;
     int fault;
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && size > limit.rlim_cur)
         return EFBIG;
     do
-        fault = posix_fallocate((int)f->file, (off_t)f->size, (off_t)(size - f->size));
+        fault = posix_fallocate((int)file, (off_t)from, (off_t)(size - from));
     while (fault == EINTR);
     return fault;
 }
 
-static void *map_bytes(tri_file file, size_t size)
+void *tri_file_map(tri_file file, size_t size)
 {
     void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, (int)file, 0);
     return at != MAP_FAILED ? at : NULL;
 }
 
-int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t size)
-{
-    assert(size > f->size);
-    if (!has_file(f, folder))
-        return errno;
-    const int fault = reserve_space(f, size);
-    if (fault)
-        return fault;
-    void *at = map_bytes(f->file, size);
-    if (!at)
-        return errno;
-    if (f->at)
-        munmap(f->at, f->size);
-    f->at = at;
-    f->size = size;
-    return 0;
-}
-
-bool tri_mapped_file_append(struct tri_mapped_file *f, const char *folder, const void *bytes, size_t n)
-{
-    assert(!f->at);
-    if (!has_file(f, folder) || !tri_write_at(f->file, bytes, n, f->size))
-        return false;
-    f->size += n;
-    return true;
-}
-
-bool tri_mapped_file_map(struct tri_mapped_file *f)
-{
-    if (!f->at && f->size > 0)
-        f->at = map_bytes(f->file, f->size);
-    return f->at || f->size == 0;
-}
-
-void tri_mapped_file_release_pages(const struct tri_mapped_file *f)
-{
-    if (f->at)
-        madvise(f->at, f->size, MADV_DONTNEED);
-}
-
-void tri_mapped_file_close(struct tri_mapped_file *f)
-{
-    const int fault = errno;
-    if (f->at)
-        munmap(f->at, f->size);
-    (void)tri_file_close(f->file);
-    *f = (struct tri_mapped_file){.file = TRI_NO_FILE};
-    errno = fault;
-}
+void tri_file_unmap(void *at, size_t size) { munmap(at, size); }
+void tri_file_release_pages(void *at, size_t size) { madvise(at, size, MADV_DONTNEED); }
 
 /* --- memory */
 

@@ -8,7 +8,6 @@
 
 #include "triangle/base/system.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -213,14 +212,6 @@ int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
         done += (size_t)got;
     }
     return (int64_t)done;
-}
-
-bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place)
-{
-    const int64_t got = tri_read_at(file, at, n, place);
-    if (got >= 0 && (uint64_t)got < n)
-        errno = EIO;
-    return got >= 0 && (uint64_t)got == n;
 }
 
 bool tri_write_at(tri_file file, const void *at, size_t n, uint64_t place)
@@ -430,16 +421,6 @@ size_t tri_path_folder_length(const char *path)
     return n;
 }
 
-void tri_path_folder(const char *path, char folder[TRI_PATH])
-{
-    struct tri_file_facts facts;
-    const size_t length = tri_path_folder_length(path);
-    if (tri_path_look(path, &facts) && facts.kind == TRI_FOLDER)
-        snprintf(folder, TRI_PATH, "%s", path);
-    else
-        snprintf(folder, TRI_PATH, "%.*s", length > 0 ? (int)length : 1, length > 0 ? path : ".");
-}
-
 /* --- folders */
 
 bool tri_folder_make(const char *path)
@@ -547,14 +528,14 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
 
 /* --- files in memory */
 
-static bool has_file(struct tri_mapped_file *f, const char *folder)
+/* Disk space is allocated when a file grows. */
+int tri_file_reserve(tri_file file, uint64_t from, uint64_t size)
 {
-    if (f->file == TRI_NO_FILE)
-        f->file = tri_scratch_file(folder);
-    return f->file != TRI_NO_FILE;
+    (void)from;
+    return tri_file_cut(file, size) ? 0 : errno;
 }
 
-static void *map_bytes(tri_file file, size_t size)
+void *tri_file_map(tri_file file, size_t size)
 {
     const HANDLE map = CreateFileMappingW(handle_of(file), NULL, PAGE_READWRITE, (DWORD)((uint64_t)size >> 32),
                                           (DWORD)size, NULL);
@@ -566,51 +547,11 @@ static void *map_bytes(tri_file file, size_t size)
     return at;
 }
 
-/* A longer file has all its room on the disk. */
-int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t size)
+void tri_file_unmap(void *at, size_t size)
 {
-    assert(size > f->size);
-    if (!has_file(f, folder) || !tri_file_cut(f->file, size))
-        return errno;
-    void *at = map_bytes(f->file, size);
-    if (!at)
-        return errno;
-    if (f->at)
-        UnmapViewOfFile(f->at);
-    f->at = at;
-    f->size = size;
-    return 0;
+    (void)size;
+    UnmapViewOfFile(at);
 }
 
-bool tri_mapped_file_append(struct tri_mapped_file *f, const char *folder, const void *bytes, size_t n)
-{
-    assert(!f->at);
-    if (!has_file(f, folder) || !tri_write_at(f->file, bytes, n, f->size))
-        return false;
-    f->size += n;
-    return true;
-}
-
-bool tri_mapped_file_map(struct tri_mapped_file *f)
-{
-    if (!f->at && f->size > 0)
-        f->at = map_bytes(f->file, f->size);
-    return f->at || f->size == 0;
-}
-
-/* Unlocking pages that are not locked takes them from what the process has in memory. */
-void tri_mapped_file_release_pages(const struct tri_mapped_file *f)
-{
-    if (f->at)
-        (void)VirtualUnlock(f->at, f->size);
-}
-
-void tri_mapped_file_close(struct tri_mapped_file *f)
-{
-    const int fault = errno;
-    if (f->at)
-        UnmapViewOfFile(f->at);
-    (void)tri_file_close(f->file);
-    *f = (struct tri_mapped_file){.file = TRI_NO_FILE};
-    errno = fault;
-}
+/* Unlocking pages that are not locked removes them from the working set. */
+void tri_file_release_pages(void *at, size_t size) { (void)VirtualUnlock(at, size); }
