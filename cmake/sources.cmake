@@ -48,6 +48,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine/lattice_fill.c
     triangle/refine/feed.c
     triangle/refine/treat.c
+    triangle/refine/star.c
+    triangle/refine/degrees.c
     triangle/refine/smooth.c
     triangle/refine/refine.c
     triangle/refine/census.c

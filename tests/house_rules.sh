@@ -79,6 +79,7 @@ tested_by() {
     triangle/size/candidates.c | triangle/size/near.c | triangle/size/raster.c) echo lengths ;;
     triangle/size/figure_sizes.c | triangle/size/spread.c | triangle/size/sampled.c | triangle/size/background.c) echo lengths ;;
     triangle/refine/place.c) echo inside ;;
+    triangle/refine/star.c | triangle/refine/degrees.c) echo smooth ;;
     triangle/refine/feed.c | triangle/refine/treat.c) echo refine ;;
     sched/schedule/par_triangulate.c) echo par_triangulate ;;
     sched/checkpoint/*) echo checkpoint ;;

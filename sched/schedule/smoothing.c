@@ -11,6 +11,7 @@
 struct smoothing {
     const struct par_run *run;
     struct tri_smooth *smooth;
+    enum tri_smooth_pass pass; /* kind of it */
     int phase;
     tri_vertex_id *vertex; /* [n] that are still to be smoothed in this pass, in order .. */
     tri_vertex_id *dealt;  /* [n] .. and by block */
@@ -18,13 +19,19 @@ struct smoothing {
     struct par_deal deal;  /* of the phase, tile by tile a block */
     struct tri_smooth_count *count; /* [blocks] */
     enum tri_status *status; /* [blocks] */
+    int32_t *home;         /* [n_vertices] of tri_smooth */
     int64_t moved;         /* vertices, in this pass */
 };
 
-/* The block of the phase that vertex i of the list lies in. */
-static int32_t block_of(const struct smoothing *s, struct par_locator *locator, int32_t i)
+/* Sets the block of each vertex. It stays while the phase runs, although vertices move. */
+static void find_homes(void *context, size_t share)
 {
-    return par_locate(locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]]);
+    const struct smoothing *s = context;
+    const struct tri_mesh *mesh = s->run->mesh;
+    const struct tri_range range = tri_share(share, mesh->n_vertices);
+    struct par_locator locator = PAR_LOST;
+    for (tri_vertex_id v = range.first; v < range.last; v++)
+        s->smooth->home[v] = par_locate(&locator, &s->run->cells, s->phase, mesh->xy[v]);
 }
 
 static void count_share(void *context, size_t share)
@@ -32,9 +39,8 @@ static void count_share(void *context, size_t share)
     const struct smoothing *s = context;
     int32_t *count = par_deal_at(&s->deal, share);
     const struct tri_range range = par_deal_share(&s->deal, share);
-    struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++)
-        count[block_of(s, &locator, i)]++;
+        count[s->smooth->home[s->vertex[i]]]++;
 }
 
 static void deal_share(void *context, size_t share)
@@ -42,18 +48,16 @@ static void deal_share(void *context, size_t share)
     const struct smoothing *s = context;
     int32_t *at = par_deal_at(&s->deal, share);
     const struct tri_range range = par_deal_share(&s->deal, share);
-    struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++)
-        s->dealt[at[block_of(s, &locator, i)]++] = s->vertex[i];
+        s->dealt[at[s->smooth->home[s->vertex[i]]]++] = s->vertex[i];
 }
 
 static void smooth_block(void *context, size_t block)
 {
     const struct smoothing *s = context;
-    const int32_t rows = s->run->cells.n_rows, *start = s->deal.start + block;
-    const struct tri_fence fence = par_fence(&s->run->cells, (int32_t)block / rows, (int32_t)block % rows);
-    s->status[block] = tri_smooth_some(s->smooth, s->dealt + start[0], start[1] - start[0], &fence, &s->count[block],
-                                       NULL);
+    const int32_t *start = s->deal.start + block;
+    s->status[block] = tri_smooth_some(s->smooth, s->pass, s->dealt + start[0], start[1] - start[0], (int32_t)block,
+                                       &s->count[block], NULL);
 }
 
 /* What blocks leave is the list of the next phase. */
@@ -78,6 +82,7 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
     if (!par_deal_reserve(&s->deal, s->n, par_blocks(&s->run->cells)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
     if (!status) {
+        tri_execute(executor, tri_shares(s->run->mesh->n_vertices), find_homes, s);
         tri_execute(executor, s->deal.shares, count_share, s);
         par_deal_add_up(&s->deal);
         tri_execute(executor, s->deal.shares, deal_share, s);
@@ -88,19 +93,22 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
     return status;
 }
 
-static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
+static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pass, struct tri_error *error)
 {
     const struct tri_mesh *mesh = s->run->mesh;
     enum tri_status status = TRI_OK;
     struct tri_smooth_count last = {0};
     s->n = 0;
     s->moved = 0;
+    s->pass = pass;
+    s->smooth->home = s->home;
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (tri_is_movable(mesh, v))
             s->vertex[s->n++] = v;
     for (s->phase = 0; !status && s->phase < PAR_PHASES; s->phase++)
         status = smooth_phase(s, error);
-    status = status ? status : tri_smooth_some(s->smooth, s->vertex, s->n, NULL, &last, error);
+    s->smooth->home = NULL; /* the rest by one call */
+    status = status ? status : tri_smooth_some(s->smooth, pass, s->vertex, s->n, 0, &last, error);
     s->moved += last.moved;
     return status;
 }
@@ -111,17 +119,22 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     const size_t list = ((size_t)mesh->n_vertices + 1) * sizeof(tri_vertex_id);
     const size_t blocks = (size_t)par_blocks(&run->cells);
     struct smoothing s = {.run = run, .vertex = tri_mesh_extra(mesh, list), .dealt = tri_mesh_extra(mesh, list),
+                          .home = tri_mesh_extra(mesh, list),
                           .count = malloc(blocks * sizeof *s.count), .status = malloc(blocks * sizeof *s.status),
                           .moved = 1};
-    enum tri_status status = s.vertex && s.dealt && s.count && s.status
+    enum tri_status status = s.vertex && s.dealt && s.home && s.count && s.status
                                  ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
-    for (int pass = 0; !status && s.moved > 0 && pass < run->asked.quality->passes; pass++)
-        status = smooth_pass(&s, error);
+    for (int pass = 0; !status && s.moved > 0 && pass < run->asked.quality->passes; pass++) {
+        if (tri_flips_degrees(run->asked.quality, pass))
+            status = smooth_pass(&s, TRI_SMOOTH_FLIP, error);
+        status = status ? status : smooth_pass(&s, TRI_SMOOTH_MOVE, error);
+    }
     status = status ? status : tri_smooth_end(s.smooth, &run->asked.executor, error);
     tri_smooth_free(s.smooth);
     tri_mesh_extra_free(mesh, s.vertex);
     tri_mesh_extra_free(mesh, s.dealt);
+    tri_mesh_extra_free(mesh, s.home);
     free(s.count);
     free(s.status);
     return status;

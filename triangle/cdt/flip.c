@@ -27,9 +27,8 @@ bool tri_flip_touch(struct tri_flips *f, tri_triangle_id t)
     return true;
 }
 
-/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
- * o), the neighbour (n, o, s). Returns the neighbour. */
-static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
+/* Near apex n, right r, far apex o, left s: t becomes (n, r, o), the neighbour (n, o, s). */
+tri_triangle_id tri_flip_edge(struct tri_flips *f, tri_triangle_id t, int e)
 {
     struct tri_mesh *mesh = f->mesh;
     struct tri_triangle *near = &mesh->tri[t];
@@ -52,6 +51,10 @@ static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
     if (f->corner) {
         f->corner[n] = f->corner[r] = f->corner[o] = t;
         f->corner[s] = u;
+    }
+    if (f->degree) {
+        f->degree[n]++, f->degree[o]++;
+        f->degree[r]--, f->degree[s]--;
     }
     return u;
 }
@@ -77,14 +80,13 @@ static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
 }
 
-/* Do all corners of t, and the apex beyond its edge e, lie in the fence? */
-static bool is_fenced(const struct tri_flips *f, tri_triangle_id t, int e)
+/* Are all corners of t, and the apex beyond its edge e, at home in the block? */
+static bool is_in_block(const struct tri_flips *f, tri_triangle_id t, int e)
 {
     const struct tri_mesh *mesh = f->mesh;
     const tri_vertex_id *v = mesh->tri[t].v;
-    return tri_fence_holds(f->fence, mesh->xy[v[0]]) && tri_fence_holds(f->fence, mesh->xy[v[1]]) &&
-           tri_fence_holds(f->fence, mesh->xy[v[2]]) &&
-           tri_fence_holds(f->fence, mesh->xy[tri_apex(mesh, mesh->tri[t].n[e])]);
+    return f->home[v[0]] == f->block && f->home[v[1]] == f->block && f->home[v[2]] == f->block &&
+           f->home[tri_apex(mesh, mesh->tri[t].n[e])] == f->block;
 }
 
 bool tri_flip_legalise(struct tri_flips *f)
@@ -94,12 +96,12 @@ bool tri_flip_legalise(struct tri_flips *f)
         tri_halfedge code = f->touched[--f->n_touched];
         tri_triangle_id t = tri_of(code);
         int e = tri_edge(code);
-        if (mesh->tri[t].n[e] < 0 || (f->fence && !is_fenced(f, t, e)) || !is_illegal(f, t, e) ||
+        if (mesh->tri[t].n[e] < 0 || (f->home && !is_in_block(f, t, e)) || !is_illegal(f, t, e) ||
             !is_convex(mesh, t, e))
             continue;
         if (f->history && !tri_flip_history_add(f->history, mesh, t, e))
             return false;
-        tri_triangle_id u = flip(f, t, e);
+        tri_triangle_id u = tri_flip_edge(f, t, e);
         if (!tri_flip_touch(f, t) || !tri_flip_touch(f, u))
             return false;
     }

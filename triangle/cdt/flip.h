@@ -2,7 +2,6 @@
 #ifndef TRIANGLE_CDT_FLIP_H
 #define TRIANGLE_CDT_FLIP_H
 
-#include "triangle/mesh/fence.h"
 #include "triangle/mesh/mesh.h"
 
 /* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
@@ -21,7 +20,9 @@ struct tri_flips {
     struct tri_mesh *mesh;
     struct tri_flip_history *history; /* NULL, or hears of each flip before it is made; not owned */
     tri_triangle_id *corner; /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
-    const struct tri_fence *fence; /* NULL, or edges are flipped only where all four corners lie in it; not owned */
+    int32_t *degree;         /* NULL, or for each vertex the triangles at it, kept so; not owned */
+    const int32_t *home;     /* NULL, or the block of each vertex: an edge is flipped only if all four corners .. */
+    int32_t block;           /* .. have this block; not owned */
     bool ties_stay;          /* of four points on one circle nothing is flipped; else coordinates break the tie */
     tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */
     int32_t n_touched, capacity;
@@ -31,6 +32,10 @@ void tri_flips_free(struct tri_flips *flips);
 
 /* The three edges of triangle t are to be tested. False: out of memory. */
 bool tri_flip_touch(struct tri_flips *flips, tri_triangle_id t);
+
+/* Flips edge e of t, whose quadrilateral is strictly convex, whether or not it is Delaunay. Edge 1 of t is the new one;
+ * flipping it leads back, up to the order of corners. Returns the neighbour across it. */
+tri_triangle_id tri_flip_edge(struct tri_flips *flips, tri_triangle_id t, int e);
 
 /* Lawson: flips what is not Delaunay until everything touched is. False: out of memory; the mesh is valid then. */
 bool tri_flip_legalise(struct tri_flips *flips);
