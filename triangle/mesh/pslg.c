@@ -1,10 +1,10 @@
-/* What every PSLG must fulfil before anything else looks at it. */
+/* Basic checks of a PSLG, made before any other use. */
 #include "triangle/mesh/pslg.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_RECORDS = 1 << 28 }; /* of any kind: four times that is still an int32_t's range of indices */
+enum { MOST_RECORDS = 1 << 28 }; /* of each kind: four times this number still fits an int32_t index */
 
 static enum tri_status check_count(const char *what, int32_t n, const void *array, struct tri_error *error)
 {
