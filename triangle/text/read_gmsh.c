@@ -1,6 +1,6 @@
-/* Reading Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, parts included: nodes, triangles and
- * lines, and of the data those that it names, "marker" and "attribute_0" and so on. Other sections are passed. Nodes
- * and elements keep the order of the file. */
+/* Reads Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, including parts: nodes, triangles, lines,
+ * and the data that gmsh.c writes, "marker", "attribute_0" and so on. Other sections are skipped. Nodes and elements
+ * keep the order of the file. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,13 +17,13 @@ struct reading {
     struct tri_reading to;
     struct tri_bytes file;
     bool has_format, has_nodes, has_elements;
-    bool any_data; /* the first numbers of nodes are an attribute, however they are called */
+    bool any_data; /* use the first data at nodes as an attribute, regardless of their name */
     struct tri_tags nodes, triangles, segments;
-    int64_t n_elements;      /* of any kind */
-    int64_t n_triangles, n_segments; /* read so far */
+    int64_t n_elements;      /* number of elements of any type */
+    int64_t n_triangles, n_segments; /* number read so far */
 };
 
-/* A section of data: a tag and a number for each node, or each element. */
+/* A data section: a tag and a number for each node or each element. */
 struct data {
     char name[MOST_NAME];
     bool of_nodes;
@@ -57,14 +57,15 @@ static bool read_format(struct reading *r)
     return true;
 }
 
-/* Blocks and items of a section; false: not there, or more than the file could hold of such a size. */
+/* Reads the numbers of blocks and items of a section. Returns false if they are missing, or exceed what the file can
+ * hold for this item size. */
 static bool take_totals(struct reading *r, uint64_t *blocks, uint64_t *n, uint64_t item)
 {
     if (!tri_bytes_has(&r->file, 4, 8))
         return false;
     *blocks = tri_take_u64(&r->file);
     *n = tri_take_u64(&r->file);
-    r->file.at += 16; /* least and greatest tag */
+    r->file.at += 16; /* skip least and greatest tag */
     return tri_bytes_has(&r->file, *n, item) && *n <= INT32_MAX;
 }
 
@@ -77,7 +78,7 @@ static bool take_block(struct reading *r, struct block *block)
 {
     if (!tri_bytes_has(&r->file, 1, 20))
         return false;
-    r->file.at += 8; /* dimension and tag of the entity */
+    r->file.at += 8; /* skip dimension and tag of the entity */
     block->kind = tri_take_i32(&r->file);
     block->n = tri_take_u64(&r->file);
     return true;
@@ -131,14 +132,14 @@ static int nodes_of(int32_t kind)
     }
 }
 
-/* The place of the node that is named there. */
+/* Reads a node tag and converts it to a node number. */
 static bool take_place(struct reading *r, const char *at, int32_t *place)
 {
     *place = (int32_t)tri_tags_place(&r->nodes, tri_get_i64(at));
     return *place >= 0 || FAIL(r, "an element names node %" PRId64 ", which is not there", tri_get_i64(at));
 }
 
-/* Gmsh has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+/* Gmsh orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
 static bool take_triangle(struct reading *r, const char *at, int n_nodes)
 {
     static const int opposite[] = {2, 0, 1};
@@ -174,7 +175,7 @@ static bool take_elements(struct reading *r, const struct block *block)
     return true;
 }
 
-/* Which are of what kind shows later. */
+/* Allocates room for n elements of each kind, because their kinds are not known yet. */
 static bool begin_elements(struct reading *r, int64_t n)
 {
     const bool room = tri_reading_triangles(&r->to, n, 6) && tri_reading_segments(&r->to, n) &&
@@ -239,7 +240,8 @@ static bool skip_lines(struct reading *r, int64_t n)
     return n == 0;
 }
 
-/* Names, then numbers: no time, one component, and how many there are. False: in another form. */
+/* Reads the head of a data section: names, reals (times), and numbers, among them the number of components, which must
+ * be 1, and of items. Returns false for other forms. */
 static bool take_data_head(struct reading *r, struct data *data)
 {
     const char *line;
@@ -248,14 +250,14 @@ static bool take_data_head(struct reading *r, struct data *data)
     if (!take_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
         return false;
     snprintf(data->name, sizeof data->name, "%.*s", length < MOST_NAME ? (int)length : 0, line);
-    for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* as older files have it */
+    for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* older files have blanks */
         *blank = '_';
     return skip_lines(r, names - 1) && take_count(r, &reals) && skip_lines(r, reals) && take_count(r, &numbers) &&
            numbers >= 3 && skip_lines(r, 1) && take_count(r, &components) && components == 1 &&
            take_count(r, &data->n) && skip_lines(r, numbers - 3);
 }
 
-/* A column of reals among `width` more, which are 0 so far. The places of tags: of nodes, or of triangles. */
+/* Appends a column to `*width` existing ones; missing values are 0. tags: of nodes, or of triangles. */
 static bool add_column(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                   double **columns, int32_t *width)
 {
@@ -280,7 +282,7 @@ static bool add_column(struct reading *r, const struct data *data, const struct 
     return true;
 }
 
-/* Markers of nodes, or of segments. */
+/* Reads markers of nodes, or of segments. */
 static bool take_markers(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                     int32_t **markers)
 {
@@ -319,7 +321,7 @@ static bool read_data(struct reading *r, bool of_nodes)
     if (!r->has_elements)
         return FAIL(r, "data before the elements are not read");
     if (!take_data_head(r, &data))
-        return true; /* of another kind */
+        return true; /* data of another form are ignored */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
         return FAIL(r, "%.*s: not one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
@@ -359,7 +361,7 @@ static bool read_sections(struct reading *r)
         if (!read_section(r, line + 1, n - 1))
             return false;
         snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);
-        r->file.at--; /* of what has no content the end of the line stands before it */
+        r->file.at--; /* include the line break before the end tag if the section is empty */
         if (!tri_bytes_pass(&r->file, end))
             return FAIL(r, "the section %.*s has no end", (int)n, line);
         (void)tri_bytes_line(&r->file, &line, &n);

@@ -1,8 +1,10 @@
-/* Reading SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. Both number nodes in any way.
+/* Reads SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. In both formats node numbers are
+ * arbitrary.
  *
- * What stands for nothing is taken for nothing: elevations that are all 0, and materials that are all 1, are no
- * attributes. Of fort.14 the marker of a segment is 2 on open boundaries, the type of land from 10 on, otherwise 1;
- * whoever wrote the mesh may have had others. Segments are those of the boundary: neither format has any inside. */
+ * Default values are ignored: if all elevations are 0, or all materials are 1, there is no attribute. In fort.14 the
+ * marker of a segment is 2 on open boundaries, the type on land boundaries of type 10 or above, and otherwise 1; the
+ * mesh that was written may have had other markers. All segments are on the boundary, because neither format stores
+ * inner ones. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,12 +18,12 @@ struct reading {
     struct tri_text text;
     struct tri_tags nodes;
     double *z;                   /* [n_points] */
-    int64_t most_ends, most_markers; /* room in the arrays of segments */
+    int64_t most_ends, most_markers; /* capacity of the arrays of segments */
 };
 
 #define FAIL(r, line, ...) tri_reading_fail(&(r)->to, TRI_BAD_INPUT, line, __VA_ARGS__)
 
-/* --- what both have */
+/* --- common parts */
 
 static bool begin_nodes(struct reading *r, int64_t n)
 {
@@ -29,7 +31,7 @@ static bool begin_nodes(struct reading *r, int64_t n)
     return tri_tags_begin_nodes(&r->nodes, n, &r->to) && (r->z || tri_reading_no_memory(&r->to));
 }
 
-/* Number, place and elevation. */
+/* Reads number, position and elevation of a node. */
 static const char *take_node(void *user, size_t i, struct tri_fields *fields)
 {
     struct reading *r = user;
@@ -41,7 +43,7 @@ static const char *take_node(void *user, size_t i, struct tri_fields *fields)
     return tri_fields_real(fields, &r->z[i]) == TRI_FIELD_BAD ? "has an elevation that is not finite" : NULL;
 }
 
-/* The next field names a node; -1: it does not. */
+/* Reads a node tag and returns the node number; -1: there is no such node. */
 static int32_t take_place(const struct reading *r, struct tri_fields *fields)
 {
     int64_t tag;
@@ -62,7 +64,7 @@ static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t mar
     return true;
 }
 
-/* Elevations become the attribute of the points. */
+/* Stores the elevations as the attribute of the points, unless all are 0. */
 static void hand_over(struct reading *r)
 {
     bool any = false;
@@ -88,7 +90,7 @@ static enum tri_status read_with(bool (*read)(struct reading *r), const char *pa
     return r.to.status;
 }
 
-/* --- fort.14: a title, numbers of elements and nodes, nodes, elements, open boundaries, land */
+/* --- fort.14: title, numbers of elements and nodes, nodes, elements, open boundaries, land boundaries */
 
 static const char *take_element(void *user, size_t i, struct tri_fields *fields)
 {
@@ -103,7 +105,7 @@ static const char *take_element(void *user, size_t i, struct tri_fields *fields)
     return NULL;
 }
 
-/* The next record's first numbers; false: they are not there, or negative. */
+/* Reads the first one or two numbers of the next record. Returns false if they are missing or negative. */
 static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 {
     struct tri_fields fields;
@@ -113,7 +115,7 @@ static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 
 static bool goes_round(int64_t type) { return type == 1 || type == 11 || type == 21; }
 
-/* n nodes, a line each. */
+/* Reads n nodes, one per line. */
 static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
 {
     int32_t first = -1, last = -1;
@@ -130,7 +132,7 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
     return !closed || first == last || add_segment(r, last, first, marker);
 }
 
-/* How many boundaries there are, how many nodes, and each. */
+/* Reads the number of boundaries, the number of their nodes, and each boundary. */
 static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
 {
     int64_t n, n_nodes;
@@ -158,7 +160,7 @@ static bool read_14(struct reading *r)
     struct tri_cursor cursor = tri_cursor_begin(&r->text);
     struct tri_fields fields;
     int64_t n_elements, n_nodes;
-    if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* the title has a number in it */
+    if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* skip a title with a number */
         (void)tri_cursor_next(&cursor, &fields);
     if (!take_numbers(&cursor, &n_elements, &n_nodes))
         return FAIL(r, cursor.line, "the numbers of elements and nodes are missing");
@@ -180,15 +182,15 @@ enum tri_status tri_read_14(const char *path, struct tri_pslg *mesh, struct tri_
     return read_with(read_14, path, mesh, elements, executor, error);
 }
 
-/* --- .2dm: cards in any order, each of which begins with a word */
+/* --- .2dm: cards in any order, each starting with a word */
 
 enum card { CARD_NODE, CARD_TRIANGLE, CARD_SIX_NODES, CARD_STRING, CARD_UNKNOWN, CARDS, CARD_NONE };
 
 struct cards {
     const char *at, *end;
     size_t line;
-    enum card card; /* of the line that was taken, */
-    struct tri_fields fields; /* and what follows its word */
+    enum card card; /* card of the current line */
+    struct tri_fields fields; /* the fields after its word */
 };
 
 static bool is_word(const char *at, const char *word, size_t n)
@@ -196,7 +198,7 @@ static bool is_word(const char *at, const char *word, size_t n)
     return strlen(word) == n && memcmp(at, word, n) == 0;
 }
 
-/* Other elements, such as quadrilaterals, are no triangles; other cards are of no concern. */
+/* Other elements, such as quadrilaterals, are CARD_UNKNOWN; other cards are ignored. */
 static enum card card_of(const char *word, size_t n)
 {
     if (is_word(word, "ND", n))
@@ -259,7 +261,8 @@ static bool read_nodes(struct reading *r)
     return tri_tags_order(&r->nodes, "node", &r->to);
 }
 
-/* Nodes go round the triangle, beginning with a corner; ours are the corners, then those opposite to each. */
+/* In the file, nodes go around the triangle, starting at a corner. Here, the corners come first, then the midpoints
+ * opposite each. */
 static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields)
 {
     static const int place_of_three[] = {0, 1, 2}, place_of_six[] = {0, 5, 1, 3, 2, 4};
@@ -305,11 +308,11 @@ static bool read_triangles(struct reading *r)
     return true;
 }
 
-/* A string ends with a negative number; behind it stands its marker. Lines of ten nodes may go before. */
+/* A string may extend over several lines. It ends with a negative number, which is followed by its marker. */
 static bool read_strings(struct reading *r)
 {
     int32_t last = -1;
-    int64_t first = 0; /* segment of the string */
+    int64_t first = 0; /* first segment of the string */
     for (struct cards c = all_cards(r); next_card(&c);) {
         int64_t tag, marker = 0;
         bool ends = false;

@@ -1,9 +1,9 @@
-/* Reading JIGSAW's .msh, which shares nothing but its suffix with Gmsh's: sections of KEY = numbers, then rows of
- * numbers with semicolons between them.
+/* Reads JIGSAW's .msh format, which shares only its suffix with Gmsh's: sections of KEY = numbers, followed by rows of
+ * numbers separated by semicolons.
  *
- * Of a mesh POINT, TRIA3 and VALUE are read, of a grid COORD and VALUE; other sections are passed. Points count from 0.
- * In a grid values run along y first. A grid whose coordinates are evenly spaced, to a thousandth of a step, is a
- * raster; any other becomes a mesh of two triangles a cell. */
+ * For a mesh, POINT, TRIA3 and VALUE are read; for a grid, COORD and VALUE. Other sections are skipped. Points count
+ * from 0. Values of a grid run along y first. A grid whose coordinates are evenly spaced, within a thousandth of a
+ * step, is a raster; any other becomes a mesh with two triangles per cell. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,8 +16,8 @@ struct jigsaw {
     bool is_grid;
     int64_t n_values;
     double *values;   /* [n_values] */
-    int64_t n[2];     /* coordinates along x and y */
-    double *coord[2]; /* [n[k]] rising */
+    int64_t n[2];     /* number of coordinates along x and y */
+    double *coord[2]; /* [n[k]] increasing */
 };
 
 static bool begin_array(struct jigsaw *j, double **array, int64_t n)
@@ -36,7 +36,7 @@ static bool take_coordinates(struct jigsaw *j, double *to, int64_t n)
     return true;
 }
 
-/* Behind each place stands a number of a group. */
+/* Coordinates are followed by a group number. */
 static bool take_points(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
@@ -114,7 +114,7 @@ static bool take_head(struct jigsaw *j)
            TRI_WORDS_FAIL(w, "neither euclidean-mesh nor euclidean-grid");
 }
 
-/* Sections that are no field have a row for each item, except one that is itself a row. */
+/* Skips a section. It has one line per item, except "radii", which is a single row. */
 static bool pass_section(struct jigsaw *j)
 {
     const bool is_row = tri_words_is(j->words, "radii");
@@ -140,7 +140,7 @@ static bool take_section(struct jigsaw *j)
     return tri_words_is(w, "coord") ? take_axis(j) : pass_section(j);
 }
 
-/* --- what has been read becomes a field */
+/* --- conversion to a size field */
 
 static bool is_even(const double *coord, int64_t n)
 {
@@ -164,7 +164,7 @@ static bool make_raster(struct jigsaw *j, struct tri_size_file *file)
     return true;
 }
 
-/* Points are numbered as the values are. */
+/* Points are numbered like the values. */
 static bool make_mesh_of_grid(struct jigsaw *j)
 {
     struct tri_reading *to = &j->words->to;

@@ -1,8 +1,8 @@
-/* Reading VTK XML, unstructured grid (.vtu): as triangle/text/vtu.c writes it, and the same with arrays as text. One
- * piece, cells that are triangles and lines, z = 0.
+/* Reads VTK XML, unstructured grid (.vtu), as triangle/text/vtu.c writes it, and the same with arrays as text: one
+ * piece, cells that are triangles or lines, z = 0.
  *
- * The head is XML of a form that needs no more than its tags: they are gone through once, and the arrays of interest
- * noted. An array becomes doubles, whatever it is in the file: numbers of points up to 2^31 are exact. */
+ * Of the XML head only the tags are needed: they are scanned once, and the arrays of interest are recorded. All arrays
+ * are converted to doubles, which represent point numbers up to 2^31 exactly. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,8 +19,8 @@ enum which {
 };
 
 static const struct kind {
-    const char *section, *name; /* NULL: any */
-    int components;             /* 0: any */
+    const char *section, *name; /* NULL: any name */
+    int components;             /* 0: any number */
 } kinds[ARRAYS] = {
     {"PointData", "marker", 1},    {"PointData", "attributes", 0}, {"CellData", "marker", 1},
     {"CellData", "attributes", 0}, {"Points", NULL, 3},            {"Cells", "connectivity", 1},
@@ -39,7 +39,7 @@ static const struct type {
     {"Int8", 1, false, true},    {"UInt8", 1, false, false},
 };
 
-/* A piece of the file: a tag without its brackets, a value, the text of an array. */
+/* A range of the file: a tag without its brackets, a value, or the text of an array. */
 struct span {
     const char *at, *end;
 };
@@ -48,16 +48,16 @@ struct array {
     bool there, appended;
     const struct type *type;
     int64_t components;
-    uint64_t offset;  /* of appended data */
-    struct span text; /* of others */
+    uint64_t offset;  /* offset in the appended data */
+    struct span text; /* text of an array that is not appended */
 };
 
 struct reading {
     struct tri_reading to;
     struct tri_bytes file;
     bool is_vtk;
-    bool wide_sizes; /* of appended data: 8 bytes */
-    const char *data; /* where these begin; NULL: there are none */
+    bool wide_sizes; /* sizes of appended arrays have 8 bytes; false: 4 */
+    const char *data; /* start of the appended data; NULL: none */
     char section[16];
     int n_pieces;
     int64_t n_points, n_cells;
@@ -68,7 +68,7 @@ struct reading {
 
 /* --- tags */
 
-/* The next one; comments and the like are passed. */
+/* Finds the next tag; skips comments and declarations. */
 static bool next_tag(struct tri_bytes *file, struct span *tag)
 {
     while (tri_bytes_pass(file, "<")) {
@@ -91,7 +91,7 @@ static bool is_tag(struct span tag, const char *name)
     return m >= n && memcmp(tag.at, name, n) == 0 && (m == n || is_blank(tag.at[n]) || tag.at[n] == '/');
 }
 
-/* The value of name="value", or empty. */
+/* Returns the value of name="value", or an empty span. */
 static struct span value_of(struct span tag, const char *name)
 {
     const size_t n = strlen(name);
@@ -111,7 +111,7 @@ static bool is_value(struct span value, const char *text)
            memcmp(value.at, text, strlen(text)) == 0;
 }
 
-/* A count; -1: it is none. */
+/* Returns the value as a count; -1: it is not a count. */
 static int64_t count_of(struct span tag, const char *name, int64_t missing)
 {
     const struct span value = value_of(tag, name);
@@ -158,7 +158,7 @@ static const struct type *type_of(struct span tag)
     return NULL;
 }
 
-/* Which array it is; ARRAYS: none of interest. */
+/* Returns the array that the tag describes; ARRAYS: none of interest. */
 static int which_array(const struct reading *r, struct span tag)
 {
     int k = 0;
@@ -203,7 +203,7 @@ static bool take_data_tag(struct reading *r, struct span tag)
     return true;
 }
 
-/* Sections are few, and their names short. */
+/* Records the current section. */
 static void note_section(struct reading *r, struct span tag)
 {
     static const char *const sections[] = {"PointData", "CellData", "Points", "Cells"};
@@ -261,7 +261,7 @@ static double number_at(const struct type *type, const char *at)
     return -(double)(((~bits << unused) >> unused) + 1);
 }
 
-/* n numbers of appended data. False: they are not there. */
+/* Reads n numbers of appended data. Returns false if they are missing. */
 static bool take_appended(const struct reading *r, const struct array *a, uint64_t n, double *out)
 {
     const uint64_t head = r->wide_sizes ? 8 : 4;
@@ -278,7 +278,7 @@ static bool take_appended(const struct reading *r, const struct array *a, uint64
     return true;
 }
 
-/* The same of text. */
+/* The same for text. */
 static bool take_text(const struct array *a, uint64_t n, double *out)
 {
     const char *at = a->text.at;
@@ -303,8 +303,8 @@ static bool are_finite(const double *at, uint64_t n)
     return i == n;
 }
 
-/* The numbers of n rows, malloc'ed and the caller's even if they are not good. A file of so many bytes cannot hold more
- * numbers than these. */
+/* Reads the numbers of `rows` rows into an array from malloc, which belongs to the caller even after a failure. A file
+ * cannot hold more numbers than bytes. */
 static bool take_array(struct reading *r, enum which k, int64_t rows, double **out)
 {
     const struct array *a = &r->array[k];
@@ -336,7 +336,7 @@ static bool take_points(struct reading *r)
     return true;
 }
 
-/* Whole numbers of 32 bits. */
+/* Reads an array of 32-bit integers. */
 static bool take_markers(struct reading *r, enum which k, int64_t rows, int32_t **out)
 {
     double *values = NULL;
@@ -364,12 +364,12 @@ static bool take_point_data(struct reading *r)
     return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
 }
 
-/* --- cells: each array as doubles */
+/* --- cells: all arrays are converted to doubles */
 
 struct cells {
     double *type, *end, *node;
-    int64_t n_nodes;     /* in all */
-    int n_of_a_triangle; /* 3 or 6 */
+    int64_t n_nodes;     /* total number */
+    int n_of_a_triangle; /* nodes of each triangle: 3 or 6 */
 };
 
 static int nodes_of(double type)
@@ -404,7 +404,7 @@ static bool check_nodes(struct reading *r, const struct cells *c)
     return true;
 }
 
-/* VTK has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+/* VTK orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
 static void put_cells(struct reading *r, const struct cells *c)
 {
     static const int opposite[] = {2, 0, 1};
@@ -426,7 +426,7 @@ static void put_cells(struct reading *r, const struct cells *c)
     }
 }
 
-/* Of the rows of all cells those of triangles come first, in place. */
+/* Moves the rows of triangles to the front, in place. */
 static bool take_cell_attributes(struct reading *r, const struct cells *c)
 {
     const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;

@@ -16,7 +16,7 @@ static bool begins_comment(const struct tri_words *w)
     return n > 0 && (size_t)(end_of(w) - w->at) >= n && memcmp(w->at, w->comment, n) == 0;
 }
 
-/* The text ends in a newline. */
+/* Skips the rest of the line. The text ends in a newline. */
 static void skip_line(struct tri_words *w)
 {
     const char *newline = memchr(w->at, '\n', (size_t)(end_of(w) - w->at));
@@ -58,7 +58,7 @@ bool tri_words_is(const struct tri_words *w, const char *text)
     return true;
 }
 
-/* Of the last word, for an error. */
+/* Reports an error that quotes the last word. */
 static bool fail_at_word(struct tri_words *w, const char *what, const char *wrong)
 {
     return TRI_WORDS_FAIL(w, "%s: \"%.*s\" is %s", what, (int)(w->length < 40 ? w->length : 40), w->word, wrong);
