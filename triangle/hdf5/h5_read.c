@@ -1,9 +1,8 @@
-/* Datasets are opened once; a slice is one selection of rows.
+/* Datasets are opened once; a slice is a selection of rows.
  *
- * A file may come from anywhere, and HDF5 follows what it says: links and virtual datasets to other files, or storage
- * in them, pipes among these, filters from libraries, and fills what is not there with zeros. So only what the writer
- * makes is opened: arrays that this very file holds, uncompressed and in full. No array is then larger than the
- * file. */
+ * The origin of a file is not trusted. HDF5 would follow links, virtual datasets and external storage to other files,
+ * even pipes, load filters from libraries, and replace missing data by zeros. So only arrays like those of the writer
+ * are opened: stored in this file, uncompressed and complete. Then no array is larger than the file. */
 #include "triangle/hdf5/h5_read.h"
 
 #include <assert.h>
@@ -22,8 +21,8 @@ static const struct tri_h5_form *const forms = tri_h5_forms;
 struct tri_h5 {
     const char *path; /* borrowed */
     hid_t file;
-    int64_t bytes; /* of the file */
-    hid_t datasets[TRI_H5_KINDS]; /* < 0: there is none */
+    int64_t bytes; /* size of the file */
+    hid_t datasets[TRI_H5_KINDS]; /* < 0: no such dataset */
     int64_t rows[TRI_H5_KINDS];
     int32_t width[TRI_H5_KINDS];
     struct tri_h5_counts counts;
@@ -41,7 +40,7 @@ static bool has_type(hid_t dataset, unsigned wanted)
     return found;
 }
 
-/* Its rows and width, if it has the form. */
+/* Determines rows and width. Returns whether the array has the required form. */
 static bool measure(struct tri_h5 *h5, enum tri_h5_kind k)
 {
     hsize_t size[2] = {0, 1};
@@ -59,7 +58,7 @@ static bool measure(struct tri_h5 *h5, enum tri_h5_kind k)
            h5->rows[k] == h5->rows[forms[k].rows_of];
 }
 
-/* Numbers that its storage must have room for: whole chunks. */
+/* Returns the number of elements that its storage must hold, in whole chunks. */
 static double stored_numbers(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const int64_t size[2] = {h5->rows[k], h5->width[k]};
@@ -73,7 +72,7 @@ static double stored_numbers(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t 
     return n;
 }
 
-/* What is wrong with how the array is kept; NULL: nothing. */
+/* Returns the fault in the storage of the array; NULL: none. */
 static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const H5D_layout_t layout = H5Pget_layout(creation);
@@ -92,7 +91,8 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hi
     return NULL;
 }
 
-/* Triangles and segments of so many points can be no more than these: twice and three times as many. */
+/* Does the array have more rows than a planar mesh allows? There are at most twice as many triangles as points, and
+ * three times as many segments. */
 static bool are_too_many(const struct tri_h5 *h5, enum tri_h5_kind k)
 {
     const int64_t points = h5->rows[TRI_H5_OF_POINTS];
@@ -112,7 +112,7 @@ static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct
     return wrong ? tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s %s", forms[k].name, wrong) : TRI_OK;
 }
 
-/* Does the name lead to something in this very file, and no further? */
+/* Is the name a hard link, which refers to an object in this file? */
 static bool is_own(const struct tri_h5 *h5, const char *name)
 {
     H5L_info_t link;
@@ -132,7 +132,7 @@ static enum tri_status open_array(struct tri_h5 *h5, enum tri_h5_kind k, struct 
     return check_array(h5, k, error);
 }
 
-/* An attribute of /about; -1: there is none. */
+/* Returns an attribute of /about; -1: it does not exist. */
 static int64_t about(const struct tri_h5 *h5, const char *name)
 {
     int64_t value = -1;
@@ -175,7 +175,8 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
     return TRI_OK;
 }
 
-/* HDF5 does not tell a file that is not there from one that is none of its own. */
+/* Checks that the file is a regular one, because HDF5 does not distinguish a missing file from one in another
+ * format. */
 static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
 {
     struct tri_file_facts facts;
@@ -203,7 +204,7 @@ enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_err
     **h5 = (struct tri_h5){.path = path, .file = -1};
     for (int k = 0; k < TRI_H5_KINDS; k++)
         (*h5)->datasets[k] = -1;
-    (void)H5dont_atexit(); /* before all else: at the end of the process HDF5 would print about what is damaged */
+    (void)H5dont_atexit(); /* must be first: otherwise HDF5 prints messages about damaged files when the process ends */
     H5E_BEGIN_TRY
     {
         status = open_file(*h5, error);
@@ -234,7 +235,7 @@ const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5) { return &h5->
 
 /* --- slices */
 
-/* False: HDF5 could not. */
+/* Reads rows of an array. Returns false if HDF5 fails. */
 static bool read_rows(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first, int64_t n, hid_t type, void *out)
 {
     const hsize_t place[2] = {(hsize_t)first, 0}, size[2] = {(hsize_t)n, (hsize_t)h5->width[k]};
