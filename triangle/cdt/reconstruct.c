@@ -25,7 +25,7 @@
 enum { LOOSE = INT32_MAX };
 
 /* A half-edge as an item to sort: its code in the low bits; above it, first the offset of its lower end in the range,
- * later its upper end and a bit that tells whether it runs downwards. */
+ * later its upper end and a bit that is set if it runs downwards. */
 enum { CODE_BITS = 31, HIGH_SHIFT = CODE_BITS + 1, FEW = 24 };
 
 _Static_assert(4 * INT64_C(1) * TRI_MAX_TRIANGLES == INT64_C(1) << CODE_BITS, "codes fill their bits");

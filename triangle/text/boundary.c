@@ -1,12 +1,12 @@
 /* Finds the chains of boundary edges.
  *
  * The sides of segments are listed with their markers and sorted by their first node; if segments have the same ends,
- * the last one counts. In every mesh all boundary edges are segments, so one pass over the triangles tells which sides
- * have a triangle. A boundary edge has its triangle on the left.
+ * the last one counts. In every mesh all boundary edges are segments, so one pass over the triangles finds the sides
+ * that have a triangle. A boundary edge has its triangle on the left.
  *
  * At every node as many boundary edges arrive as leave, so a walk along unused edges returns to its start and forms a
- * loop. At a node where loops touch, the walk takes the first edge that leaves. A loop is cut where the marker
- * changes. */
+ * loop. At a node shared by several loops, the walk takes the first edge that leaves. A loop is cut at changes of the
+ * marker. */
 #include "triangle/text/boundary.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 /* Meshes in the file formats of other programs, written and read.
  *
- * All formats hold the nodes, the triangles and the boundary with its markers; what else each can hold, and how it is
- * read, is described in docs/formats.md. Numbers are exact: binary, or %.17g. Sizes are 64 bits wide. Each writer is a
+ * All formats hold the nodes, the triangles and the boundary with its markers. docs/formats.md describes what else each
+ * can hold, and how it is read. Numbers are exact: binary, or %.17g. Sizes are 64 bits wide. Each writer is a
  * tri_write_call (triangle/text/write.h): rows are computed one by one, so that the grid may be stored anywhere. */
 #ifndef TRIANGLE_TEXT_FORMATS_H
 #define TRIANGLE_TEXT_FORMATS_H
