@@ -171,7 +171,7 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
     *faces = malloc(((size_t)n + 1) * sizeof **faces);
     enum tri_status status = TRI_OK;
     if (!points || !*faces)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
     for (int32_t k = 0; !status && k < n; k++) {
         const double *at = places + (size_t)k * (size_t)width;
         points[k] = tri_to_units(mesh, at[0], at[1]);

@@ -162,7 +162,7 @@ enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct t
     file->output->failed = true;
     if (reason.no_memory)
         return tri_fail(error, TRI_NO_MEMORY, file->output->path, 0, "no memory to write %s (HDF5)", what);
-    return tri_fail(error, TRI_CANNOT_WRITE, file->output->path, 0, "cannot write %s: HDF5 says \"%s\"", what,
+    return tri_fail(error, TRI_CANNOT_WRITE, file->output->path, 0, "cannot write %s: HDF5 reports \"%s\"", what,
                     reason.text);
 }
 

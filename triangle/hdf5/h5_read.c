@@ -80,14 +80,14 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hi
     const double bytes = type >= 0 ? (double)H5Tget_size(type) : 8;
     tri_h5_drop(H5Tclose, type);
     if (layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED)
-        return "is kept in a way that is not read: virtual or compact";
+        return "has virtual or compact storage, which is not supported";
     if (H5Pget_external_count(creation) != 0)
-        return "lies in another file, which is not read";
+        return "is stored in another file, which is not supported";
     if (H5Pget_nfilters(creation) != 0)
-        return "is compressed, which is not read: h5repack -f NONE";
+        return "is compressed, which is not supported; to uncompress it: h5repack -f NONE";
     if (bytes * (double)h5->rows[k] * h5->width[k] > (double)h5->bytes ||
         (double)H5Dget_storage_size(h5->datasets[k]) < bytes * stored_numbers(h5, k, creation))
-        return "is not there in full";
+        return "is incomplete";
     return NULL;
 }
 
@@ -102,11 +102,11 @@ static bool are_too_many(const struct tri_h5 *h5, enum tri_h5_kind k)
 static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct tri_error *error)
 {
     if (!measure(h5, k))
-        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s has not the type and size that it should",
+        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s has an unexpected type or size",
                         forms[k].name);
     hid_t creation = H5Dget_create_plist(h5->datasets[k]);
-    const char *wrong = creation < 0            ? "cannot be looked at"
-                        : are_too_many(h5, k)   ? "has more rows than a mesh of so many points"
+    const char *wrong = creation < 0            ? "cannot be examined"
+                        : are_too_many(h5, k)   ? "has more rows than a mesh with this number of points can have"
                                                 : wrong_storage(h5, k, creation);
     tri_h5_drop(H5Pclose, creation);
     return wrong ? tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s %s", forms[k].name, wrong) : TRI_OK;
@@ -161,7 +161,7 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
     if (status)
         return status;
     if (about(h5, TRI_H5_ABOUT_VERSION) > TRI_H5_VERSION)
-        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "written by a newer version: this one knows format %d",
+        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "written by a newer version; this version reads format %d",
                         TRI_H5_VERSION);
     const int64_t input_points = about(h5, TRI_H5_ABOUT_INPUT_POINTS);
     h5->counts = (struct tri_h5_counts){

@@ -203,7 +203,7 @@ enum tri_status tri_grid_make(struct tri_grid *grid, const struct tri_grid_optio
     struct source *s = calloc(1, sizeof *s);
     *grid = (struct tri_grid){0};
     if (!s)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to output a mesh");
     s->mesh = options->mesh;
     s->pslg = options->pslg;
     s->n_nodes = options->second_order ? 6 : 3;

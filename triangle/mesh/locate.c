@@ -198,7 +198,7 @@ static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_p
     free(w.event);
     free(w.start);
     tri_order_clear(&w.order);
-    return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
 }
 
 /* --- walks and sweep combined */
@@ -233,7 +233,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
     free(order);
     free(scratch);
     if (!room)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
     return all ? TRI_OK : sweep_for(mesh, points, n, faces, error);
 }
 

@@ -174,7 +174,7 @@ static enum tri_status open_in_place(struct tri_output *output, struct tri_error
         return TRI_OK;
     (void)tri_file_close(output->file);
     output->file = TRI_NO_FILE;
-    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "has become another file since it was looked at");
+    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "was replaced by another file in the meantime");
 }
 
 /* Rejects paths that cannot become a file. */

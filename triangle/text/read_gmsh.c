@@ -50,9 +50,9 @@ static bool read_format(struct reading *r)
     const char *line;
     size_t n;
     if (!tri_bytes_line(&r->file, &line, &n) || !is_line(line, n, "4.1 1 8"))
-        return FAIL(r, "not of version 4.1, binary: Gmsh writes that with -format msh41 -bin");
+        return FAIL(r, "not a binary file of version 4.1; Gmsh writes these with -format msh41 -bin");
     if (!tri_bytes_has(&r->file, 1, 4) || tri_take_i32(&r->file) != 1)
-        return FAIL(r, "big-endian: only little-endian files are read");
+        return FAIL(r, "the file is big-endian; only little-endian files are supported");
     r->has_format = true;
     return true;
 }
@@ -93,7 +93,7 @@ static bool take_node(struct reading *r, int64_t i, const char *tag, const char 
     r->to.mesh->points[2 * i] = x;
     r->to.mesh->points[2 * i + 1] = y;
     return (isfinite(x) && isfinite(y) && z == 0) ||
-           FAIL(r, "node %" PRId64 " is not finite, or not at z = 0", r->nodes.tag[i]);
+           FAIL(r, "node %" PRId64 " has a coordinate that is not finite, or z is not 0", r->nodes.tag[i]);
 }
 
 static bool read_nodes(struct reading *r)
@@ -109,7 +109,7 @@ static bool read_nodes(struct reading *r)
         if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
             return ends_early(r, "Nodes");
         if (block.kind != 0)
-            return FAIL(r, "nodes with parameters are not read");
+            return FAIL(r, "nodes with parametric coordinates are not supported");
         const char *tags = r->file.at, *places = tags + 8 * block.n;
         for (uint64_t i = 0; i < block.n; i++)
             if (!take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i))
@@ -136,7 +136,7 @@ static int nodes_of(int32_t kind)
 static bool take_place(struct reading *r, const char *at, int32_t *place)
 {
     *place = (int32_t)tri_tags_place(&r->nodes, tri_get_i64(at));
-    return *place >= 0 || FAIL(r, "an element names node %" PRId64 ", which is not there", tri_get_i64(at));
+    return *place >= 0 || FAIL(r, "an element refers to node %" PRId64 ", which does not exist", tri_get_i64(at));
 }
 
 /* Gmsh orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
@@ -166,7 +166,7 @@ static bool take_elements(struct reading *r, const struct block *block)
     const int n = nodes_of(block->kind);
     const size_t bytes = 8 * (size_t)(n + 1);
     if (n >= 3 && r->n_triangles > 0 && r->to.elements->n_nodes != n)
-        return FAIL(r, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, "the mesh has triangles of three nodes and of six nodes");
     if (n >= 3)
         r->to.elements->n_nodes = n;
     for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
@@ -210,7 +210,8 @@ static bool read_elements(struct reading *r)
         if (!take_block(r, &block) || block.n > n - done)
             return ends_early(r, "Elements");
         if (nodes_of(block.kind) == 0)
-            return FAIL(r, "an element of type %" PRId32 ": triangles and lines are read", block.kind);
+            return FAIL(r, "an element is of type %" PRId32 "; only triangles, lines and points are supported",
+                        block.kind);
         if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
             return ends_early(r, "Elements");
         if (!take_elements(r, &block))
@@ -319,12 +320,12 @@ static bool read_data(struct reading *r, bool of_nodes)
 {
     struct data data = {.of_nodes = of_nodes};
     if (!r->has_elements)
-        return FAIL(r, "data before the elements are not read");
+        return FAIL(r, "a data section comes before the elements");
     if (!take_data_head(r, &data))
         return true; /* data of another form are ignored */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
-        return FAIL(r, "%.*s: not one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
+        return FAIL(r, "%.*s does not have one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
                     of_nodes ? "nodes" : "elements");
     data.at = r->file.at;
     r->file.at += (uint64_t)data.n * DATUM_BYTES;
@@ -357,7 +358,7 @@ static bool read_sections(struct reading *r)
         if (n == 0)
             continue;
         if (*line != '$' || n > 40)
-            return FAIL(r, r->has_format ? "what stands between two sections is none" : "not a .msh file");
+            return FAIL(r, r->has_format ? "unexpected text between two sections" : "not a .msh file");
         if (!read_section(r, line + 1, n - 1))
             return false;
         snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);

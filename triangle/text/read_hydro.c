@@ -98,10 +98,10 @@ static const char *take_element(void *user, size_t i, struct tri_fields *fields)
     int64_t n;
     tri_fields_skip(fields);
     if (tri_fields_integer(fields, &n) != TRI_FIELD_GOOD || n != 3)
-        return "is no triangle";
+        return "is not a triangle";
     for (size_t k = 0; k < 3; k++)
         if ((r->to.elements->corners[3 * i + k] = take_place(r, fields)) < 0)
-            return "has a corner that is no node";
+            return "has a corner that is not a node";
     return NULL;
 }
 
@@ -123,7 +123,7 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
         struct tri_fields fields;
         const int32_t node = tri_cursor_next(cursor, &fields) ? take_place(r, &fields) : -1;
         if (node < 0)
-            return FAIL(r, cursor->line, "a node of a boundary is missing, or no node");
+            return FAIL(r, cursor->line, "a node of a boundary is missing or does not exist");
         if (i > 0 && !add_segment(r, last, node, marker))
             return false;
         first = i == 0 ? node : first;
@@ -141,7 +141,7 @@ static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool o
     for (int64_t i = 0; i < n; i++) {
         int64_t type = 0;
         if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
-            return FAIL(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
+            return FAIL(r, cursor->line, "the number of nodes of a boundary, or its type, is missing");
         const int32_t marker = open ? TRI_OPEN_BOUNDARY : type >= 10 && type < 100 ? (int32_t)type : 1;
         if (!read_string(r, cursor, n_nodes, !open && goes_round(type), marker))
             return false;
@@ -239,14 +239,14 @@ static bool count_cards(struct reading *r, int64_t count[CARDS])
 {
     for (struct cards c = all_cards(r); next_card(&c);) {
         if (c.card == CARD_UNKNOWN)
-            return FAIL(r, c.line, "an element that is no triangle");
+            return FAIL(r, c.line, "an element is not a triangle");
         if (c.card != CARD_NONE)
             count[c.card]++;
     }
     if (count[CARD_TRIANGLE] > 0 && count[CARD_SIX_NODES] > 0)
-        return FAIL(r, 0, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, 0, "the mesh has triangles of three nodes and of six nodes");
     if (count[CARD_NODE] > INT32_MAX || count[CARD_TRIANGLE] + count[CARD_SIX_NODES] > INT32_MAX)
-        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more nodes or triangles than are read");
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "too many nodes or triangles");
     return true;
 }
 
@@ -294,7 +294,7 @@ static bool read_triangles(struct reading *r)
         if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
             continue;
         if (!take_corners(r, i, &c.fields))
-            return FAIL(r, c.line, "a triangle has a node that is missing, or no node");
+            return FAIL(r, c.line, "a triangle has a node that is missing or does not exist");
         if (tri_fields_real(&c.fields, &material[i]) != TRI_FIELD_GOOD)
             material[i] = 1;
         any = any || material[i] != 1;
@@ -320,7 +320,7 @@ static bool read_strings(struct reading *r)
             ends = tag < 0 && tag > INT64_MIN;
             const int32_t node = (int32_t)tri_tags_place(&r->nodes, ends ? -tag : tag);
             if (node < 0)
-                return FAIL(r, c.line, "a node string has a node that is not there");
+                return FAIL(r, c.line, "a node string has a node that does not exist");
             if (last >= 0 && !add_segment(r, last, node, 0))
                 return false;
             last = node;
@@ -342,7 +342,7 @@ static bool read_2dm(struct reading *r)
     if (!count_cards(r, count))
         return false;
     if (count[CARD_NODE] == 0)
-        return FAIL(r, 0, "no mesh: there are no nodes (ND)");
+        return FAIL(r, 0, "no mesh: the file has no nodes (ND)");
     const int n_nodes = count[CARD_SIX_NODES] > 0 ? 6 : 3;
     return begin_nodes(r, count[CARD_NODE]) &&
            tri_reading_triangles(&r->to, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], n_nodes) && read_nodes(r) &&

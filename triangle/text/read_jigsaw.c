@@ -23,7 +23,7 @@ struct jigsaw {
 static bool begin_array(struct jigsaw *j, double **array, int64_t n)
 {
     if (*array)
-        return TRI_WORDS_FAIL(j->words, "a section that is there twice");
+        return TRI_WORDS_FAIL(j->words, "a section occurs twice");
     *array = malloc(((size_t)n + 1) * sizeof **array);
     return *array || tri_reading_no_memory(&j->words->to);
 }
@@ -61,7 +61,7 @@ static bool take_triangles(struct jigsaw *j)
     if (!tri_words_count(w, "the number of triangles", 8, &n))
         return false;
     if (w->to.elements->corners)
-        return TRI_WORDS_FAIL(w, "a section that is there twice");
+        return TRI_WORDS_FAIL(w, "a section occurs twice");
     if (!tri_reading_triangles(&w->to, n, 3))
         return false;
     for (int64_t i = 0; i < 4 * n; i++) {
@@ -97,7 +97,7 @@ static bool take_axis(struct jigsaw *j)
     j->n[axis - 1] = n;
     for (int64_t i = 1; i < n; i++)
         if (!(j->coord[axis - 1][i] > j->coord[axis - 1][i - 1]))
-            return TRI_WORDS_FAIL(j->words, "coordinates that do not rise");
+            return TRI_WORDS_FAIL(j->words, "coordinates do not increase");
     return true;
 }
 
@@ -106,7 +106,7 @@ static bool take_head(struct jigsaw *j)
     struct tri_words *w = j->words;
     int64_t version;
     if (!tri_words_next(w) || !tri_words_is(w, "mshid"))
-        return TRI_WORDS_FAIL(w, "no .msh file, neither of Gmsh ($MeshFormat) nor of JIGSAW (mshid)");
+        return TRI_WORDS_FAIL(w, "not a .msh file of Gmsh ($MeshFormat) or of JIGSAW (mshid)");
     if (!tri_words_whole(w, "mshid", 1, 3, &version))
         return false;
     j->is_grid = tri_words_next(w) && tri_words_is(w, "euclidean-grid");
@@ -189,15 +189,15 @@ static bool make_field(struct jigsaw *j, struct tri_size_file *file)
 {
     struct tri_words *w = j->words;
     if (j->is_grid && (j->n[0] == 0 || j->n[1] == 0))
-        return TRI_WORDS_FAIL(w, "a grid without COORD along x and y");
+        return TRI_WORDS_FAIL(w, "a grid needs COORD along x and along y");
     const int64_t expected = j->is_grid ? j->n[0] * j->n[1] : w->to.mesh->n_points;
     if (!j->values || j->n_values != expected || expected == 0)
-        return TRI_WORDS_FAIL(w, "%lld values, not one for each of %lld places", (long long)j->n_values,
+        return TRI_WORDS_FAIL(w, "the number of values is %lld, the number of places %lld", (long long)j->n_values,
                               (long long)expected);
     if (j->is_grid && is_even(j->coord[0], j->n[0]) && is_even(j->coord[1], j->n[1]))
         return make_raster(j, file);
     if (j->is_grid && (w->to.mesh->points || w->to.elements->corners))
-        return TRI_WORDS_FAIL(w, "a grid with points or triangles of its own");
+        return TRI_WORDS_FAIL(w, "a grid must not have points or triangles");
     if (j->is_grid && !make_mesh_of_grid(j))
         return false;
     w->to.mesh->attributes = j->values;

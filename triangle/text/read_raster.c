@@ -41,10 +41,10 @@ static bool take_head(struct tri_words *w, struct asc *asc)
 {
     const enum head head = head_of(w);
     if (head == HEADS)
-        return TRI_WORDS_FAIL(w, "\"%.*s\" is no entry of an ESRI ASCII grid", (int)(w->length < 40 ? w->length : 40),
-                              w->word);
+        return TRI_WORDS_FAIL(w, "\"%.*s\" is not an entry of an ESRI ASCII grid",
+                              (int)(w->length < 40 ? w->length : 40), w->word);
     if (asc->has[head])
-        return TRI_WORDS_FAIL(w, "%s is there twice", head_names[head]);
+        return TRI_WORDS_FAIL(w, "%s occurs twice", head_names[head]);
     asc->has[head] = true;
     if (head == COLUMNS || head == ROWS)
         return tri_words_whole(w, head_names[head], 1, INT32_MAX, head == ROWS ? &asc->rows : &asc->columns);
@@ -70,7 +70,7 @@ static bool take_heads(struct tri_words *w, struct asc *asc)
     for (int k = 0; k < 2; k++) {
         const enum head corner = k ? Y_CORNER : X_CORNER, size = asc->has[DX + k] ? DX + (enum head)k : CELL;
         if (!asc->has[COLUMNS + k] || asc->has[corner] == asc->has[corner + 1])
-            return TRI_WORDS_FAIL(w, "%s is missing, or there twice",
+            return TRI_WORDS_FAIL(w, "%s is missing or occurs twice",
                                   head_names[asc->has[COLUMNS + k] ? corner : COLUMNS + (enum head)k]);
         if (!(asc->value[size] > 0))
             return TRI_WORDS_FAIL(w, "%s is not above 0", head_names[size]);
@@ -156,7 +156,7 @@ static enum tri_status take_npy_head(struct npy *npy, struct tri_bytes *bytes, c
     const int64_t length = version == 1 ? (int64_t)(tri_get_u32(bytes->at + 8) & 0xffff) : tri_get_u32(bytes->at + 8);
     bytes->at += version == 1 ? 10 : 12;
     if (length > MOST_HEAD || length > bytes->end - bytes->at)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "the head of the .npy file is not complete, or too long");
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "the header of the .npy file is incomplete or too long");
     memcpy(head, bytes->at, (size_t)length);
     bytes->at += length;
     const char *order = behind_key(head, "fortran_order'");
@@ -227,8 +227,8 @@ static enum tri_status take_npy(struct tri_size_file *file, struct tri_bytes *by
             const double value = npy_value(&npy, bytes->at + from * npy.bytes);
             file->values[row * columns + column] = isnan(value) ? 0 : value;
         }
-    return place(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0, "an extent without room: "
-                                                           "its places are the same, or too far apart");
+    return place(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0,
+                                                           "the extent is empty or too large");
 }
 
 enum tri_status tri_size_read_npy(struct tri_size_file *file, const char *path, const double extent[4],
@@ -236,8 +236,8 @@ enum tri_status tri_size_read_npy(struct tri_size_file *file, const char *path, 
 {
     struct tri_bytes bytes;
     if (!extent)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "an array knows no places: FILE.npy@XMIN,YMIN,XMAX,YMAX says "
-                        "where its first and its last value are");
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "a .npy file needs an extent: FILE.npy@XMIN,YMIN,XMAX,YMAX, the "
+                        "positions of its first and its last value");
     enum tri_status status = tri_bytes_load(&bytes, path, error);
     status = status ? status : take_npy(file, &bytes, path, extent, error);
     tri_bytes_free(&bytes);

@@ -69,7 +69,7 @@ static bool read_nodes(struct gmsh *g)
 {
     int64_t blocks, n, parametric;
     if (g->nodes.tag)
-        return TRI_WORDS_FAIL(g->words, "$Nodes is there twice");
+        return TRI_WORDS_FAIL(g->words, "$Nodes occurs twice");
     if (!take_totals(g, "the number of nodes", &blocks, &n) || !tri_tags_begin_nodes(&g->nodes, n, &g->words->to))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
@@ -77,12 +77,12 @@ static bool read_nodes(struct gmsh *g)
         if (g->blocks && !take_block(g, &parametric, n - g->n_nodes, &here))
             return false;
         if (g->blocks && parametric != 0)
-            return TRI_WORDS_FAIL(g->words, "nodes with parameters are not read");
+            return TRI_WORDS_FAIL(g->words, "nodes with parametric coordinates are not supported");
         if (!take_nodes(g, here))
             return false;
     }
     if (g->n_nodes < n)
-        return TRI_WORDS_FAIL(g->words, "%" PRId64 " nodes, not %" PRId64, g->n_nodes, n);
+        return TRI_WORDS_FAIL(g->words, "there are %" PRId64 " nodes instead of %" PRId64, g->n_nodes, n);
     return tri_tags_order(&g->nodes, "node", &g->words->to);
 }
 
@@ -107,7 +107,7 @@ static bool take_element(struct gmsh *g, int64_t kind)
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
-            return TRI_WORDS_FAIL(g->words, "an element names node %" PRId64 ", which is not there", tag);
+            return TRI_WORDS_FAIL(g->words, "an element refers to node %" PRId64 ", which does not exist", tag);
         if (is_triangle && k < 3)
             corners[k] = (int32_t)place;
     }
@@ -137,7 +137,7 @@ static bool read_elements(struct gmsh *g)
 {
     int64_t blocks, n, kind = 0, done = 0;
     if (!g->nodes.tag || g->words->to.elements->corners)
-        return TRI_WORDS_FAIL(g->words, "$Elements before $Nodes, or twice");
+        return TRI_WORDS_FAIL(g->words, "$Elements comes before $Nodes or occurs twice");
     if (!take_totals(g, "the number of elements", &blocks, &n) || !tri_reading_triangles(&g->words->to, n, 3))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
@@ -182,7 +182,7 @@ static bool read_data(struct gmsh *g)
     int64_t components, n, tag;
     double value;
     if (!g->nodes.tag)
-        return TRI_WORDS_FAIL(g->words, "$NodeData before $Nodes");
+        return TRI_WORDS_FAIL(g->words, "$NodeData comes before $Nodes");
     if (!take_data_head(g, &components, &n))
         return false;
     if (components != 1 || mesh->attributes)
@@ -196,7 +196,7 @@ static bool read_data(struct gmsh *g)
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
-            return TRI_WORDS_FAIL(g->words, "a value at node %" PRId64 ", which is not there", tag);
+            return TRI_WORDS_FAIL(g->words, "a value is given for node %" PRId64 ", which does not exist", tag);
         mesh->attributes[place] = value;
     }
     return true;
@@ -207,14 +207,14 @@ static bool read_format(struct gmsh *g)
     int64_t binary, bytes;
     double version;
     if (!tri_words_next(g->words) || !tri_words_is(g->words, "$meshformat"))
-        return TRI_WORDS_FAIL(g->words, "no .msh file");
+        return TRI_WORDS_FAIL(g->words, "not a .msh file");
     if (!tri_words_real(g->words, "a version", true, &version) || !take_any(g, "a kind of file", &binary) ||
         !take_any(g, "a size", &bytes))
         return false;
     g->blocks = version == 4.1;
     return ((g->blocks || version == 2.2) && binary == 0) ||
-           TRI_WORDS_FAIL(g->words, "of version %g%s: 2.2 and 4.1 are read as text, and 4.1 as binary", version,
-                          binary ? ", binary" : "");
+           TRI_WORDS_FAIL(g->words, "version %g%s is not supported; only 2.2 and 4.1 as text and 4.1 as binary are",
+                          version, binary ? ", binary," : "");
 }
 
 /* Skips the rest of the section. */
@@ -234,7 +234,7 @@ static bool read_section(struct gmsh *g)
     const size_t n = g->words->length - 1;
     bool good = true;
     if (g->words->word[0] != '$')
-        return TRI_WORDS_FAIL(g->words, "what stands between two sections is none");
+        return TRI_WORDS_FAIL(g->words, "unexpected text between two sections");
     if (tri_words_is(g->words, "$nodes"))
         good = read_nodes(g);
     else if (tri_words_is(g->words, "$elements"))
@@ -346,7 +346,7 @@ static bool read_element(struct view *v)
     const size_t length = (size_t)(w->at - kind);
     const int n = nodes_of_view(kind, length);
     if (n == 0)
-        return TRI_WORDS_FAIL(w, "no scalar triangle (ST), line (SL) or point (SP)");
+        return TRI_WORDS_FAIL(w, "not a scalar triangle (ST), line (SL) or point (SP)");
     if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n))
         return false;
     pass_end(v);
@@ -361,7 +361,7 @@ static bool read_view_head(struct view *v)
 {
     struct tri_words *w = v->words;
     if (!tri_words_next(w) || !tri_words_is(w, "view"))
-        return TRI_WORDS_FAIL(w, "no .pos file: it does not begin with View");
+        return TRI_WORDS_FAIL(w, "not a .pos file: it does not begin with View");
     if (!take_sign(v, '"'))
         return false;
     const char *quote = memchr(w->at, '"', (size_t)(w->text.data + w->text.size - w->at));

@@ -129,9 +129,9 @@ static bool take_file_tag(struct reading *r, struct span tag)
     if (!is_value(value_of(tag, "type"), "UnstructuredGrid"))
         return FAIL(r, "not an unstructured grid");
     if (is_value(value_of(tag, "byte_order"), "BigEndian"))
-        return FAIL(r, "big-endian: only little-endian data are read");
+        return FAIL(r, "the file is big-endian; only little-endian data are supported");
     if (value_of(tag, "compressor").at)
-        return FAIL(r, "its data are compressed: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are compressed; only raw appended data and text are supported (meshio: binary=False)");
     r->wide_sizes = is_value(value_of(tag, "header_type"), "UInt64");
     return true;
 }
@@ -141,11 +141,11 @@ static bool take_piece_tag(struct reading *r, struct span tag)
     r->n_points = count_of(tag, "NumberOfPoints", -1);
     r->n_cells = count_of(tag, "NumberOfCells", -1);
     if (r->n_pieces++ > 0)
-        return FAIL(r, "more than one piece: files of one are read");
+        return FAIL(r, "more than one piece is not supported");
     if (r->n_points < 0 || r->n_cells < 0)
         return FAIL(r, "the numbers of points and cells are missing");
     if (r->n_points > INT32_MAX || r->n_cells > INT32_MAX)
-        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more points or cells than are read");
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "too many points or cells");
     return true;
 }
 
@@ -177,17 +177,17 @@ static bool take_array_tag(struct reading *r, struct span tag)
     if (tag.end[-1] != '/') { /* its text follows */
         array.text.at = r->file.at;
         if (!tri_bytes_pass(&r->file, "<"))
-            return FAIL(r, "the file ends in an array");
+            return FAIL(r, "the file ends within an array");
         array.text.end = --r->file.at;
     }
     if (k == ARRAYS)
         return true;
     if (!array.appended && !is_value(format, "ascii"))
-        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64; only raw appended data and text are supported (meshio: binary=False)");
     const int64_t offset = count_of(tag, "offset", 0);
     if (!array.type || offset < 0 || array.components < 1 || array.components > MOST_COMPONENTS ||
         (kinds[k].components > 0 && array.components != kinds[k].components) || (!array.appended && !array.text.at))
-        return FAIL(r, "an array has not the type and size that it should");
+        return FAIL(r, "an array has an unexpected type or size");
     array.offset = (uint64_t)offset;
     r->array[k] = array;
     return true;
@@ -196,7 +196,7 @@ static bool take_array_tag(struct reading *r, struct span tag)
 static bool take_data_tag(struct reading *r, struct span tag)
 {
     if (!is_value(value_of(tag, "encoding"), "raw"))
-        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64; only raw appended data and text are supported (meshio: binary=False)");
     if (!tri_bytes_pass(&r->file, "_"))
         return FAIL(r, "there are no data");
     r->data = r->file.at;
@@ -316,7 +316,7 @@ static bool take_array(struct reading *r, enum which k, int64_t rows, double **o
         return tri_reading_no_memory(&r->to);
     if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
         return true;
-    return FAIL(r, "the array %s has not %" PRIu64 " finite numbers", name_of(k), n);
+    return FAIL(r, "the array %s does not have %" PRIu64 " finite numbers", name_of(k), n);
 }
 
 /* --- points */
@@ -386,9 +386,9 @@ static bool check_cells(struct reading *r, struct cells *c, int64_t *triangles)
         if (n == 0)
             return FAIL(r, "cell %" PRId64 " is of type %g: neither triangle nor line", i, c->type[i]);
         if (c->end[i] != end)
-            return FAIL(r, "cell %" PRId64 " has not %d points", i, n);
+            return FAIL(r, "cell %" PRId64 " does not have %d points", i, n);
         if (n > 2 && c->n_of_a_triangle != n && *triangles > 0)
-            return FAIL(r, "triangles of three nodes and of six in one mesh");
+            return FAIL(r, "the mesh has triangles of three nodes and of six nodes");
         c->n_of_a_triangle = n > 2 ? n : c->n_of_a_triangle;
         *triangles += n > 2;
     }
@@ -400,7 +400,7 @@ static bool check_nodes(struct reading *r, const struct cells *c)
 {
     for (int64_t i = 0; i < c->n_nodes; i++)
         if (!(c->node[i] >= 0 && c->node[i] < (double)r->n_points))
-            return FAIL(r, "a cell names point %g of %" PRId64, c->node[i], r->n_points);
+            return FAIL(r, "a cell refers to point %g of %" PRId64, c->node[i], r->n_points);
     return true;
 }
 

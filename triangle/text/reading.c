@@ -86,7 +86,7 @@ bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading 
     qsort(tags->sorted, (size_t)tags->n, 2 * sizeof *tags->sorted, compare);
     for (int64_t i = 1; i < tags->n; i++)
         if (tags->sorted[2 * i] == tags->sorted[2 * i - 2])
-            return tri_reading_fail(reading, TRI_BAD_INPUT, 0, "%s %lld is there twice", what,
+            return tri_reading_fail(reading, TRI_BAD_INPUT, 0, "%s %lld occurs twice", what,
                                     (long long)tags->sorted[2 * i]);
     return true;
 }

@@ -84,7 +84,7 @@ static enum tri_status take_mesh(struct tri_size_file *file, struct tri_reading 
         return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "there is no length at any point");
     for (int64_t i = 0; i < 3 * (int64_t)elements->n; i++)
         if (elements->corners[i] < 0 || elements->corners[i] >= n)
-            return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "a triangle names point %ld of %ld",
+            return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "a triangle refers to point %ld of %ld",
                             (long)elements->corners[i], (long)n);
     for (int64_t i = 0; i < n; i++)
         mesh->attributes[i] = mesh->attributes[i * width];

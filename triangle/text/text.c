@@ -143,7 +143,7 @@ static enum tri_status read_stream(struct tri_text *text, tri_file file, struct 
         if (got > 0)
             text->size += (size_t)got;
         if (text->size > largest_pipe)
-            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GB from what is no regular file");
+            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GB from a file that is not regular");
     }
 }
 
