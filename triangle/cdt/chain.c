@@ -4,9 +4,9 @@
  * and collinear within rounding. A chain connects two vertices that are not joints, through joints only, or is closed.
  *
  * RULE. A chain becomes one parent if all of its vertices lie within a tolerance of the line through its ends.
- * Otherwise it is cut, recursively, at the vertex farthest from that line (Douglas & Peucker 1973). Distances within
- * the tolerance, or within half of the largest distance if that is less, count as equal: then the lowest vertex number
- * decides. Why: docs/theory.md, chains.
+ * Otherwise it is cut, recursively, at the vertex with the largest distance from that line (Douglas & Peucker 1973).
+ * Distances that differ by at most the tolerance, or by at most half of the largest one if that is less, count as
+ * equal: then the lowest vertex number decides. Why: docs/theory.md, chains.
  *
  * INVARIANT. Split points and arranged vertices lie within the tolerance of their lines (split.c, constrain.c). So a
  * refined mesh gets its parents back, and with them its corners, narrow gaps and sizes.

@@ -45,7 +45,7 @@ struct tri_triangle {
     tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the number is free */
     tri_link n[3];        /* links to neighbours and subsegments, see above */
     tri_region_id region;
-    uint32_t life;        /* generation: incremented when the number is reused, so that queue entries can detect it */
+    uint32_t life;        /* incremented when the number is reused, so that queue entries can detect it */
 };
 
 struct tri_subsegment {
