@@ -1,15 +1,14 @@
 /* The mesh: flat arrays with indices, shared by all stages of the triangulator.
  *
- * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life. Link e is opposite corner e.
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life.
+ * Link e is opposite corner e:
  *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
  *   link <  0   ~s: the edge is subsegment s, whose record holds the triangles on both sides.
  * INVARIANT (links): for every live triangle t and edge e, either link(link(t, e)) == (t, e), or the link is a
  * subsegment that stores (t, e) as the side matching its direction. Every edge of the outer boundary is a subsegment.
- * So a search that must not cross constrained edges stops at a sign bit without loading anything, and unconstrained
- * triangles need no memory for constraints, markers and parents.
- *
- * TRI_BEYOND is the link to a triangle that is not in this address space. A search that meets it reports this, and is
- * repeated when more of the mesh is available.
+ * So a search that must not cross constrained edges stops at a sign bit without loading anything. TRI_BEYOND is the
+ * link to a triangle that is not in this address space. A search that meets it reports this, and is repeated when more
+ * of the mesh is available.
  *
  * Vertices are x, y pairs. Attributes, markers and parents are in separate arrays, which are accessed only for new
  * vertices. Vertex numbers are below 2^28, triangle numbers below 2^29 (4 * t + e is a non-negative int32_t). */
