@@ -219,7 +219,8 @@ static bool is_longer(const void *context, int32_t i, int32_t k)
     return li != lk ? li > lk : i < k;
 }
 
-/* Is the piece long enough to be a carrier? False if it is an edge. Finds the triangle in which it starts. */
+/* Finds the triangle through which the piece leaves its start. Returns false if there is none, or if the piece is
+ * already an edge. */
 static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t,
                        tri_vertex_id *from, tri_vertex_id *to)
 {

@@ -265,7 +265,8 @@ void tri_mark_vertices(struct tri_mesh *mesh)
 }
 
 /* For each edge of a removed triangle that remains as a part of the boundary, sets the parent's guard to the centroid
- * of the triangle. The three parts of a triangle do not overlap, and neither do triangles. */
+ * of the triangle. The triangle of an edge and the centroid is then reserved for the parent; no two of these
+ * overlap. */
 static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;

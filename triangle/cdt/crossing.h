@@ -11,7 +11,7 @@
 
 #include "triangle/mesh/mesh.h"
 
-/* Returns the unit in the last place of the larger coordinate of p, or up to twice that; at least that of 2^-268. */
+/* Returns the unit in the last place of the larger coordinate of p, or up to twice that; at least 2^-268. */
 static inline double tri_resolution(struct tri_point p)
 {
     double larger = fabs(p.x) > fabs(p.y) ? fabs(p.x) : fabs(p.y);

@@ -37,7 +37,7 @@ struct leaf {
     int32_t n_waiting;              /* number of points of the current round that remain, at the start of its range */
     int32_t n_inserted;             /* number of points inserted in the current round */
     int32_t near;                   /* a triangle near the leaf; valid between phases */
-    int32_t entry;                  /* a triangle owned by the leaf's stretch; TRI_NONE: continue as before */
+    int32_t entry;                  /* an owned triangle to start from; TRI_NONE: continue after the previous leaf */
     enum tri_status status;         /* result of the stretch that begins at this leaf */
 };
 

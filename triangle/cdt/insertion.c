@@ -1,4 +1,4 @@
-/* Insertion of a point: walk, cavity, fan. And the sorting of the finished triangles (tri_curve_sort). */
+/* Inserts points (walk, cavity, fan), and sorts the finished triangles (tri_curve_sort). */
 #include "triangle/cdt/delaunay.h"
 
 #include <assert.h>

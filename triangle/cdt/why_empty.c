@@ -1,8 +1,8 @@
 /* Finds out why a mesh has no triangles.
  *
- * THEOREM. No area is enclosed exactly if the subsegments with segments form a forest. A tree with more than one vertex
- * has leaves: points at which a single segment ends. A segment between two leaves of a tree closes a ring, unless the
- * path between them is straight. */
+ * THEOREM. The segments enclose no area if and only if the subsegments along which they run form a forest. A tree with
+ * more than one vertex has leaves: points at which a single segment ends. A segment between two leaves of a tree closes
+ * a ring, unless the path between them is straight. */
 #include "triangle/cdt/why_empty.h"
 
 #include <assert.h>

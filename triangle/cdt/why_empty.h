@@ -12,8 +12,8 @@ enum tri_empty_reason {
     TRI_EMPTY_OPEN,      /* the outline, the largest connected set of segments, encloses nothing: n of its points have a
                             single segment; v[] are the first two. If n is 2, a segment between them closes the
                             outline */
-    TRI_EMPTY_LOOSE,     /* no set of segments encloses anything, and the largest one is straight; n, v: like OPEN, all
-                            sets */
+    TRI_EMPTY_LOOSE,     /* no set of segments encloses anything, and the largest one is straight; n, v: as above, in
+                            all */
     TRI_EMPTY_HOLE,      /* hole n lies in the only face */
     TRI_EMPTY_HOLES      /* a hole lies in each of the n faces */
 };

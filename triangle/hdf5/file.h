@@ -17,8 +17,8 @@ struct tri_h5_file {
     struct tri_output *output; /* borrowed */
     int failure;    /* first failure, as from tri_output_write_at; 0: none. Later writes are ignored but reported to
                        HDF5 as successful, so that it frees its resources */
-    const void *sought; /* NULL, or the address of data whose file offset is wanted: that data are not written */
-    int64_t found;      /* the offset; < 0: no such write yet */
+    const void *sought; /* for writes from this address, only their file offset is recorded, in `found`; NULL: none */
+    int64_t found;      /* that offset; < 0: no such write yet */
 };
 
 /* Creates the file in an output with offsets; otherwise returns TRI_CANNOT_WRITE. Call tri_h5_close in any case. The

@@ -67,8 +67,8 @@ static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex
 
 /* Traverses the cavity depth first, left first. This yields the boundary edges in order: each pending edge starts where
  * the last boundary edge ends, and the first one starts at corner a. A pending edge carries the cross product of its
- * ends, so one of the three products of an incircle test is known. The other two belong to the edges behind the new
- * corner. */
+ * ends. So one of the three products of an incircle test is known, and the other two are passed on with the next
+ * edges. */
 static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending,
                                const struct tri_cavity_corner *a)
 {

@@ -61,8 +61,8 @@ struct tri_parent {
     int32_t segment; /* the first input segment that runs along it; TRI_NONE: an edge of the hull only */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     bool reversed;   /* until the mesh is finished: the subsegments run against the direction of the input segment */
-    struct tri_point guard; /* spans with v[] a triangle outside reserved for this parent (split.c); NaN: all of the
-                               outside; v[0]: the mesh was read */
+    struct tri_point guard; /* third corner of a triangle outside the domain that is reserved for the parent (split.c);
+                               NaN: the whole outside is; equal to an end: none is */
 };
 
 /* The parents that end at each vertex, for the vertices that existed when they were listed (triangle/mesh/parents.h).
@@ -305,8 +305,8 @@ static inline int tri_corner_of(const struct tri_triangle *t, tri_vertex_id v)
     return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
 }
 
-/* Reorders vertices: vertex first + i receives the data of vertex from[i], for all i < n; from[] is a permutation of
- * the n numbers from `first`. The caller updates all references to vertices. scratch: n * tri_vertex_size bytes.
+/* Reorders vertices: vertex first + i receives the data of vertex from[i], for all i < n. The numbers in from[] are
+ * distinct and not below `first`. The caller updates all references to vertices. scratch: n * tri_vertex_size bytes.
  * O(n). */
 void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const tri_vertex_id *from, int32_t n,
                               void *scratch, const struct tri_executor *executor);

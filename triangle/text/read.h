@@ -1,7 +1,7 @@
 /* Reads the input files of Triangle: .node, .poly, .ele, .area.
  *
  * Records are counted in file order and their numbers are ignored, except that the number of the first vertex decides
- * whether all files count from 0 or from 1. Indices in the resulting structs always count from 0. Ambiguous input is
+ * whether all files count from 0 or from 1. Indices in the resulting structs always count from 0. Meaningless input is
  * rejected by TRI_BAD_INPUT with file and line: counts that the rest of the file cannot hold, missing, unreadable or
  * infinite coordinates, missing sections. Harmless deviations are accepted: comments, blank lines, words between
  * numbers, extra fields and records, missing trailing attributes and markers (0).
