@@ -9,7 +9,7 @@
  * whether their number is odd. */
 struct tri_course {
     int32_t first, marked; /* segment numbers; TRI_NONE: there is none */
-    bool odd;
+    bool odd;              /* the number of segments is odd */
 };
 
 static inline int32_t tri_earlier(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
@@ -22,8 +22,8 @@ static inline struct tri_course tri_course_both(struct tri_course a, struct tri_
 }
 
 struct tri_piece {
-    tri_vertex_id from, to;
-    struct tri_course course;
+    tri_vertex_id from, to; /* its ends */
+    struct tri_course course; /* the input segments along it */
 };
 
 /* Lists the valid segments in piece[pslg->n_segments] and returns their number. Adds the number of invalid segments to

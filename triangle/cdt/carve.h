@@ -13,8 +13,8 @@ struct tri_carve_report {
 struct tri_carve_options {
     bool keep_hull;     /* keep the convex hull: its edges count as segments (-c) */
     bool ignore_holes;  /* ignore hole points (-O) */
-    bool spread_regions;
-    bool even_odd;      /* the even-odd rule defines the domain: see below */
+    bool spread_regions; /* assign regions by the region points of the PSLG */
+    bool even_odd;       /* the even-odd rule defines the domain: see below */
     struct tri_carve_report *report; /* NULL: no report */
 };
 

@@ -37,11 +37,11 @@ struct tri_inserter_edge;
 struct tri_inserter_pending;
 
 struct tri_inserter {
-    const struct tri_point *xy;
-    struct tri_triangle *tri;
-    struct tri_range stretch;
+    const struct tri_point *xy; /* coordinates of all vertices */
+    struct tri_triangle *tri;   /* all triangles, ghosts included */
+    struct tri_range stretch;   /* the vertices that it may connect */
     tri_triangle_id last; /* a triangle that the stretch owns, near the last location; TRI_NONE: none is known */
-    int32_t n_cavity, n_edges, capacity;
+    int32_t n_cavity, n_edges, capacity;  /* of the arrays below */
     tri_triangle_id *cavity;              /* [n_cavity] triangles of the cavity */
     struct tri_inserter_edge *edge;       /* [n_edges] boundary of the cavity, counter-clockwise */
     struct tri_inserter_pending *pending; /* stack of edges that the search has not crossed yet */

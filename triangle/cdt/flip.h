@@ -18,13 +18,13 @@ struct tri_flip_history;
 /* Local flips: the caller touches triangles that it has changed, and then legalises them. Without a history, a triangle
  * keeps the region of its number. */
 struct tri_flips {
-    struct tri_mesh *mesh;
+    struct tri_mesh *mesh; /* the mesh whose edges are flipped; not owned */
     struct tri_flip_history *history; /* records each flip; not owned; NULL: none */
     tri_triangle_id *corner; /* [vertices] a live triangle at each vertex, updated by flips; not owned; NULL: none */
     const struct tri_fence *fence; /* flip edges only if all four corners lie in it; not owned; NULL: no limit */
     bool ties_stay;          /* do not flip between four cocircular points; false: coordinates break the tie */
     tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */
-    int32_t n_touched, capacity;
+    int32_t n_touched, capacity; /* of `touched` */
 };
 
 void tri_flips_free(struct tri_flips *flips);
@@ -44,8 +44,8 @@ struct tri_flip_record;
  * flips, or four per triangle if that is more. */
 struct tri_flip_history {
     int32_t *last; /* [n_triangles] number of the last flip of each triangle, or TRI_NONE */
-    struct tri_flip_record *flip;
-    int32_t n, capacity;
+    struct tri_flip_record *flip; /* [n] in order of time */
+    int32_t n, capacity;          /* of `flip` */
 };
 
 /* Makes an empty history. Returns false if out of memory. */

@@ -10,9 +10,9 @@ struct tri_recovery {
     int32_t n_crossed, n_left; /* of the last call: number of crossed triangles; number of vertices on the left chain */
     tri_halfedge *crossed;     /* [n_crossed] codes of their edges; the new triangles reuse these numbers */
     tri_triangle_id *pool;     /* [n_crossed] free numbers among these triangles */
-    int32_t n_free, crossed_capacity, room;
-    struct tri_recovery_place *at;
-    struct tri_recovery_node *gap[2];
+    int32_t n_free, crossed_capacity, room; /* entries of `pool`; capacities */
+    struct tri_recovery_place *at;          /* [n_crossed + 4] the places of both chains */
+    struct tri_recovery_node *gap[2];       /* the two sides of the gap during a merge */
 };
 
 void tri_recovery_free(struct tri_recovery *r);

@@ -19,7 +19,7 @@ enum tri_empty_reason {
 };
 
 struct tri_empty {
-    enum tri_empty_reason reason;
+    enum tri_empty_reason reason; /* TRI_EMPTY_NOT: the mesh has triangles */
     int32_t n, v[2]; /* numbers of input points, from 0 */
 };
 

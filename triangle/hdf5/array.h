@@ -12,7 +12,7 @@
 
 struct tri_h5_array {
     struct tri_h5_file *file; /* borrowed; NULL: the array does not exist */
-    const char *name;
+    const char *name;         /* name of the dataset; borrowed */
     bool is_list;             /* one-dimensional; its width is 1 */
     struct tri_h5_laid *laid; /* offsets of its rows; borrowed, except the array of offsets */
     int64_t n;                /* number of rows, after the end */

@@ -13,7 +13,7 @@
 
 struct tri_h5_file {
     hid_t id;       /* HDF5 identifier; < 0: not open */
-    hid_t driver;
+    hid_t driver;   /* HDF5 identifier of the file driver; < 0: none */
     struct tri_output *output; /* borrowed */
     int failure;    /* first failure, as from tri_output_write_at; 0: none. Later writes are ignored but reported to
                        HDF5 as successful, so that it frees its resources */
@@ -34,8 +34,8 @@ enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct t
 
 /* The innermost message of HDF5's error stack, and whether the cause was lack of memory. */
 struct tri_h5_reason {
-    char text[200];
-    bool no_memory;
+    char text[200]; /* the message */
+    bool no_memory; /* the cause was lack of memory */
 };
 struct tri_h5_reason tri_h5_reason(void);
 

@@ -49,7 +49,7 @@ enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
 struct tri_h5_form {
     const char *name;
     int32_t width;            /* numbers in a row; 0: one-dimensional; -1: any */
-    bool needed;
+    bool needed;              /* every file must have it */
     enum tri_h5_kind rows_of; /* it has as many rows as this array */
     unsigned types;           /* allowed types: bits 1 << enum tri_h5_type */
 };

@@ -24,8 +24,8 @@ struct tri_relative {
 };
 
 struct tri_cavity_corner {
-    struct tri_relative r;
-    tri_vertex_id v;
+    struct tri_relative r; /* position relative to the new point */
+    tri_vertex_id v;       /* the vertex */
 };
 
 struct tri_cavity_edge {
@@ -43,11 +43,11 @@ struct tri_pending { /* an edge that the search has not crossed yet; it starts w
 };
 
 struct tri_cavity {
-    struct tri_point p;
+    struct tri_point p;            /* the new point */
     const struct tri_fence *fence; /* NULL: all triangles are owned */
     const struct tri_owners *owners; /* for asserts in debug builds; NULL: none */
     tri_vertex_id beyond[2];       /* after TRI_SEARCH_BEYOND: the ends of the edge with that link */
-    int32_t n_tri, n_corners, n_edges, n_wall, capacity;
+    int32_t n_tri, n_corners, n_edges, n_wall, capacity; /* lengths of the arrays below; their common capacity */
     int32_t n_left_tri;   /* of a split: number of triangles left of the subsegment, which come first */
     tri_region_id region; /* region of the triangle at which the search began */
     uint32_t mixed;       /* not 0: the cavity has triangles of several regions without subsegments between them */
@@ -55,7 +55,7 @@ struct tri_cavity {
     struct tri_cavity_corner *corner; /* in the order found: at most n_tri + 4, and the one being tested */
     struct tri_cavity_edge *edge;  /* at most n_tri + 2 edges, and one entry that marks the end of the last one */
     int32_t *wall;        /* indices of the edges whose outer link is a subsegment */
-    struct tri_pending *pending;
+    struct tri_pending *pending;   /* stack of the search */
 };
 
 enum tri_search {

@@ -21,22 +21,22 @@ struct tri_grid_edge {
 };
 
 struct tri_grid {
-    const void *user;
+    const void *user;     /* passed to the callbacks */
     int32_t base;         /* 0 or 1: the first number in files */
-    bool has_markers;
+    bool has_markers;     /* output markers of points and segments */
     int64_t n_points, n_triangles, n_segments, n_edges;
     int32_t n_attributes; /* attributes of each point */
     int32_t n_columns;    /* attributes of each triangle */
     int n_nodes;          /* nodes of each triangle: 3, or 6: the corners, then the midpoints of the opposite edges */
     const struct tri_pslg *figure; /* holes and regions of the input; NULL: none */
     const struct tri_storage *storage; /* allocates work arrays that grow with the mesh; NULL: malloc */
-    void (*point)(const void *user, int64_t i, struct tri_grid_point *point);
-    double (*attribute)(const void *user, int64_t i, int32_t k);
-    void (*triangle)(const void *user, int64_t i, int64_t nodes[6]);
-    double (*column)(const void *user, int64_t i, int32_t k);
+    void (*point)(const void *user, int64_t i, struct tri_grid_point *point); /* stores point i */
+    double (*attribute)(const void *user, int64_t i, int32_t k);              /* returns attribute k of point i */
+    void (*triangle)(const void *user, int64_t i, int64_t nodes[6]);          /* stores the nodes of triangle i */
+    double (*column)(const void *user, int64_t i, int32_t k);                 /* returns attribute k of triangle i */
     void (*neighbors)(const void *user, int64_t i, int64_t neighbors[3]); /* triangles opposite the corners; -1: none */
-    void (*segment)(const void *user, int64_t i, struct tri_grid_edge *segment);
-    void (*edge)(const void *user, int64_t i, struct tri_grid_edge *edge);
+    void (*segment)(const void *user, int64_t i, struct tri_grid_edge *segment); /* stores segment i */
+    void (*edge)(const void *user, int64_t i, struct tri_grid_edge *edge);       /* stores edge i */
 };
 
 enum { TRI_GRID_ROUNDS = 1 << 15 };
@@ -67,10 +67,10 @@ struct tri_grid_options {
     const struct tri_elements *elements; /* the triangles from which the mesh was reconstructed; NULL: none */
     const bool *is_edge; /* [pslg->n_segments] segments with false are appended to the mesh's; NULL: append none */
     int32_t base;
-    bool markers;
+    bool markers;        /* output markers */
     bool regions;        /* without elements: output the attribute of each triangle's region as a column */
     bool jettison;       /* leave out vertices that are not corners (see tri_kept_make) */
-    bool second_order;
+    bool second_order;   /* output the midpoints of edges as nodes */
     bool edges;          /* edges will be requested; their number is known in any case */
 };
 

@@ -43,7 +43,7 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
 struct tri_triangle {
     tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the number is free */
     tri_link n[3];        /* links to neighbours and subsegments, see above */
-    tri_region_id region;
+    tri_region_id region; /* index in tri_mesh.regions */
     uint32_t life;        /* incremented when the number is reused, so that queue entries can detect it */
 };
 
@@ -57,7 +57,7 @@ struct tri_subsegment {
 /* A segment: the parent of the subsegments into which refinement splits it. Splitting, shells and small input angles
  * refer to it. */
 struct tri_parent {
-    tri_vertex_id v[2];
+    tri_vertex_id v[2]; /* its ends */
     int32_t segment; /* the first input segment that runs along it; TRI_NONE: an edge of the hull only */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     bool reversed;   /* until the mesh is finished: the subsegments run against the direction of the input segment */
@@ -82,7 +82,7 @@ struct tri_limits {
 };
 
 struct tri_region {
-    double attribute;
+    double attribute; /* attribute of its triangles */
     double max_area; /* <= 0: none */
 };
 

@@ -53,8 +53,8 @@ void tri_edge_list_free(struct tri_edge_list *list);
  * difference between corner k and corner 0. Weights outside 0 .. 1 extrapolate. */
 struct tri_blend {
     double at[2]; /* in the caller's coordinates */
-    tri_vertex_id v[3];
-    double weight[2];
+    tri_vertex_id v[3]; /* corners 0, 1 and 2 */
+    double weight[2];   /* weights of corners 1 and 2 */
 };
 
 double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute);
@@ -96,7 +96,7 @@ struct tri_counts {
     int64_t triangles, edges;
     int64_t exterior; /* edges with one triangle, including those of holes */
     int64_t interior; /* subsegments between two triangles */
-    int64_t subsegments;
+    int64_t subsegments; /* number of subsegments */
 };
 
 /* Counts the items of a mesh without free numbers. O(triangles); uses one byte per vertex temporarily.

@@ -7,15 +7,15 @@
 /* A maximal chain of boundary edges with one marker; the mesh is on its left. */
 struct tri_boundary_piece {
     int64_t first, n; /* range of its nodes; a closed piece lists each node once */
-    int32_t marker;
+    int32_t marker;   /* marker of its edges */
     bool closed;      /* the piece is a whole loop */
     bool outer;       /* its loop encloses the mesh, counter-clockwise; false: it encloses a hole */
 };
 
 struct tri_boundary {
     int64_t n_pieces;
-    struct tri_boundary_piece *pieces;
-    int64_t *nodes;
+    struct tri_boundary_piece *pieces; /* [n_pieces] */
+    int64_t *nodes;                    /* point numbers of all pieces, one piece after another */
 };
 
 /* Lists the pieces of the boundary; all boundary edges must be segments. O(triangles + segments log segments). Memory

@@ -40,9 +40,9 @@ struct tri_format {
     bool second_order;   /* can hold second-order triangles */
     bool inner_segments; /* can hold segments that are not on the boundary */
     int32_t base;        /* first number of nodes and elements in files of its writer */
-    tri_write_call *write;
+    tri_write_call *write;             /* writes a mesh */
     tri_write_parts_call *write_parts; /* NULL: the format has no parts */
-    tri_read_call *read;
+    tri_read_call *read;               /* reads a mesh */
 };
 
 /* Returns the format for the ending of a file name (tri_name_ends); NULL: none of these formats. */

@@ -25,13 +25,13 @@ enum { TRI_MAX_OUTPUTS = 544 };
  * name. */
 struct tri_output_place {
     bool known;  /* false: a device or pipe, which may be used twice */
-    bool exists;
-    uint64_t device, node;
+    bool exists; /* the file exists */
+    uint64_t device, node; /* file system and inode */
 };
 
 struct tri_output {
     char *path;      /* final name: the caller's path with symbolic links resolved */
-    struct tri_output_place place;
+    struct tri_output_place place; /* identity of the file to be written */
     char *temporary; /* temporary name; NULL: a device or pipe, written directly */
     char *old;       /* during the renames: second name of the file to be replaced; NULL: none */
     bool replaces;   /* a file of that name existed */
@@ -47,7 +47,7 @@ struct tri_output {
 /* Files that are written together. INVARIANT: until commit no final name has changed; after commit or abort no
  * temporary file is left and the set is empty. (Devices and pipes are exceptions.) */
 struct tri_output_set {
-    int n;
+    int n;                       /* number of outputs */
     struct tri_output outputs[TRI_MAX_OUTPUTS];
     int next_name;               /* number in the next temporary name; lower ones have been tried */
     bool waits;                  /* commit syncs the folders, since the files have been synced */
@@ -125,7 +125,7 @@ struct tri_ticket {
     char path[TRI_TICKET_PATH];      /* name of the file in errors; empty: no ticket */
     char temporary[TRI_TICKET_PATH]; /* absolute path of the temporary file */
     char host[TRI_TICKET_HOST];      /* the machine that opened it */
-    uint64_t inode, length;
+    uint64_t inode, length;          /* inode and length by which the others recognise the file */
 };
 
 /* Makes a ticket before anything is written. After all processes have joined, call tri_output_restart. Returns false if

@@ -10,7 +10,7 @@ enum { TRI_MOST_GROUPS = 1024 };
 
 struct tri_grouping {
     int n;                                /* number of groups, sorted by value */
-    double value[TRI_MOST_GROUPS];
+    double value[TRI_MOST_GROUPS];        /* value of each group, ascending */
     int64_t first[TRI_MOST_GROUPS + 1];   /* start of each group in `order` */
     int64_t *order;                       /* the items by group; NULL: one group, in their order */
     const struct tri_storage *storage;    /* storage of the grid, from which `order` is allocated; NULL: malloc */
@@ -46,7 +46,7 @@ static inline int64_t tri_grouped(const struct tri_grouping *grouping, int64_t p
  * points shared by the same parts form an interface. */
 
 struct tri_shared_point {
-    int64_t point;
+    int64_t point;          /* number of the point */
     int32_t n;              /* number of parts that share it */
     const int32_t *part;    /* [n] ascending part numbers; equal lists may be at different addresses */
 };
@@ -54,18 +54,18 @@ struct tri_shared_point {
 struct tri_parts {
     int n;
     int64_t *triangle;      /* positions in the grouping of triangles, by part, ascending within each */
-    int64_t first_triangle[TRI_MOST_PARTS + 1];
+    int64_t first_triangle[TRI_MOST_PARTS + 1]; /* start of each part in `triangle` */
     int64_t *segment;       /* the same for segments */
-    int64_t first_segment[TRI_MOST_PARTS + 1];
+    int64_t first_segment[TRI_MOST_PARTS + 1];  /* start of each part in `segment` */
     int64_t *inner;         /* points by part, ascending within each */
-    int64_t first_inner[TRI_MOST_PARTS + 1];
+    int64_t first_inner[TRI_MOST_PARTS + 1];    /* start of each part in `inner` */
     int64_t n_shared;
     struct tri_shared_point *shared; /* sorted by their parts, then by point */
     int64_t n_interfaces;
     int64_t *first_shared;  /* [n_interfaces + 1] start of each interface in `shared` */
 
     int32_t *part_list;     /* storage of the lists in `shared` */
-    const struct tri_storage *storage;
+    const struct tri_storage *storage; /* from which the lists are allocated; NULL: malloc */
 };
 
 /* Divides the mesh into parts 0 .. n - 1, for n from 1 to TRI_MOST_PARTS; some are empty if there are fewer triangles.

@@ -32,7 +32,7 @@ struct tri_read_options {
     /* Called for each skipped item, in order of lines, on the calling thread; text is one sentence. NULL: no
      * warnings. */
     void (*warn)(void *user, const char *file, int64_t line, const char *text);
-    void *warn_user;
+    void *warn_user; /* passed to warn */
 };
 
 /* Reads points, attributes and markers (NULL if the header announces none). *base becomes 0 or 1. */

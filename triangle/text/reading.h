@@ -12,11 +12,11 @@
 #include "triangle/text/binary.h"
 
 struct tri_reading {
-    const char *path;
+    const char *path;              /* name of the file, for errors; borrowed */
     const struct tri_executor *executor;
     struct tri_pslg *mesh;         /* empty at first; the caller frees both, even after a failure */
     struct tri_elements *elements;
-    struct tri_error *error;
+    struct tri_error *error;       /* receives the error */
     enum tri_status status;        /* TRI_OK until an error occurs */
 };
 
@@ -32,7 +32,7 @@ bool tri_reading_triangles(struct tri_reading *reading, int64_t n, int n_nodes);
 bool tri_reading_segments(struct tri_reading *reading, int64_t n);
 
 struct tri_tags {
-    int64_t n;
+    int64_t n;       /* number of tags */
     int64_t *tag;    /* [n] tags in file order; from malloc */
     bool in_a_row;   /* tags are consecutive, so no search is needed */
     int64_t *sorted; /* [n][2] otherwise: pairs of tag and position, sorted by tag */

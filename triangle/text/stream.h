@@ -29,7 +29,7 @@ struct tri_text_options {
     bool markers;                         /* write markers */
     const struct tri_pslg *figure;        /* holes and regions for .poly; NULL: none */
     int argc;                             /* command line for the final comment; 0: no comment */
-    char *const *argv;
+    char *const *argv;                    /* [argc] its words */
 };
 
 struct tri_text_stream;

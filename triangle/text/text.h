@@ -34,8 +34,8 @@ struct tri_text {
     char *data;       /* [size] */
     size_t size;      /* bytes, > 0 */
     const struct tri_stop *stop; /* polled while reading; NULL: never stop */
-    size_t chunk_bytes;
-    size_t n_chunks;
+    size_t chunk_bytes;          /* size of a chunk */
+    size_t n_chunks;             /* number of chunks */
     struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last one is the end of the text */
     size_t lines_before; /* lines of the file before this text, if it is a window */
 };
@@ -162,7 +162,7 @@ struct tri_table {
     /* Parses record i. Returns NULL, or a text of static storage that describes the fault and follows "vertex 4 ".
      * Records are parsed in any order, so row may write data of record i only. */
     const char *(*row)(void *user, size_t i, struct tri_fields *fields);
-    void *user;
+    void *user; /* passed to row */
 };
 
 /* Parses the next table->n records, which must exist, and moves past them. If several records are faulty, the first one
@@ -176,9 +176,9 @@ enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_tab
 
 struct tri_window {
     struct tri_text text;     /* the window: all of `data` up to the last complete line */
-    struct tri_cursor cursor;
+    struct tri_cursor cursor; /* the next record in the window */
     tri_file file;            /* TRI_NO_FILE: not open */
-    char *data;
+    char *data;               /* the buffer */
     size_t room, used;        /* bytes */
     bool at_end;              /* the end of the file has been reached */
     const struct tri_executor *executor;

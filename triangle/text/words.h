@@ -7,7 +7,7 @@
 
 struct tri_words {
     struct tri_reading to; /* receives the mesh, if any; path, error and status */
-    struct tri_text text;
+    struct tri_text text;  /* the whole file */
     const char *at;        /* the text not read yet */
     size_t line;           /* line of `at`, from 1 */
     const char *blanks;    /* additional characters that separate words, besides white space */
