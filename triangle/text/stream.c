@@ -342,7 +342,8 @@ enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *fo
     if (!s)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
     s->folder = folder;
-    s->storage = (struct tri_storage){.extra = give_extra, .extra_free = free_extra, .user = s, .let_go = let_go};
+    s->storage = (struct tri_storage){.extra = give_extra, .extra_free = free_extra, .user = s,
+                                      .let_go = let_go};
     for (int k = 0; k < SHEETS; k++)
         s->sheet[k].file = TRI_NO_FILE;
     *sink = (struct tri_sink){s, begin_store, keep_tile, NULL};
