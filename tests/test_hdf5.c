@@ -491,7 +491,7 @@ static void test_no_such_mesh(void **state)
     H5Ldelete(file, "point_markers", H5P_DEFAULT);
     H5Lcreate_hard(file, "triangles", file, "point_markers", H5P_DEFAULT, H5P_DEFAULT);
     H5Fclose(file);
-    refuse("x.h5", TRI_BAD_INPUT, "/point_markers has not the type");
+    refuse("x.h5", TRI_BAD_INPUT, "/point_markers has an unexpected type");
     file = H5Fopen("x.h5", H5F_ACC_RDWR, H5P_DEFAULT);
     H5Ldelete(file, "points", H5P_DEFAULT);
     H5Fclose(file);
@@ -582,14 +582,14 @@ static void make_floats(hid_t file)
 static void test_not_in_this_file(void **state)
 {
     (void)state;
-    replace_points(make_external, "/points lies in another file");
+    replace_points(make_external, "/points is stored in another file");
     replace_points(make_soft_link, "/points is a link");
     replace_points(make_external_link, "/points is a link");
-    replace_points(make_virtual, "/points is kept in a way that is not read");
+    replace_points(make_virtual, "/points has virtual or compact storage");
     replace_points(make_compressed, "/points is compressed");
-    replace_points(make_chunks, "/points is not there in full");
-    replace_points(make_piece, "/points is not there in full");
-    replace_points(make_floats, "/points has not the type");
+    replace_points(make_chunks, "/points is incomplete");
+    replace_points(make_piece, "/points is incomplete");
+    replace_points(make_floats, "/points has an unexpected type");
     assert_int_equal(mkfifo("y", 0600), 0);
     refuse("y", TRI_CANNOT_READ, "not a regular file");
 }
@@ -606,7 +606,7 @@ static void test_more_than_can_be(void **state)
     H5Pset_chunk(creation, 2, chunk);
     make_dataset(file, "triangles", creation, H5T_STD_I64LE, (hsize_t)1 << 40, 3);
     H5Fclose(file);
-    refuse("x.h5", TRI_BAD_INPUT, "/triangles has more rows than a mesh of so many points");
+    refuse("x.h5", TRI_BAD_INPUT, "/triangles has more rows than a mesh with this number of points");
 }
 
 int main(void)

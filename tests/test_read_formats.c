@@ -295,21 +295,22 @@ static void test_refused(void **state)
     refuse("x.vtu", "<VTKFile type=\"PolyData\">", "not an unstructured grid");
     refuse("x.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLib\">", "compressed");
     refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_TAIL, "the array connectivity is missing");
-    refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2 0 1 2 0 2 4", "3 5 5") VTU_TAIL, "a cell names point 4 of 4");
-    refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2 0 1 2 0 2", "3 5 5") VTU_TAIL, "has not 8 finite numbers");
+    refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2 0 1 2 0 2 4", "3 5 5") VTU_TAIL,
+           "a cell refers to point 4 of 4");
+    refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2 0 1 2 0 2", "3 5 5") VTU_TAIL, "does not have 8 finite numbers");
     refuse("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2 0 1 2 0 2 3", "3 5 9") VTU_TAIL, "cell 2 is of type 9");
     refuse("x.vtu", VTU_HEAD VTU_HEAD, "more than one piece");
-    refuse("x.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", "not of version 4.1, binary");
-    refuse("x.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "not of version 4.1, binary");
+    refuse("x.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", "not a binary file of version 4.1");
+    refuse("x.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "not a binary file of version 4.1");
     refuse("x.msh", "solid\n", "not a .msh file");
     refuse("x.msh", "", "not a .msh file");
-    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nE4Q 1 1 1 1 1 1\n", "no triangle");
-    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nND 1 0 1 0\n", "node 1 is there twice");
-    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nE3T 1 1 1 2 1\n", "a node that is missing, or no node");
+    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nE4Q 1 1 1 1 1 1\n", "not a triangle");
+    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nND 1 0 1 0\n", "node 1 occurs twice");
+    refuse("x.2dm", "MESH2D\nND 1 0 0 0\nE3T 1 1 1 2 1\n", "a node that is missing or does not exist");
     refuse("x.2dm", "MESH2D\nND 1 0 0 0\nNS 1 1 1\n", "a node string has no end");
     refuse("x.2dm", "4 2 0 0\n", "no mesh");
     refuse("x.14", "grid\n2 4\n1 0 0 0\n", "records follow");
-    refuse("x.14", "grid\n1 1\n1 0 0 0\n1 4 1 1 1 1\n0\n0\n0\n0\n", "is no triangle");
+    refuse("x.14", "grid\n1 1\n1 0 0 0\n1 4 1 1 1 1\n0\n0\n0\n0\n", "is not a triangle");
     refuse("x.14", "grid\n1 1\n1 0 nan 0\n1 3 1 1 1\n0\n0\n0\n0\n", "missing or not finite");
     refuse("x.14", "grid\n0 1\n1 0 0 0\n1\n2\n2\n1\n", "a node of a boundary is missing");
 }

@@ -231,32 +231,32 @@ static void test_refused(void **state)
     check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1.25 2\n3\n", 8,
                   "ends before a length");
     check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 x\n", 7,
-                  "\"x\" is no number");
-    check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 nan\n", 7, "no number");
+                  "\"x\" is not a number");
+    check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 nan\n", 7, "not a number");
     check_refused("a.asc", "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3\n", 7, "more values than");
     check_refused("a.asc", "ncols 2\nnrows 2000000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n", 6,
                   "more than the file");
     check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n1\n", 6, "cellsize is not above 0");
     check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\ncellsize 1\n1\n", 5, "yllcorner is missing");
-    check_refused("a.asc", "ncols 2.5\n", 1, "no whole number");
-    check_refused("a.asc", "ncols 2\nncols 2\n", 2, "there twice");
-    check_refused("a.asc", "hello\n", 1, "no entry of an ESRI");
+    check_refused("a.asc", "ncols 2.5\n", 1, "not an integer");
+    check_refused("a.asc", "ncols 2\nncols 2\n", 2, "occurs twice");
+    check_refused("a.asc", "hello\n", 1, "not an entry of an ESRI");
     check_refused("a.asc", "", 2, "cellsize is missing");
     check_refused("a.npy", "\x93NUMPY", 0, "FILE.npy@XMIN");
-    check_refused("a.msh", "hello\n", 1, "no .msh file");
-    check_refused("a.msh", "$MeshFormat\n4.0 0 8\n", 2, "of version 4");
-    check_refused("a.msh", "$MeshFormat\n2.2 1 8\n", 2, "of version 2.2, binary");
+    check_refused("a.msh", "hello\n", 1, "not a .msh file");
+    check_refused("a.msh", "$MeshFormat\n4.0 0 8\n", 2, "version 4 ");
+    check_refused("a.msh", "$MeshFormat\n2.2 1 8\n", 2, "version 2.2, binary");
     check_refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2000000000\n", 5, "more than the file holds");
     check_refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0\n", 7, "ends before a coordinate");
     check_refused("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n", 0, "no length");
     check_refused("a.msh", "mshid=3;euclidean-sphere\n", 1, "neither euclidean-mesh");
     check_refused("a.msh", "mshid=3;euclidean-mesh\nndims=2\npoint=1\n0;0;0\nvalue=2;1\n1\n2\n", 8,
-                  "2 values, not one");
+                  "the number of values is 2, the number of places 1");
     check_refused("a.msh", "mshid=3;euclidean-mesh\npoint=1\n0;0;0\nvalue=1;1\n1\ntria3=1\n0;0;5;0\n", 0,
-                  "names point 5");
-    check_refused("a.msh", "mshid=3;euclidean-grid\ncoord=1;2\n1\n1\n", 4, "do not rise");
+                  "refers to point 5");
+    check_refused("a.msh", "mshid=3;euclidean-grid\ncoord=1;2\n1\n1\n", 4, "do not increase");
     check_refused("a.pos", "View \"h\" { ST(0,0,0,1,0,0,0,1,0){1,2}; };\n", 1, "\",\" is missing");
-    check_refused("a.pos", "View \"h\" {\nSQ(0){1};\n};\n", 2, "no scalar triangle");
+    check_refused("a.pos", "View \"h\" {\nSQ(0){1};\n};\n", 2, "not a scalar triangle");
     check_refused("a.pos", "View \"h\" {\nSP(0,0,0){1};\n", 3, "\"}\" is missing");
     check_refused("a.pos", "View \"h\" {\nSP(0,0,nan){1};\n};", 2, "not finite");
     write_text("a.ele", "0 3 0\n");

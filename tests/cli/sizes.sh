@@ -94,7 +94,7 @@ for mesher in triangle ptriangle; do
     printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 x\n' >broken.asc
     printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 9\n-9999 0\n0 -9999\n' >empty.asc
     mesher 1 $mesher -p letter --size broken.asc
-    complains '^broken\.asc:7: a length: "x" is no number$'
+    complains '^broken\.asc:7: a length: "x" is not a number$'
     mesher 1 $mesher -p letter --size absent.asc
     complains '^absent\.asc: cannot open: '
     mesher 1 $mesher -p letter --size empty.asc

@@ -1,16 +1,16 @@
-/* Paths that are shared by pieces along the same vertices.
+/* Input segments that run along the same vertices are merged into common paths.
  *
- * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within
- * TRI_BUNDLE_ALONG resolutions of its line, along it and for as many triangles again beyond its ends; of two stops
- * within TRI_VERTICES_APART of each other along the line, the first alone is one. The pieces from stop to stop run
- * through all the stops between them. Where some of these pieces overlap, they are cut there, and one of each
- * elementary piece is left (tri_share_stops).
+ * RULE. Pieces are processed in order of decreasing length; each one that is not yet merged becomes a carrier. Its
+ * stops are the vertices within TRI_BUNDLE_ALONG resolutions of its line, found along it and for as many triangles
+ * again beyond its ends. Of two stops within TRI_VERTICES_APART of each other along the line, only the first is kept.
+ * Pieces whose two ends are stops are routed through all stops between them. If some of these pieces overlap, they are
+ * cut at the stops, and one copy of each elementary piece is kept (tri_share_stops).
  *
- * THEOREM (distance; docs/theory.md, bundles). A piece is cut at vertices within 2 TRI_BUNDLE_ALONG resolutions of its
- * own line, those of its larger end.
+ * THEOREM (distance; docs/theory.md, bundles). A piece is cut only at vertices within 2 TRI_BUNDLE_ALONG resolutions of
+ * its own line, measured at its larger end.
  *
- * COST. A carrier costs at most four times what it crosses. Once MOST_IN_VAIN triangles for each piece and vertex have
- * been looked at for nothing, the pieces that are left stay as they are. */
+ * COST. A carrier costs at most four times what it crosses. After MOST_IN_VAIN triangles for each piece and vertex have
+ * been visited without a merge, the remaining pieces stay unchanged. */
 #include "triangle/cdt/bundle.h"
 
 #include <assert.h>
@@ -28,21 +28,21 @@ enum { MOST_IN_VAIN = 64 };
 
 struct bundles {
     const struct tri_mesh *mesh;
-    struct tri_piece *piece; /* [n]; from == to: it has been shared */
+    struct tri_piece *piece; /* [n]; from == to: the piece has been merged */
     int32_t n, n_vertices;
-    int32_t *carrier, n_carriers; /* [n] the pieces that are no edges, the longest first */
+    int32_t *carrier, n_carriers; /* [n] the pieces that are not edges, longest first */
     int32_t *first, *incident; /* pieces incident[first[v] .. first[v + 1] - 1] are listed at v */
     struct tri_point a, b;     /* the carrier's ends */
-    tri_vertex_id *stop;       /* [n_vertices] the first n_stops, along the carrier */
-    int32_t *place;            /* [n_vertices] among the stops, or TRI_NONE */
+    tri_vertex_id *stop;       /* [n_vertices] the first n_stops are the stops, in order along the carrier */
+    int32_t *place;            /* [n_vertices] index among the stops, or TRI_NONE */
     int32_t n_stops;
-    int32_t *member;           /* [n] the pieces from stop to stop */
-    int32_t (*reach)[2];       /* [n] of each of them */
+    int32_t *member;           /* [n] the pieces whose two ends are stops */
+    int32_t (*reach)[2];       /* [n] first and last stop of each member */
     int32_t n_members;
     struct tri_piece *result;
     int32_t n_results, result_capacity;
     int64_t looked_at, in_vain;
-    uint32_t step; /* see tri_stop_is_due */
+    uint32_t step; /* counter for tri_stop_is_due */
 };
 
 /* --- pieces by vertex */
@@ -86,13 +86,14 @@ static void try_stop(struct bundles *b, tri_vertex_id v)
     b->stop[b->n_stops++] = v;
 }
 
-/* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
+/* Walks from one end through triangle t to the other end, and as far again beyond it. A vertex on the line counts as on
+ * its right. */
 static void walk_along(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
 {
     const struct tri_mesh *mesh = b->mesh;
     const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
     int e = tri_corner_of(&mesh->tri[t], from);
-    if (tri_orient2d(p, q, mesh->xy[mesh->tri[t].v[tri_prev[e]]]) <= 0) { /* along its left edge */
+    if (tri_orient2d(p, q, mesh->xy[mesh->tri[t].v[tri_prev[e]]]) <= 0) { /* the line leaves along the left edge of t */
         tri_halfedge beyond = tri_across(mesh, tri_code(t, tri_next[e]));
         t = beyond == TRI_NONE ? t : tri_of(beyond);
         e = tri_corner_of(&mesh->tri[t], from);
@@ -101,7 +102,7 @@ static void walk_along(struct bundles *b, tri_triangle_id t, tri_vertex_id from,
     for (int k = 0; k < 3; k++)
         try_stop(b, v[k]);
     if (tri_orient2d(p, q, mesh->xy[v[tri_prev[e]]]) <= 0)
-        return; /* along the hull */
+        return; /* the line leaves along the hull */
     for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
         tri_halfedge code = tri_across(mesh, tri_code(t, e));
         if (code == TRI_NONE)
@@ -124,7 +125,7 @@ static bool is_before(const void *context, int32_t v, int32_t w)
     return at_v != at_w ? at_v < at_w : v < w;
 }
 
-/* In their order, each TRI_VERTICES_APART from the one before. */
+/* Sorts the stops along the carrier and drops those within TRI_VERTICES_APART of the previous one. */
 static void sort_stops(struct bundles *b)
 {
     double x = b->b.x - b->a.x, y = b->b.y - b->a.y, length = sqrt(x * x + y * y);
@@ -157,7 +158,8 @@ static bool is_earlier(const void *context, int32_t i, int32_t k)
     return piece[i].course.first < piece[k].course.first;
 }
 
-/* The pieces from stop to stop, in their order; how many elementary pieces they cover, each as often as it is. */
+/* Finds the pieces whose two ends are stops, in order of their segments. Returns the number of elementary pieces that
+ * they cover, counted with multiplicity. */
 static int64_t find_members(struct bundles *b)
 {
     int64_t sum = 0;
@@ -178,7 +180,7 @@ static int64_t find_members(struct bundles *b)
     return sum;
 }
 
-/* What the members are shared out to takes their place. */
+/* Replaces the members by the pieces that they have been merged into. */
 static bool keep_shared(struct bundles *b, const struct tri_piece *shared, int32_t n)
 {
     if (!tri_grow(&b->result, &b->result_capacity, b->n_results + n, sizeof *b->result))
@@ -200,7 +202,7 @@ static bool share_members(struct bundles *b)
     for (int32_t m = 0; shared && m < n; m++)
         shared[m] = b->piece[b->member[m]];
     bool room = shared && tri_share_stops(b->stop, b->n_stops, b->reach, &shared, &n);
-    if (room && n < sum) /* else they do not overlap */
+    if (room && n < sum) /* otherwise they do not overlap */
         room = keep_shared(b, shared, n);
     free(shared);
     return room;
@@ -217,7 +219,8 @@ static bool is_longer(const void *context, int32_t i, int32_t k)
     return li != lk ? li > lk : i < k;
 }
 
-/* Is it worth while to walk along the piece? */
+/* Finds the triangle through which the piece leaves its start. Returns false if there is none, or if the piece is
+ * already an edge. */
 static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t,
                        tri_vertex_id *from, tri_vertex_id *to)
 {
@@ -226,8 +229,8 @@ static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *conte
     return v && v[0] != *to && v[1] != *to && v[2] != *to;
 }
 
-/* The way back goes farther beyond `from`, and by the other side where the line runs through vertices; where find_exit
- * exchanges the ends there is one way alone. */
+/* Walks from both ends. The second walk continues beyond `from`, and takes the other side if the line runs through
+ * vertices. If find_exit exchanges the ends, only one walk is possible. */
 static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
 {
     tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
@@ -287,13 +290,13 @@ static bool make_room(struct bundles *b)
     b->reach = malloc(n * sizeof *b->reach);
     if (!b->first || !b->incident || !b->stop || !b->place || !b->member || !b->reach)
         return false;
-    list_pieces(b, b->place); /* which holds degrees until here */
+    list_pieces(b, b->place); /* b->place holds degrees until here */
     for (size_t v = 0; v < vertices; v++)
         b->place[v] = TRI_NONE;
     return true;
 }
 
-/* The pieces that no bundle has taken follow what has come of those. */
+/* Appends the pieces that no bundle contains to the merged ones. */
 static bool add_others(struct bundles *b)
 {
     if (!tri_grow(&b->result, &b->result_capacity, b->n_results + b->n, sizeof *b->result))
@@ -333,18 +336,19 @@ bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct t
     return room;
 }
 
-/* Paint: in the order of the pieces each takes of its range what nobody has taken. A union-find structure leads over
- * what is taken, so each elementary piece is touched once, however many pieces run along it. */
+/* Painting: in the order of the pieces, each one takes those elementary pieces of its range that are still free. A
+ * union-find structure skips the others, so each elementary piece is visited once, regardless of how many pieces run
+ * along it. */
 
 struct sharing {
     const struct tri_piece *piece; /* [n] */
     const int32_t (*reach)[2];     /* [n] */
     int32_t n, n_stops;
     const tri_vertex_id *stop;     /* [n_stops] */
-    int32_t *by_mark;              /* [n] by the first marked along them */
-    int32_t *next;                 /* [n_stops] union-find: the next elementary piece that nobody has taken */
-    int32_t *marked;               /* [n_stops] the first with a marker along each elementary piece */
-    bool *odd;                     /* [n_stops] is the number of pieces along it odd? */
+    int32_t *by_mark;              /* [n] pieces sorted by the first marked segment along them */
+    int32_t *next;                 /* [n_stops] union-find: the next free elementary piece */
+    int32_t *marked;               /* [n_stops] first segment with a marker along each elementary piece */
+    bool *odd;                     /* [n_stops] whether an odd number of pieces runs along it */
     struct tri_piece *result;      /* [n_stops] */
     int32_t n_results;
 };
@@ -355,7 +359,7 @@ static void take_back(struct sharing *s)
         s->next[k] = k;
 }
 
-/* The first from k on that nobody has taken. */
+/* Returns the first free elementary piece at or after k. */
 static int32_t find_free(const struct sharing *s, int32_t k)
 {
     while (s->next[k] != k)
@@ -378,7 +382,7 @@ static void take_free(struct sharing *s, int32_t i)
             (struct tri_piece){s->stop[k], s->stop[k + 1], {s->piece[i].course.first, s->marked[k], s->odd[k]}};
 }
 
-/* Each piece changes the parity from its start on, and again from its end on. */
+/* Computes parities by prefix sums: each piece flips the parity at its start and again at its end. */
 static void find_odd(struct sharing *s)
 {
     for (int32_t i = 0; i < s->n; i++) {
@@ -439,9 +443,9 @@ bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach
     return room;
 }
 
-/* Source of the rounds: Amenta, Choi & Rote 2003. */
+/* Randomised insertion rounds (Amenta, Choi & Rote 2003). */
 
-enum { ROUNDS = 24 }; /* as many as make the first one small in any input */
+enum { ROUNDS = 24 }; /* enough to make the first round small for any input */
 
 int32_t tri_list_pieces(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const tri_triangle_id *corner,
                         struct tri_piece *piece, int32_t *skipped)
@@ -457,13 +461,13 @@ int32_t tri_list_pieces(const struct tri_mesh *mesh, const struct tri_pslg *pslg
         }
         if (!valid || a == b)
             ++*skipped;
-        else if (corner[a] != TRI_NONE && corner[b] != TRI_NONE) /* else all points are on one line */
+        else if (corner[a] != TRI_NONE && corner[b] != TRI_NONE) /* otherwise all points are collinear */
             piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE, true}};
     }
     return n;
 }
 
-/* A round has about as many pieces as all before it. */
+/* Each round has about as many pieces as all rounds before it together. */
 static int round_of(const struct tri_piece *piece)
 {
     int round = ROUNDS - 1;

@@ -1,20 +1,20 @@
-/* Segments of the input as pieces, and what is left of pieces that run along each other within rounding. */
+/* Input segments as pieces, and the merging of pieces that overlap within rounding. */
 #ifndef TRIANGLE_CDT_BUNDLE_H
 #define TRIANGLE_CDT_BUNDLE_H
 
 #include "triangle/mesh/mesh.h"
 #include "triangle/mesh/pslg.h"
 
-/* The input segments that run along a piece or a subsegment: the first of them, the first with a marker, and whether
- * they are odd in number. */
+/* Summary of the input segments that run along a piece or a subsegment: the first of them, the first with a marker, and
+ * whether their number is odd. */
 struct tri_course {
-    int32_t first, marked; /* TRI_NONE: there is none */
-    bool odd;
+    int32_t first, marked; /* segment numbers; TRI_NONE: there is none */
+    bool odd;              /* the number of segments is odd */
 };
 
 static inline int32_t tri_earlier(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
 
-/* The course of what both run along. */
+/* Returns the summary for the union of two sets of segments. */
 static inline struct tri_course tri_course_both(struct tri_course a, struct tri_course b)
 {
     struct tri_course both = {tri_earlier(a.first, b.first), tri_earlier(a.marked, b.marked), a.odd != b.odd};
@@ -22,33 +22,34 @@ static inline struct tri_course tri_course_both(struct tri_course a, struct tri_
 }
 
 struct tri_piece {
-    tri_vertex_id from, to;
-    struct tri_course course;
+    tri_vertex_id from, to; /* its ends */
+    struct tri_course course; /* the input segments along it */
 };
 
-/* Lists the segments that have a meaning in piece[pslg->n_segments], and returns how many there are; *skipped grows by
- * those that have none. corner[v]: a triangle at v, or TRI_NONE. */
+/* Lists the valid segments in piece[pslg->n_segments] and returns their number. Adds the number of invalid segments to
+ * *skipped. corner[v]: a triangle at v, or TRI_NONE. */
 int32_t tri_list_pieces(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const tri_triangle_id *corner,
                         struct tri_piece *piece, int32_t *skipped);
 
-/* In random rounds that double, in each in the order of the list. The pieces come from malloc, as what replaces them.
- * False: out of memory, nothing has changed. O(n) */
+/* Sorts the pieces into random rounds that double in size; each round keeps the order of the list. The array is from
+ * malloc and is replaced. Returns false if out of memory; then nothing has changed. O(n). */
 bool tri_put_in_rounds(struct tri_piece **piece, int32_t n);
 
-/* Cuts (*piece)[*n], at least one of them, at the stops on their way, and leaves one of each elementary piece, with the
- * course of all that run along it: piece i runs from stop[reach[i][0]] to stop[reach[i][1]], the first before the
- * second, through all stops between. Pieces come in the order of their first segments, and from malloc, as what
- * replaces them. O((*n + n_stops) log *n). false: out of memory, nothing has changed. */
+/* Cuts the pieces (*piece)[*n], at least one, at the stops between their ends, and keeps one copy of each elementary
+ * piece, with the summary of all segments along it. Piece i runs from stop[reach[i][0]] to stop[reach[i][1]], the first
+ * before the second, through all stops between. The pieces are in the order of their first segments. The array is from
+ * malloc and is replaced. O((*n + n_stops) log *n). Returns false if out of memory; then nothing has changed. */
 bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,
                      int32_t *n);
 
-/* The triangle through which a segment leaves its end *from towards *to, which may be exchanged; TRI_NONE: none. */
+/* Returns the triangle through which a segment leaves its end *from towards *to; TRI_NONE: none. May exchange the
+ * ends. */
 typedef tri_triangle_id tri_exit(void *context, tri_vertex_id *from, tri_vertex_id *to);
 
-/* Replaces pieces that run along each other by what the rule in bundle.c makes of them, which come first; the others
- * follow as they were. (*piece)[*n]: from malloc, as what replaces it; its ends are below n_vertices and differ, its
- * courses need not increase afterwards. *looked_at grows by the triangles walked through. false: out of memory; then
- * (*piece)[*n] has lost some. */
+/* Merges pieces that run along each other by the rule in bundle.c. The merged pieces come first; the others follow
+ * unchanged. The ends of each piece are different and below n_vertices. The array (*piece)[*n] is from malloc and is
+ * replaced; afterwards the pieces need not be in segment order. Adds the number of visited triangles to *looked_at.
+ * Returns false if out of memory; then (*piece)[*n] is incomplete. */
 bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
                        tri_exit *find_exit, void *context, int64_t *looked_at);
 

@@ -1,7 +1,8 @@
-/* Floods over triangles that stop at segments.
+/* Flood fills over triangles that stop at segments.
  *
- * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever
- * meet at a subsegment; removing the dead ones needs to tell subsegments alone. What is dead has the region DEAD. */
+ * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle can only meet
+ * at a subsegment. Therefore removing dead triangles changes links of subsegments only. Dead triangles have the region
+ * DEAD. */
 #include "triangle/cdt/carve.h"
 
 #include <assert.h>
@@ -15,14 +16,14 @@ enum { DEAD = -1 };
 
 struct flood {
     struct tri_mesh *mesh;
-    int32_t *stack;    /* [n_triangles]: each triangle is pushed at most once a flood */
+    int32_t *stack;    /* [n_triangles]; each flood pushes a triangle at most once */
     struct tri_carve_report report;
     struct tri_emptied holes;
 };
 
 static bool is_dead(const struct flood *f, tri_triangle_id t) { return f->mesh->tri[t].region == DEAD; }
 
-/* Gives the region to what no flood has reached yet. */
+/* Assigns the region to all triangles reachable from `start` that have no region yet. */
 static void flood_from(const struct flood *f, tri_triangle_id start, tri_region_id region)
 {
     struct tri_triangle *tri = f->mesh->tri;
@@ -45,7 +46,7 @@ static void flood_from(const struct flood *f, tri_triangle_id start, tri_region_
     }
 }
 
-/* Is there a subsegment behind the link along which no segment of the input runs? That is an edge of the hull. */
+/* Is the link a hull edge along which no input segment runs? */
 static bool is_bare_hull(const struct tri_mesh *mesh, tri_link link)
 {
     return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
@@ -64,10 +65,11 @@ static void kill_concavities(struct flood *f)
 
 enum { UNSEEN, WAITING, SEEN };
 
-/* Triangles by depth: those of the depth that is being flooded on the stack, those behind its barriers in `next`. */
+/* State of a breadth-first traversal by depth: `stack` holds triangles of the current depth, `next` those across its
+ * barriers. */
 struct dive {
     const struct tri_mesh *mesh;
-    uint8_t *state;         /* [n_triangles] */
+    uint8_t *state;         /* [n_triangles] UNSEEN, WAITING or SEEN */
     int32_t *stack, *next;  /* [n_triangles] */
     int32_t n, n_next;
 };
@@ -102,7 +104,8 @@ static void cross_edge(struct dive *d, tri_halfedge code)
         visit_triangle(d, tri_of(other));
 }
 
-/* Triangles at the hull, at depth 0, or behind a barrier. Those at depth 0 are on the stack first. */
+/* Starts at the triangles along the hull: at depth 0, or at depth 1 if the hull edge is a barrier. Pushes those at
+ * depth 0 first. */
 static void enter_hull(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
@@ -121,8 +124,8 @@ static void enter_hull(struct dive *d, bool keep_hull)
             }
 }
 
-/* INVARIANT: a depth is flooded to its end before the next begins; so the first depth at which a triangle is seen is
- * the least. A triangle waits at most once, and visit_triangle() may overtake it. */
+/* INVARIANT: each depth is flooded completely before the next one, so a triangle is first seen at its least depth. A
+ * triangle waits at most once, and visit_triangle() may visit it while it waits. */
 static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
 {
     enter_hull(d, keep_hull);
@@ -157,9 +160,9 @@ static enum tri_status kill_even(struct flood *f, bool keep_hull, struct tri_err
     return status;
 }
 
-/* --- places */
+/* --- point location */
 
-/* The faces of n places, given `width` numbers apart, x and y first; to be freed. */
+/* Locates n points, whose coordinates are the first two of every `width` numbers. The caller frees *faces. */
 static enum tri_status locate(const struct tri_mesh *mesh, const double *places, int32_t n, int32_t width,
                               int32_t **faces, struct tri_error *error)
 {
@@ -168,7 +171,7 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
     *faces = malloc(((size_t)n + 1) * sizeof **faces);
     enum tri_status status = TRI_OK;
     if (!points || !*faces)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
     for (int32_t k = 0; !status && k < n; k++) {
         const double *at = places + (size_t)k * (size_t)width;
         points[k] = tri_to_units(mesh, at[0], at[1]);
@@ -192,7 +195,8 @@ static bool ends_sub(const struct tri_mesh *mesh, tri_triangle_id t, int k)
     return false;
 }
 
-/* Does q lie on a subsegment? The triangle is what tri_locate_faces tells of it, which then has q on its boundary. */
+/* Does q lie on a subsegment? t is the triangle that tri_locate_faces has returned for q; in this case q is on its
+ * boundary. */
 static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
@@ -233,11 +237,11 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
     struct tri_mesh *mesh = f->mesh;
     if (!tri_resize(&mesh->regions, (size_t)pslg->n_regions + 1, sizeof *mesh->regions))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
-    assert(mesh->n_regions == 1 && !mesh->columns); /* "no region" alone */
+    assert(mesh->n_regions == 1 && !mesh->columns); /* only the entry "no region" */
     mesh->n_regions = pslg->n_regions + 1;
     int32_t *faces;
     enum tri_status status = locate(mesh, pslg->regions, pslg->n_regions, 4, &faces, error);
-    for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
+    for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* backwards: a face keeps the last region point */
         const double *r = &pslg->regions[4 * (size_t)k];
         mesh->regions[k + 1] = (struct tri_region){r[2], r[3]};
         if (faces[k] != TRI_NONE)
@@ -260,8 +264,9 @@ void tri_mark_vertices(struct tri_mesh *mesh)
         tri_mark_ends(mesh, mesh->sub[s].v, mesh->sub[s].marker);
 }
 
-/* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
- * three parts of the triangle do not overlap, nor do triangles. */
+/* For each edge of a removed triangle that remains as a part of the boundary, sets the parent's guard to the centroid
+ * of the triangle. The triangle of an edge and the centroid is then reserved for the parent; no two of these
+ * overlap. */
 static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;
@@ -298,18 +303,18 @@ static void remove_dead(const struct flood *f)
     tri_mesh_compact(mesh);
 }
 
-/* --- what is left, in order */
+/* --- order of the remaining subsegments */
 
-/* Subsegments and their parents on the way to their new places. */
+/* Subsegments and their parents, being sorted. */
 struct sorting {
-    int32_t *start; /* [n_segments + 2] where the next one of each input segment goes; last, those of none: the hull */
+    int32_t *start; /* [n_segments + 2] next position for each input segment; the last is for hull edges without one */
     struct tri_subsegment *sub; /* [n_subs] */
     struct tri_parent *parent;  /* [n_subs] */
 };
 
 static bool has_triangle(const struct tri_subsegment *s) { return s->side[0] != TRI_NONE || s->side[1] != TRI_NONE; }
 
-/* Counting sort of the subsegments that have a triangle by input segment; returns how many they are. */
+/* Sorts the subsegments that still have a triangle by input segment (counting sort). Returns their number. */
 static int32_t sort_subs(const struct tri_mesh *mesh, struct sorting *to, int32_t n_segments)
 {
     int32_t kept = 0;
@@ -363,7 +368,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
     return status;
 }
 
-/* What goes is marked. */
+/* Marks the triangles to be removed. */
 static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                             struct tri_error *error)
 {
@@ -386,7 +391,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_triangles + 1;
-    assert(mesh->n_subs == mesh->n_parents); /* one each */
+    assert(mesh->n_subs == mesh->n_parents); /* each has its own parent */
     struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack)};
     enum tri_status status = TRI_OK;
     if (!f.stack)

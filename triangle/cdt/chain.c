@@ -1,16 +1,17 @@
-/* Subsegments that are one straight segment.
+/* Unites chains of subsegments that form one straight segment.
  *
- * A vertex is a joint where exactly two subsegments end, of one marker and both on the boundary or both inside, and run
- * on as far as rounding tells. A chain of joints lies between two vertices that are none, or is closed.
+ * A vertex is a joint if exactly two subsegments end there, with equal markers, both on the boundary or both inside,
+ * and collinear within rounding. A chain connects two vertices that are not joints, through joints only, or is closed.
  *
- * RULE. A chain becomes one parent where all of it keeps to the line between its ends. Else it is cut at the vertex
- * that is farthest from that line (Douglas & Peucker 1973), and so on; of vertices as far, up to the tolerance or half
- * of that distance if it is less, at the first. Why: docs/theory.md, chains.
+ * RULE. A chain becomes one parent if all of its vertices lie within a tolerance of the line through its ends.
+ * Otherwise it is cut, recursively, at the vertex with the largest distance from that line (Douglas & Peucker 1973).
+ * Distances that differ by at most the tolerance, or by at most half of the largest one if that is less, count as
+ * equal: then the lowest vertex number decides. Why: docs/theory.md, chains.
  *
- * INVARIANT. The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c). So
- * the parents of a refined mesh come back, and with them its corners, narrow spaces and sizes.
+ * INVARIANT. Split points and arranged vertices lie within the tolerance of their lines (split.c, constrain.c). So a
+ * refined mesh gets its parents back, and with them its corners, narrow gaps and sizes.
  *
- * COST. From the DEEP-th cut within a cut on, chains are halved: n vertices cost at most n * (DEEP + log2(n)). */
+ * COST. Beyond DEEP nested cuts chains are halved, so n vertices cost at most n * (DEEP + log2(n)). */
 #include "triangle/cdt/reconstruct.h"
 
 #include <assert.h>
@@ -23,9 +24,9 @@ enum { MANY = -2, DEEP = 32 };
 
 struct chains {
     struct tri_mesh *mesh;
-    tri_sub_id *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
-    bool *seen;     /* [n_subs] */
-    /* The chain in hand: from vertex[0] by sub[0] to vertex[1], and so on to vertex[n]. */
+    tri_sub_id *at; /* [n_vertices][2] subsegments that end at each; TRI_NONE: none; [0] == MANY: more than two */
+    bool *seen;     /* [n_subs] whether the subsegment has been added to a chain */
+    /* The current chain: from vertex[0] by sub[0] to vertex[1], and so on to vertex[n]. */
     tri_vertex_id *vertex; /* [n_subs + 1] */
     tri_sub_id *sub;       /* [n_subs] */
     int32_t n;
@@ -48,7 +49,7 @@ static tri_vertex_id other_end(const struct tri_mesh *mesh, tri_sub_id s, tri_ve
     return mesh->sub[s].v[mesh->sub[s].v[0] == v];
 }
 
-/* Of v from the segment between a and b. */
+/* Returns the distance of v from the segment between a and b. */
 static double distance_from(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
 {
     struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
@@ -61,7 +62,7 @@ static double tolerance(const struct tri_mesh *mesh, tri_vertex_id v)
     return TRI_CHAIN_ASTRAY * tri_resolution(mesh->xy[v]);
 }
 
-/* Does v lie between a and b on their line? */
+/* Does v lie between a and b, within the tolerance of their line? */
 static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
 {
     struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
@@ -80,7 +81,7 @@ static bool is_joint(const struct chains *c, tri_vertex_id v)
            is_between(mesh, other_end(mesh, at[0], v), other_end(mesh, at[1], v), v);
 }
 
-/* The subsegment behind joint v for who comes by s. */
+/* Returns the other subsegment at joint v. */
 static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
 {
     const tri_sub_id *at = &c->at[2 * (size_t)v];
@@ -111,8 +112,8 @@ static void turn_chain(struct chains *c)
     }
 }
 
-/* Takes in hand the chain that begins with subsegment s at a vertex, and lets it run the way of s. It ends where it
- * began if it is closed. */
+/* Stores the chain that begins at vertex `from` with subsegment s as the current chain, in the direction of s. A closed
+ * chain ends at its start. */
 static void follow(struct chains *c, tri_sub_id s, tri_vertex_id from)
 {
     c->n = 0;
@@ -124,7 +125,7 @@ static void follow(struct chains *c, tri_sub_id s, tri_vertex_id from)
         turn_chain(c);
 }
 
-/* Where the chain from its vertex i to its vertex k has to be cut; 0: nowhere. */
+/* Returns the index at which the chain from vertex i to vertex k must be cut; 0: it is straight. */
 static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
 {
     const struct tri_mesh *mesh = c->mesh;
@@ -145,7 +146,8 @@ static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
     return cut;
 }
 
-/* From its vertex i to its vertex k. All subsegments of a parent run its way; the first tells which way they came. */
+/* Makes vertices i to k of the chain one parent. All its subsegments get its direction; `reversed` records the original
+ * direction of the first one. */
 static void unite(const struct chains *c, int32_t i, int32_t k)
 {
     struct tri_mesh *mesh = c->mesh;
@@ -178,7 +180,7 @@ static void unite_straight(const struct chains *c, int32_t i, int32_t k, int dep
     unite_straight(c, cut, k, depth + 1);
 }
 
-/* Parents without a subsegment go. */
+/* Removes parents without subsegments and renumbers the others. */
 static void number_parents(struct tri_mesh *mesh, tri_parent_id *number)
 {
     tri_parent_id n = 0;
@@ -212,7 +214,7 @@ static void unite_all(struct chains *c)
                 unite_straight(c, 0, c->n, 0);
             }
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
-        if (!c->seen[s]) { /* closed */
+        if (!c->seen[s]) { /* closed chain */
             follow(c, s, mesh->sub[s].v[0]);
             unite_straight(c, 0, c->n, 0);
         }

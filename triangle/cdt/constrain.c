@@ -1,17 +1,17 @@
-/* Segments into a Delaunay triangulation: each becomes a chain of subsegments, laid piece by piece.
+/* Inserts segments into a Delaunay triangulation. Each becomes a chain of subsegments, inserted piece by piece. Based
+ * on snap rounding (Hobby 1999), without a grid.
  *
- * RULES (docs/theory.md, constraining segments). A vertex on the piece ends it (1); so does a vertex beside it that
- * coordinates do not tell from one on it (2). Where the piece crosses a subsegment, both get a vertex in common (3).
- * When all are laid, a subsegment with an apex beside it is laid again through that (4). No vertex ever moves.
+ * RULES (docs/theory.md, constraining segments). A piece ends at the first vertex on it (1), and at a vertex beside it
+ * that rounding cannot distinguish from one on it (2). If a piece crosses a subsegment, both are cut at a common vertex
+ * (3). After all insertions, a subsegment with an apex beside it is rerouted through that apex (4). No vertex ever
+ * moves.
  *
- * INVARIANT. Between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
- * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
+ * INVARIANT. Between two insertions the mesh is a constrained Delaunay triangulation of the pieces inserted so far.
+ * corner[v] is a live triangle at v, or TRI_NONE if v is in no triangle. The mesh fills the convex hull.
  *
- * THEOREM (end). Laying ends, with all segments laid or with an error that names one. For rules 1, 2 and 4 take a
- * vertex from between the ends of pieces, in the order along the first segment there, and rule 3 is applied a bounded
- * number of times. Debug builds assert each comes_between.
- *
- * Source of the idea: snap rounding (Hobby 1999), here without a grid. */
+ * THEOREM (end). The algorithm terminates, with all segments inserted or with an error that names one. Rules 1, 2 and 4
+ * use a vertex between the ends of pieces, in the order along their first segment, and rule 3 is applied a bounded
+ * number of times. Debug builds assert each comes_between. */
 #include "triangle/cdt/constrain.h"
 
 #include <assert.h>
@@ -30,7 +30,7 @@
 #include "triangle/mesh/surface.h"
 #include "triangle/tunables.h"
 
-enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
+enum { WINDOW = 64 }; /* number of further triangles searched for a nearer vertex after one beside the piece is found */
 
 static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
 
@@ -40,16 +40,16 @@ struct layer {
     struct tri_cavity cavity;
     struct tri_recovery recovery;
     struct tri_flips flips;
-    tri_triangle_id *corner; /* [corner_capacity] a triangle at each vertex */
+    tri_triangle_id *corner; /* [corner_capacity] a triangle at each vertex, or TRI_NONE */
     int32_t corner_capacity;
-    struct tri_course *course; /* [course_capacity] of each subsegment */
+    struct tri_course *course; /* [course_capacity] the input segments along each subsegment */
     int32_t course_capacity;
-    struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
+    struct tri_piece *piece; /* stack of pieces to insert: the rest of the current segment, and removed subsegments */
     int32_t n_pieces, piece_capacity;
-    int32_t segment; /* the input segment that is being laid */
-    int64_t crossings, crossings_left; /* how often rule 3 may be applied, in all and from here on */
-    bool runs_along; /* has one met a vertex before its end? */
-    uint32_t step; /* see tri_stop_is_due */
+    int32_t segment; /* the current input segment */
+    int64_t crossings, crossings_left; /* limit on applications of rule 3, and how many are left */
+    bool runs_along; /* whether a piece has met a vertex before its end */
+    uint32_t step; /* counter for tri_stop_is_due */
     struct tri_constrain_report *report;
     struct tri_error *error;
 };
@@ -109,19 +109,20 @@ static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
     return l->mesh->xy[l->pslg->segments[2 * segment + k]];
 }
 
-/* Does v lie within so many resolutions (of the segment's larger end) of the line of an input segment? */
+/* Is v within `resolutions` resolutions of the line of an input segment, measured at the segment's larger end? */
 static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, double resolutions)
 {
     const int32_t *ends = &l->pslg->segments[2 * segment];
     if (v == ends[0] || v == ends[1])
-        return true; /* nearly always */
+        return true; /* by far the most common case */
     struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
     double resolution = fmax(tri_resolution(a), tri_resolution(b));
     return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
 }
 
-/* > 0: q comes after p in the order along an input segment; 0: they are one place. What is as far along it is ordered
- * across it. The sign is exact: that of a turn, for the first of them with both points turned by a right angle. */
+/* Returns a value > 0 if q comes after p in the order along an input segment, and 0 if they are at the same place.
+ * Points equally far along it are ordered across it. The sign is exact, since tri_turn is; the first call rotates both
+ * points by 90 degrees. */
 static double advance(const struct layer *l, int32_t segment, struct tri_point p, struct tri_point q)
 {
     struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1), from = {-p.y, p.x}, to = {-q.y, q.x};
@@ -129,7 +130,7 @@ static double advance(const struct layer *l, int32_t segment, struct tri_point p
     return along != 0 ? along : tri_turn(a, b, p, q);
 }
 
-/* Does q come between the ends of the piece, in the order along its segment? See THEOREM. */
+/* Does q lie between the ends of the piece, in the order along its segment? See THEOREM (end). */
 static bool comes_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
@@ -137,15 +138,15 @@ static bool comes_between(const struct layer *l, struct tri_point q, const struc
     return (first > 0 && second > 0) || (first < 0 && second < 0);
 }
 
-/* Does q lie between the ends of the piece, along the piece itself? */
+/* Does q lie between the ends of the piece, along the line of the piece itself? */
 static bool lies_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
-    double x = b.x - a.x, y = b.y - a.y; /* from either end, since q may be next to it */
+    double x = b.x - a.x, y = b.y - a.y; /* relative to each end, since q may be close to one */
     return x * (q.x - a.x) + y * (q.y - a.y) > 0 && x * (q.x - b.x) + y * (q.y - b.y) < 0;
 }
 
-/* By its ends: files may count from 0 or from 1. */
+/* Reports a segment by its ends, because files may number from 0 or from 1. */
 static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
 {
     const double unit = l->mesh->unit; /* a power of two */
@@ -164,7 +165,7 @@ static enum tri_status check_distance(const struct layer *l, struct tri_course c
     return TRI_OK;
 }
 
-/* Makes ab, whose gap begins in triangle t, a subsegment. */
+/* Makes ab a subsegment. The edges between a and b that it crosses begin in triangle t. */
 static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
                                 struct tri_course course)
 {
@@ -202,7 +203,7 @@ static bool keep_corners(struct layer *l, tri_vertex_id v)
     return l->corner[v] != TRI_NONE;
 }
 
-/* Takes subsegment s, which has triangles on both sides, out of the mesh; the last one takes its number. */
+/* Removes subsegment s, which has triangles on both sides, from the mesh. The last subsegment gets its number. */
 static bool take_up(struct layer *l, tri_sub_id s)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -221,8 +222,8 @@ static bool take_up(struct layer *l, tri_sub_id s)
            tri_flip_legalise(&l->flips);
 }
 
-/* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
- * place. TRI_NONE where there is none. */
+/* Returns the triangle that holds *p, not on the hull. If rounding has put *p on or beyond the hull, moves it by one
+ * step. Returns TRI_NONE if no such place is found. */
 static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
 {
     const struct tri_point step = {tri_resolution(*p), tri_resolution(*p)};
@@ -238,8 +239,8 @@ static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, str
     return TRI_NONE;
 }
 
-/* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). On the hull the edge
- * stays, with nothing along it. */
+/* Removes subsegment s and pushes it on the stack, to be cut at a vertex that is determined later (see finish_parts). A
+ * hull edge stays, but no segment runs along it any more. */
 static bool take_apart(struct layer *l, tri_sub_id s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
@@ -248,8 +249,8 @@ static bool take_apart(struct layer *l, tri_sub_id s)
     return (tri_is_boundary(&old) || take_up(l, s)) && push_piece(l, old.v[0], old.v[1], course);
 }
 
-/* Cuts the pieces from number `first` on, the last of the stack, at vertex v: the first two of them, which cross there,
- * in any case, the others where it lies between their ends. */
+/* Cuts the pieces on the stack from number `first` on at vertex v. The first two, which cross at v, are always cut, the
+ * others only if v lies between their ends. */
 static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
 {
     assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
@@ -264,14 +265,14 @@ static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
     return true;
 }
 
-/* A vertex that pieces may share instead of a crossing of their own. */
+/* A candidate vertex that two crossing pieces can share instead of a new one. */
 struct choice {
-    tri_vertex_id vertex; /* TRI_NONE: none yet */
-    int astray;           /* of the two pieces that cross, how many have it not between their ends */
-    double distance;      /* squared, from the crossing */
+    tri_vertex_id vertex; /* TRI_NONE: none found */
+    int astray;           /* for how many of the two pieces it does not lie between the ends */
+    double distance;      /* squared distance from the crossing */
 };
 
-/* Of the pieces from number `first` on the first two are those that cross. */
+/* Replaces *best if v is a better choice. The crossing pieces are the first two from number `first` on. */
 static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
                        struct choice *best)
 {
@@ -285,9 +286,9 @@ static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, st
         *best = now;
 }
 
-/* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
- * cavity of p, as far as they are within a distance of it: the one that leads fewest of the two astray, then the
- * nearest. */
+/* Chooses a vertex within a distance of p, from the ends of the pieces from number `first` on, the corners of triangle
+ * t (if any) and the vertices around the cavity of p. Prefers one that lies between the ends of both crossing pieces,
+ * then the nearest. */
 static struct choice choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
                                    double within)
 {
@@ -304,7 +305,7 @@ static struct choice choose_vertex(const struct layer *l, int32_t first, tri_tri
     return best;
 }
 
-/* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
+/* Inserts a vertex at p, whose cavity has been found, with the marker and attributes of the piece `along`. */
 static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along,
                                     tri_vertex_id *vertex)
 {
@@ -325,7 +326,8 @@ static enum tri_status add_crossing(struct layer *l, struct tri_point p, const s
     return keep_corners(l, v) ? TRI_OK : no_memory(l);
 }
 
-/* Where the pieces cross: at the crossing of their input segments, unless bends have moved it away from there. */
+/* Returns the point where the pieces cross: the crossing of their input segments, unless earlier bends have moved
+ * it. */
 static struct tri_point crossing_of(const struct layer *l, const struct tri_piece *a, const struct tri_piece *b)
 {
     const struct tri_point *xy = l->mesh->xy;
@@ -341,14 +343,16 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
-/* So near to a segment that v keeps to whatever shares a piece with it, too: that lies within TRI_BESIDE of it. */
+/* Is v so near to the segment that it is also near enough to other segments along the same piece? These lie within
+ * TRI_BESIDE of it. */
 static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
 {
     return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ASTRAY - TRI_BESIDE);
 }
 
-/* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
- * near its segment and, as what else runs along the piece may have finer coordinates, near the piece where it is. */
+/* Sets *nearest and *least if the piece can be cut at `end`, an end of another piece, and that is nearer to it than
+ * *least. The point must lie between the ends of the piece, near its segment, and also near the piece itself, because
+ * other segments along it may have finer coordinates. */
 static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
                     double *least)
 {
@@ -360,8 +364,9 @@ static void try_end(const struct layer *l, const struct tri_piece *piece, tri_ve
         *nearest = end, *least = distance;
 }
 
-/* The end of what piece number `first` crosses, the pieces behind it on the stack, where that piece can be cut, so that
- * they stay as they are; else an end of it where they can; TRI_NONE where there is none. */
+/* Piece number `first` crosses the pieces after it on the stack. Returns the nearest of their ends at which `first` can
+ * be cut, so that they stay unchanged; otherwise an end of `first` at which one of them can be cut; otherwise
+ * TRI_NONE. */
 static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
 {
     tri_vertex_id nearest = TRI_NONE;
@@ -378,10 +383,10 @@ static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
     return nearest;
 }
 
-/* Rule 3: the piece crosses subsegment s. */
+/* Rule 3: the piece crosses subsegment s, and both are cut at a common vertex. */
 static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
-    assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
+    assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* pieces do not leave the hull */
     if (l->crossings_left-- == 0)
         return cannot_keep(l, l->segment);
     const int32_t first = l->n_pieces;
@@ -426,15 +431,15 @@ static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece,
     return finish_parts(l, first, v) ? TRI_OK : no_memory(l);
 }
 
-/* What a piece meets first. */
+/* The first obstacle on the way of a piece. */
 struct meeting {
-    tri_vertex_id end; /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
-    tri_sub_id across; /* that subsegment, else TRI_NONE */
-    tri_vertex_id beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
+    tri_vertex_id end; /* the first vertex on the piece, perhaps its own end; TRI_NONE: a subsegment comes first */
+    tri_sub_id across; /* that subsegment, otherwise TRI_NONE */
+    tri_vertex_id beside; /* the nearest vertex passed within rounding of the piece, or TRI_NONE */
     double distance;
 };
 
-/* Rule 2. */
+/* Rule 2: sets met->beside to v if v is within rounding of the piece and nearer than the previous one. */
 static void consider(const struct layer *l, const struct tri_piece *piece, tri_vertex_id v, double det,
                      struct meeting *met)
 {
@@ -454,7 +459,7 @@ static void consider(const struct layer *l, const struct tri_piece *piece, tri_v
     met->distance = distance;
 }
 
-/* t: the triangle through which the piece leaves its start. */
+/* Finds the first obstacle of the piece. t: the triangle through which the piece leaves its start. */
 static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = l->mesh;
@@ -494,7 +499,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
     return met;
 }
 
-/* The piece ends at vertex v for now; the rest waits below it on the stack. */
+/* Cuts the piece at vertex v, and pushes both parts on the stack. */
 static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, tri_vertex_id v)
 {
     assert(comes_between(l, l->mesh->xy[v], piece));
@@ -502,7 +507,7 @@ static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, t
     return room ? TRI_OK : no_memory(l);
 }
 
-/* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
+/* Inserts the first part of a piece, or cuts the piece, and pushes the rest on the stack. May exchange its ends. */
 static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
 {
     tri_triangle_id t = tri_find_exit(l->mesh, l->corner, &piece.from, &piece.to);
@@ -517,7 +522,7 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
         return stop_at(l, &piece, met.end);
     if (met.across != TRI_NONE)
         return cross_sub(l, &piece, met.across);
-    assert(met.end != TRI_NONE); /* the hull is convex */
+    assert(met.end != TRI_NONE); /* because the hull is convex */
     assert(met.end == piece.to || comes_between(l, l->mesh->xy[met.end], &piece));
     enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
     if (status)
@@ -525,14 +530,12 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
     return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
-/* Rule 3 may be applied so often from now on. */
 static void allow_crossings(struct layer *l)
 {
-    /* One for each subsegment crossed is usual. */
+    /* Limits rule 3. Usually, each subsegment crossed takes one application. */
     l->crossings = l->crossings_left = 200 + 10 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
 }
 
-/* Lays what is on the stack. */
 static enum tri_status lay_pieces(struct layer *l)
 {
     while (l->n_pieces > 0) {
@@ -553,7 +556,7 @@ static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segm
     return push_piece(l, segment->from, segment->to, segment->course) ? lay_pieces(l) : no_memory(l);
 }
 
-/* Rule 4: the nearer apex beside subsegment s; TRI_NONE if there is none. */
+/* Rule 4: returns the nearer apex that is beside subsegment s within rounding; TRI_NONE: there is none. */
 static tri_vertex_id find_beside(const struct layer *l, tri_sub_id s)
 {
     const struct tri_mesh *mesh = l->mesh;
@@ -602,7 +605,8 @@ static tri_triangle_id exit_of(void *context, tri_vertex_id *from, tri_vertex_id
     return tri_find_exit(l->mesh, l->corner, from, to);
 }
 
-/* Once a piece runs along vertices, others may do so, too: those that are left are shared. */
+/* After a piece has met a vertex before its end, others may run along the same vertices, so the remaining pieces are
+ * merged first (bundle.h). */
 static enum tri_status lay_from(struct layer *l, struct tri_piece **piece, int32_t *n)
 {
     int32_t k = 0;
@@ -653,7 +657,7 @@ static void free_layer(struct layer *l)
     tri_flips_free(&l->flips);
 }
 
-/* Hull edges, along which nothing has been laid yet. */
+/* Initialises the hull edges: no segment runs along them yet. */
 static enum tri_status list_courses(struct layer *l)
 {
     for (tri_sub_id s = 0; s < l->mesh->n_subs; s++)
@@ -662,8 +666,8 @@ static enum tri_status list_courses(struct layer *l)
     return TRI_OK;
 }
 
-/* Gives each subsegment its marker, and a parent of its own: as many as there are, since each came with one, or fewer,
- * since some were taken up. */
+/* Sets the marker of each subsegment and gives it its own parent. There are enough parents: each subsegment came with
+ * one. */
 static void settle_subs(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;

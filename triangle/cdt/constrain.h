@@ -1,4 +1,4 @@
-/* Segments into a Delaunay triangulation: the constrained Delaunay triangulation of a PSLG. */
+/* Inserts segments into a Delaunay triangulation, which makes it the constrained Delaunay triangulation of a PSLG. */
 #ifndef TRIANGLE_CDT_CONSTRAIN_H
 #define TRIANGLE_CDT_CONSTRAIN_H
 
@@ -6,19 +6,19 @@
 #include "triangle/tunables.h"
 
 struct tri_constrain_report {
-    int32_t crossings; /* vertices made where segments cross */
-    int32_t bent;      /* times a segment runs through a vertex within rounding of it, or of a crossing */
-    int32_t skipped;   /* segments with an end outside the points, or two equal ends */
-    int64_t looked_at; /* triangles, in search of what segments meet */
+    int32_t crossings; /* vertices inserted where segments cross */
+    int32_t bent;      /* how often a segment was routed through a vertex within rounding of it, or of a crossing */
+    int32_t skipped;   /* segments with an end out of range, or two equal ends */
+    int64_t looked_at; /* triangles visited in search of obstacles */
 };
 
-/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments, whose vertices
- * are at most TRI_SEGMENT_ASTRAY * 2^-52 * (the largest coordinate of the segment's ends) off its line. Vertices on a
- * segment, and within rounding of it, split it; crossing segments are cut at a new vertex, which takes marker and
- * interpolated attributes of the segment that comes first; where segments overlap the first non-zero marker wins. The
- * result is constrained Delaunay, ties broken by coordinates. Each subsegment has a parent of its own.
- * TRI_BAD_INPUT, naming the segment, where a chain cannot be kept that near to its line (thousands of near coincidences
- * at one place). Expected near O(crossed edges) per segment. */
+/* Makes every segment of the PSLG a chain of subsegments. The PSLG's points are the mesh's first vertices. Vertices of
+ * a chain lie within TRI_SEGMENT_ASTRAY * 2^-52 * (the largest coordinate of the segment's ends) of the segment's line.
+ * Vertices on a segment, or within rounding of it, split it. Crossing segments are cut at a new vertex, which gets the
+ * marker and the interpolated attributes of the segment that comes first. If segments overlap, the first non-zero
+ * marker wins. The result is constrained Delaunay, with ties broken by coordinates. Each subsegment has its own parent.
+ * Returns TRI_BAD_INPUT, naming the segment, if a chain cannot be kept this near to its line (thousands of near
+ * coincidences at one place). Expected near O(crossed edges) per segment. */
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error);
 

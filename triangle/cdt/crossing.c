@@ -1,5 +1,5 @@
-/* Crossings and feet of perpendiculars in doubled precision. A pair here is head + tail with |tail| <= u |head| up to
- * the rounding of single operations; the few units of 2^-104 lost in each do not show after the last rounding. */
+/* Crossings and projections in doubled precision. A pair is head + tail with |tail| <= u |head|, up to the rounding of
+ * single operations. Each operation loses a few units of 2^-104, which do not affect the final rounding. */
 #include "triangle/cdt/crossing.h"
 
 #include <assert.h>
@@ -21,7 +21,7 @@ static struct tri_pair sum(struct tri_pair p, struct tri_pair q)
 
 static struct tri_pair negative(struct tri_pair p) { return (struct tri_pair){-p.head, -p.tail}; }
 
-/* p / q; q is not 0. */
+/* Returns p / q; q must not be 0. */
 static struct tri_pair quotient(struct tri_pair p, struct tri_pair q)
 {
     assert(q.head != 0);
@@ -30,7 +30,7 @@ static struct tri_pair quotient(struct tri_pair p, struct tri_pair q)
     return tri_fast_two_sum(first, rest.head / q.head);
 }
 
-/* from + fraction * way, rounded. */
+/* Returns from + fraction * way, rounded to a coordinate. */
 static double go(double from, struct tri_pair way, struct tri_pair fraction)
 {
     struct tri_pair step = product(way, fraction), h = tri_two_sum(from, step.head);
@@ -50,7 +50,7 @@ static bool separates(struct tri_point a, struct tri_point b, struct tri_point c
     return (at_c > 0 && at_d < 0) || (at_c < 0 && at_d > 0);
 }
 
-/* Where the line through a and b crosses the segment from c to d. */
+/* Returns the point where the line through a and b crosses the segment from c to d. */
 static struct tri_point cut(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     struct tri_pair from = tri_orient2d_pair(a, b, c), to = tri_orient2d_pair(a, b, d);
@@ -59,7 +59,7 @@ static struct tri_point cut(struct tri_point a, struct tri_point b, struct tri_p
                               go(c.y, tri_two_difference(d.y, c.y), fraction)};
 }
 
-/* The place is found as a part of the segment with the finer coordinates. */
+/* Computes the point along the segment with the finer coordinates. */
 bool tri_crossing(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d, struct tri_point *p)
 {
     if (!separates(a, b, c, d) || !separates(c, d, a, b))

@@ -1,16 +1,15 @@
-/* Incremental Delaunay triangulation in biased randomised Hilbert order, by stretches of the curve.
+/* Incremental Delaunay triangulation in biased randomised Hilbert order, parallel over stretches of the curve.
  *
- * Rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi & Rote 2003): the next
- * point lies near the last one, so location is a walk of few steps, and no order of input makes cavities large on
- * average.
+ * Points are inserted in rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi &
+ * Rote 2003). Consecutive points are near each other, so point location takes few steps, and no input order makes
+ * cavities large on average.
  *
- * Vertices are numbered along the curve, and the curve is cut into leaves of equally many. Within a round, stretches
- * of leaves insert at the same time what they can (insertion.c); what lies at their borders waits for
- * stretches of WIDER times as many leaves, and what is left at last for one stretch that has all. Borders of stretches
- * with m vertices each are crossed by some n / sqrt(m) triangles: so each step leaves half of what the one before
- * left, and one stretch alone gets some sqrt(n). The triangulation is that of the set of points, whatever the order
- * (cocircular ties are broken by coordinates); rounds, leaves and stretches follow from the number of points alone;
- * and at the end triangles are sorted. So the mesh depends on the points alone. */
+ * Vertices are numbered along the curve, which is divided into leaves of equal size. Within a round, stretches of
+ * leaves insert points in parallel (insertion.c). Points whose cavity crosses a border wait for stretches of WIDER
+ * times as many leaves; the last stretch is the whole curve. With m vertices per stretch, about n / sqrt(m) triangles
+ * cross borders. So each step leaves half as many points as the one before, and about sqrt(n) are inserted
+ * sequentially. The mesh depends on the set of points only, because cocircular ties are broken by coordinates, rounds
+ * and stretches depend only on n, and triangles are sorted at the end. */
 #include "triangle/cdt/delaunay.h"
 
 #include <assert.h>
@@ -26,7 +25,7 @@ enum {
     LEAF = 1 << 15,    /* vertices */
     MOST_LEAVES = 256,
     WIDER = 4,
-    LEAST_SHARE = 16   /* a stretch inserts in a round at least, about, one point for so many vertices of a leaf */
+    LEAST_SHARE = 16   /* a stretch should insert at least (leaf size) / LEAST_SHARE points in a round */
 };
 
 _Static_assert(INT64_C(8) * 8 * 8 * 8 * 8 * 8 * 8 * FIRST_ROUND >= TRI_MAX_VERTICES && ROUND_GROWTH == 8,
@@ -34,24 +33,24 @@ _Static_assert(INT64_C(8) * 8 * 8 * 8 * 8 * 8 * 8 * FIRST_ROUND >= TRI_MAX_VERTI
 
 struct leaf {
     struct tri_range range;
-    int32_t round[MOST_ROUNDS + 1]; /* the points of round r wait at waiting[round[r] .. round[r + 1]) */
-    int32_t n_waiting;              /* in the round that runs: the first so many of these still do */
-    int32_t n_inserted;             /* in that round */
-    int32_t near;                   /* a triangle near the leaf, when all is quiet */
-    int32_t entry;                  /* a triangle of the stretch of the leaf; TRI_NONE: go on where others ended */
-    enum tri_status status;         /* of the stretch that begins here */
+    int32_t round[MOST_ROUNDS + 1]; /* points of round r are waiting[round[r] .. round[r + 1]) */
+    int32_t n_waiting;              /* number of points of the current round that remain, at the start of its range */
+    int32_t n_inserted;             /* number of points inserted in the current round */
+    int32_t near;                   /* a triangle near the leaf; valid between phases */
+    int32_t entry;                  /* an owned triangle to start from; TRI_NONE: continue after the previous leaf */
+    enum tri_status status;         /* result of the stretch that begins at this leaf */
 };
 
 struct builder {
     struct tri_mesh *mesh;
     const struct tri_executor *executor;
-    struct tri_triangle *tri; /* [2 n_vertices + 4] two for each place in waiting, and the first four */
-    int32_t *waiting;         /* [n_vertices] */
+    struct tri_triangle *tri; /* [2 n_vertices + 4] two for each entry of `waiting`, and the first four */
+    int32_t *waiting;         /* [n_vertices] points to insert */
     struct leaf *leaf;
     int32_t n_leaves, n_rounds;
-    int32_t least;            /* points that a stretch should insert in a round */
-    int32_t first[3];         /* corners of the first triangle */
-    int32_t round, width;     /* what runs: a round, in stretches of so many leaves */
+    int32_t least;            /* minimum number of points that a stretch should insert in a round */
+    int32_t first[3];         /* corners of the initial triangle */
+    int32_t round, width;     /* current round; number of leaves in each stretch */
 };
 
 /* --- duplicates */
@@ -73,7 +72,7 @@ static void find_twins(void *context, size_t share)
     }
 }
 
-/* Duplicates are neighbours along the curve. */
+/* Finds duplicates, which are neighbours along the curve. */
 static enum tri_status list_twins(struct tri_mesh *mesh, int32_t *n_twins, const struct tri_executor *executor,
                                   struct tri_error *error)
 {
@@ -100,7 +99,7 @@ static bool is_twin(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh-
 
 /* --- rounds */
 
-/* Round r of R holds one point in ROUND_GROWTH^(R - r), drawn by a fixed hash. */
+/* Returns the round of vertex v. Round r of R holds one point in ROUND_GROWTH^(R - r), selected by a fixed hash. */
 static int round_of(const struct builder *b, tri_vertex_id v)
 {
     int round = b->n_rounds - 1;
@@ -114,7 +113,8 @@ static bool is_to_insert(const struct builder *b, tri_vertex_id v)
     return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
 }
 
-/* The points of a leaf by rounds, along the curve in each; triangles that no point will take are marked as free. */
+/* Sorts the points of a leaf by round, and along the curve within a round. Marks triangles that no point will use as
+ * free. */
 static void arrange_leaf(void *context, size_t index)
 {
     const struct builder *b = context;
@@ -138,7 +138,7 @@ static void arrange_leaf(void *context, size_t index)
     leaf->near = 2 * b->mesh->n_vertices;
 }
 
-/* --- a phase: all stretches of some width */
+/* --- a phase: all stretches of one width */
 
 static struct tri_range stretch_of(const struct builder *b, int32_t leaf)
 {
@@ -146,8 +146,8 @@ static struct tri_range stretch_of(const struct builder *b, int32_t leaf)
     return (struct tri_range){b->leaf[first].range.first, b->leaf[last - 1].range.last};
 }
 
-/* Where the stretch can begin with the points of a leaf: with the first of them whose triangle it owns. Nothing is
- * inserted meanwhile. A stretch that owns all can begin anywhere. */
+/* Finds a triangle at which the stretch can begin with the points of a leaf: that of the first point whose triangle the
+ * stretch owns. Runs while nothing is inserted. A stretch that owns everything can begin anywhere. */
 static void seek_entry(void *context, size_t index)
 {
     const struct builder *b = context;
@@ -165,7 +165,7 @@ static void seek_entry(void *context, size_t index)
     }
 }
 
-/* What cannot be inserted stays in the list. */
+/* Inserts the points of a leaf. Points that cannot be inserted stay in the list. */
 static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, struct tri_inserter *inserter,
                                    uint32_t *step)
 {
@@ -245,9 +245,9 @@ static enum tri_status run_round(struct builder *b, struct tri_error *error)
     return status;
 }
 
-/* --- the whole */
+/* --- the whole triangulation */
 
-/* The first three points that span a triangle; false where all are collinear. */
+/* Finds the first three points that span a triangle. Returns false if all points are collinear. */
 static bool find_first(struct builder *b)
 {
     const struct tri_point *xy = b->mesh->xy;
@@ -296,9 +296,9 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
     void *raw = malloc(((size_t)n_triangles + 2) * sizeof *b.tri);
     if (!raw)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
-    b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* a cache line holds two */
+    b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* two triangles per cache line */
     status = build(&b, leaf_size, error);
-    int32_t n_live = n_triangles - 2 * n_twins - 6; /* the first three bring four together */
+    int32_t n_live = n_triangles - 2 * n_twins - 6; /* the first three points make four triangles in total */
     status = status ? status : tri_curve_sort(mesh, b.tri, n_triangles, n_live, executor, error);
     free(raw);
     return status;

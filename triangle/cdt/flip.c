@@ -1,7 +1,6 @@
-/* Lawson's flips (1977): where the vertex beyond an edge lies in the circle of the triangle before it, the edge gives
- * way to the other diagonal of its quadrilateral, if that is convex. Each flip lowers the surface that the
- * triangulation spans when its vertices are lifted to the paraboloid, so there is an end: the constrained Delaunay
- * triangulation (Lee & Lin 1986). */
+/* Lawson's flips (1977). If the vertex across an edge lies in the circumcircle of a triangle, the edge is replaced by
+ * the other diagonal of its quadrilateral, provided that is convex. Each flip lowers the surface of the triangulation
+ * lifted to the paraboloid, so the algorithm ends, at the constrained Delaunay triangulation (Lee & Lin 1986). */
 #include "triangle/cdt/flip.h"
 
 #include <assert.h>
@@ -27,7 +26,7 @@ bool tri_flip_touch(struct tri_flips *f, tri_triangle_id t)
     return true;
 }
 
-/* Near apex n, right r, far apex o, left s: t becomes (n, r, o), the neighbour (n, o, s). */
+/* With near apex n, right r, far apex o and left s, t becomes (n, r, o) and the neighbour becomes (n, o, s). */
 tri_triangle_id tri_flip_edge(struct tri_flips *f, tri_triangle_id t, int e)
 {
     struct tri_mesh *mesh = f->mesh;
@@ -68,7 +67,7 @@ static bool is_convex(const struct tri_mesh *mesh, tri_triangle_id t, int e)
     return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
 }
 
-/* Does the apex beyond edge e of t lie inside the circle of t? */
+/* Does the apex across edge e of t lie inside the circumcircle of t? */
 static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
 {
     const struct tri_mesh *mesh = f->mesh;
@@ -80,7 +79,7 @@ static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
 }
 
-/* Are all corners of t, and the apex beyond its edge e, at home in the block? */
+/* Do all corners of t, and the apex across its edge e, belong to the block? */
 static bool is_in_block(const struct tri_flips *f, tri_triangle_id t, int e)
 {
     const struct tri_mesh *mesh = f->mesh;
@@ -108,13 +107,13 @@ bool tri_flip_legalise(struct tri_flips *f)
     return true;
 }
 
-/* --- flips of a whole mesh */
+/* --- flips in a whole mesh */
 
-/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
- * triangles which has the lower number. */
+/* Triangles with an edge to be flipped, found in parallel over shares of the mesh. Each edge is tested from its
+ * triangle with the lower number. */
 struct suspicion {
     struct tri_flips *flips;
-    tri_triangle_id *suspect; /* [n_triangles] each share's behind one another, with gaps */
+    tri_triangle_id *suspect; /* [n_triangles] one list per share, starting at the first triangle of the share */
     int32_t n[TRI_MOST_SHARES];
 };
 
@@ -133,7 +132,7 @@ static void suspect_share(void *context, size_t share)
     assert(s->n[share] <= range.last - range.first);
 }
 
-/* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
+/* Touches the edges to triangles with higher numbers, so each edge is touched from one side only. */
 static bool touch_upwards(struct tri_flips *f, tri_triangle_id t)
 {
     if (!make_room(f))
@@ -144,7 +143,8 @@ static bool touch_upwards(struct tri_flips *f, tri_triangle_id t)
     return true;
 }
 
-/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
+/* Flips until all edges are Delaunay. An edge not changed by any flip has been tested; all others have been touched and
+ * made legal. */
 static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error *error)
 {
     struct tri_flips *f = s->flips;
@@ -182,16 +182,16 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_exe
     return status;
 }
 
-/* Back through the flips: before a flip, a point of its quadrilateral lay in the one of its two triangles that is on
- * the point's side of the former diagonal. So a walk from the triangle that a point lies in now, from flip to earlier
- * flip, ends at the number of the triangle that it lay in at first. The side is decided exactly; where rounding has
- * moved a centroid out of its triangle, the walk ends at a triangle nearby that no subsegment parts from it, since no
- * flip has crossed one. */
+/* Regions are restored by walking back through the flips. Before a flip, a point of its quadrilateral lay in that one
+ * of the two triangles which is on the point's side of the old diagonal. So a walk from flip to earlier flip, starting
+ * at the triangle that holds the point now, ends at the number of the triangle that held it first. The side is decided
+ * exactly. If rounding has moved a centroid out of its triangle, the walk ends at a nearby triangle in the same face,
+ * because no flip crosses a subsegment. */
 
 struct tri_flip_record {
-    tri_triangle_id left, right; /* the triangles on either side of the old diagonal, in both of which the flip ended */
-    tri_vertex_id from, to;      /* that diagonal */
-    int32_t left_before, right_before; /* the last flips of these triangles before this one, or TRI_NONE */
+    tri_triangle_id left, right; /* triangles on both sides of the old diagonal, whose numbers the new ones reuse */
+    tri_vertex_id from, to;      /* ends of the old diagonal */
+    int32_t left_before, right_before; /* previous flip of each of these triangles, or TRI_NONE */
 };
 
 bool tri_flip_history_begin(struct tri_flip_history *h, const struct tri_mesh *mesh)
@@ -208,8 +208,8 @@ void tri_flip_history_free(struct tri_flip_history *h)
     free(h->flip);
 }
 
-/* Flips may be quadratically many: their history may not. Where it is cut short regions move a little, as they do where
- * refinement follows refinement. */
+/* The number of flips may be quadratic, so the history is limited. If it is settled early, regions move slightly, as
+ * they do when refinement follows refinement. */
 static bool is_long(const struct tri_flip_history *h, const struct tri_mesh *mesh)
 {
     enum { MOST = 4, FEW = 1 << 20 };
@@ -249,7 +249,7 @@ static tri_region_id region_before(const struct tri_flip_history *h, const struc
 
 void tri_flip_history_settle(struct tri_flip_history *h, struct tri_mesh *mesh)
 {
-    /* No walk looks at `last` beyond its first step: the region can wait there until all walks are done. */
+    /* Walks read h->last in their first step only, so it can hold the new region until all walks are done. */
     for (tri_triangle_id t = 0; h->n > 0 && t < mesh->n_triangles; t++)
         if (h->last[t] != TRI_NONE)
             h->last[t] = region_before(h, mesh, t);

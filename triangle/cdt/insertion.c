@@ -1,4 +1,4 @@
-/* Walk, cavity, fan; and the triangles that come of it in an order of their own. */
+/* Inserts points (walk, cavity, fan), and sorts the finished triangles (tri_curve_sort). */
 #include "triangle/cdt/delaunay.h"
 
 #include <assert.h>
@@ -8,13 +8,13 @@
 #include "triangle/base/radix.h"
 #include "triangle/geometry/predicates.h"
 
-/* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
+/* A boundary edge of the cavity: the half-edge of the triangle outside, and the corner at which the edge starts. */
 struct tri_inserter_edge {
     tri_halfedge outer;
     tri_vertex_id a;
 };
 
-/* An edge behind which the search has not looked yet; it starts where the last edge ended. */
+/* An edge that the search has not crossed yet; it starts where the last boundary edge ends. */
 struct tri_inserter_pending {
     tri_link link;
     tri_vertex_id end;
@@ -27,7 +27,7 @@ void tri_inserter_free(struct tri_inserter *b)
     free(b->pending);
 }
 
-/* A cavity has two edges more than triangles. */
+/* A cavity has two more edges than triangles. */
 enum { MORE_EDGES = 2 };
 
 static bool grow(struct tri_inserter *b)
@@ -47,8 +47,8 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
     return holds(b, t->v[0]) && holds(b, t->v[1]) && holds(b, t->v[2]);
 }
 
-/* Ghost e + 1 sees edge e the other way round; its edge from the hull edge's far end to infinity is shared with the
- * ghost of the edge that starts there. */
+/* Ghost e + 1 lies across edge e. Its edge from the end of the hull edge to infinity is shared with the ghost of the
+ * hull edge that starts there. */
 void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_triangle_id triangle,
                       const tri_vertex_id v[3])
 {
@@ -65,14 +65,14 @@ void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_
     }
 }
 
-/* Strictly between a and b, where the three are collinear. */
+/* Is q strictly between a and b? The three points are collinear. */
 static bool between(struct tri_point a, struct tri_point b, struct tri_point q)
 {
     return a.x != b.x ? (a.x < q.x) != (b.x < q.x) && q.x != a.x && q.x != b.x
                       : (a.y < q.y) != (b.y < q.y) && q.y != a.y && q.y != b.y;
 }
 
-/* A ghost's hull edge runs from -> to with the outside on its left. */
+/* Is q in the disk of the ghost? Its hull edge runs from -> to with the outside on its left. */
 static bool in_ghost(const struct tri_inserter *b, const struct tri_triangle *t, int ghost, struct tri_point q)
 {
     assert(ghost >= 0 && t->v[tri_next[ghost]] >= 0 && t->v[tri_prev[ghost]] >= 0);
@@ -88,9 +88,9 @@ static inline bool in_disk(const struct tri_inserter *b, const struct tri_triang
     return tri_in_circle(b->xy[t->v[0]], b->xy[t->v[1]], b->xy[t->v[2]], q);
 }
 
-/* A walk by visibility: the triangle contains q, or is a ghost beyond the hull edge that the walk leaves through. Exact
- * orientations: the walk cannot cycle in a Delaunay triangulation. Of a neighbour of what the stretch owns it is the
- * corner across the edge that tells whether the stretch owns it, too. */
+/* Locates q by a visibility walk. Returns the triangle that contains q, or a ghost beyond the hull edge through which
+ * the walk leaves. Orientations are exact, so the walk cannot cycle in a Delaunay triangulation. A neighbour of an
+ * owned triangle is owned if its corner across the common edge is in the stretch. */
 static inline tri_triangle_id locate(struct tri_inserter *b, struct tri_point q)
 {
     tri_triangle_id t = b->last;
@@ -120,7 +120,7 @@ static inline tri_triangle_id locate(struct tri_inserter *b, struct tri_point q)
 
 tri_triangle_id tri_inserter_locate(struct tri_inserter *b, struct tri_point q) { return locate(b, q); }
 
-/* Adds what lies across one edge of the first triangle. */
+/* Adds the triangles across one edge of the first triangle to the cavity. */
 static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tri_link link, tri_vertex_id a,
                                   tri_vertex_id end)
 {
@@ -196,12 +196,12 @@ enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_trian
     return TRI_INSERTED;
 }
 
-/* Ghosts become subsegments; triangles are sorted and move.
+/* Converts ghosts to subsegments, sorts the triangles and moves them.
  *
- * THEOREM. The order is total: of the triangles that begin at a vertex each has another second corner, since an edge
- * has one triangle on its left. So nothing is left to how the triangulation came about. */
+ * THEOREM. The order is total: triangles that begin at the same vertex have different second corners, since an edge has
+ * one triangle on its left. So the order does not depend on the history of the triangulation. */
 
-/* What is sorted: a vertex, and the triangle that is sorted by it, with the corner at which that begins. */
+/* An item to sort: a vertex as the key, the triangle, and the corner at which the triangle will begin. */
 enum { ID_BITS = 29, CORNER_BITS = 2, KEY_SHIFT = ID_BITS + CORNER_BITS, FEW = 24 };
 
 _Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
@@ -210,10 +210,10 @@ struct sorting {
     struct tri_mesh *mesh;
     struct tri_triangle *tri; /* [n_triangles] */
     int32_t n_triangles, n_live;
-    uint64_t *item, *scratch; /* [n_triangles] each */
-    int32_t group[TRI_MOST_SHARES + 1]; /* items where shares begin, so that none cuts a group in two */
-    int32_t *to;              /* [n_triangles] where a triangle goes: the code of what will be its first corner */
-    int vertex_bits;          /* of the largest number of a vertex, and one more */
+    uint64_t *item, *scratch; /* [n_triangles] each; scratch space is for sorting */
+    int32_t group[TRI_MOST_SHARES + 1]; /* first item of each share, chosen so that no group is split */
+    int32_t *to;              /* [n_triangles] new place of each triangle: the code of its new first corner */
+    int vertex_bits;          /* bits of the largest vertex number plus one */
 };
 
 static uint64_t item_of(int32_t key, int corner, tri_triangle_id id)
@@ -227,7 +227,7 @@ static tri_triangle_id id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C
 
 /* --- the hull */
 
-/* A ghost by the code of its corner at infinity; its hull edge, seen from inside, is start -> end. */
+/* A ghost is given by the code of its corner at infinity; its hull edge, seen from inside, is start -> end. */
 static tri_vertex_id hull_start(const struct tri_triangle *tri, tri_halfedge g)
 {
     return tri[tri_of(g)].v[tri_prev[tri_edge(g)]];
@@ -237,7 +237,7 @@ static tri_vertex_id hull_end(const struct tri_triangle *tri, tri_halfedge g)
     return tri[tri_of(g)].v[tri_next[tri_edge(g)]];
 }
 
-/* The ghost across the edge from the end to infinity. */
+/* Returns the next ghost along the hull. */
 static tri_halfedge next_ghost(const struct tri_triangle *tri, tri_halfedge g)
 {
     tri_link link = tri[tri_of(g)].n[tri_prev[tri_edge(g)]];
@@ -264,7 +264,7 @@ static tri_halfedge lowest_ghost(const struct tri_triangle *tri, int32_t *count)
     return lowest;
 }
 
-/* Leaves no ghost. */
+/* Makes the hull edges subsegments and frees the ghosts. */
 static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri, struct tri_error *error)
 {
     int32_t count, g = lowest_ghost(tri, &count);
@@ -282,9 +282,9 @@ static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri
 
 /* --- the order */
 
-/* The corner that is the lower end of the shortest edge, of several the lowest. Lengths are the same whatever corner
- * comes first, since differences are rounded alike in both directions. Without branches: they would be as good as
- * random. */
+/* Returns the corner at which the triangle will begin: the lower end of its shortest edge; of several such corners, the
+ * one with the lowest number. An edge has the same computed length in both directions, since differences round
+ * symmetrically. Avoids branches, which would be unpredictable. */
 static int first_corner(const struct tri_point *xy, const tri_vertex_id v[3])
 {
     double length2[3];
@@ -317,7 +317,7 @@ static void list_share(void *context, size_t share)
     }
 }
 
-/* A group is the triangles that begin at one vertex. */
+/* Computes s->group. A group is the triangles that begin at one vertex. */
 static void find_groups(struct sorting *s)
 {
     size_t shares = tri_shares(s->n_live);
@@ -329,7 +329,7 @@ static void find_groups(struct sorting *s)
     }
 }
 
-/* By the second corner. */
+/* Sorts a group by the second corner. */
 static void sort_group(const struct sorting *s, uint64_t *item, int32_t n)
 {
     for (int32_t i = 0; i < n; i++) {
@@ -369,7 +369,7 @@ static void find_order(struct sorting *s, const struct tri_executor *executor)
     tri_execute(executor, tri_shares(s->n_live), place_share, s);
 }
 
-/* --- all move */
+/* --- moving the triangles */
 
 static tri_halfedge new_code(const struct sorting *s, tri_halfedge code)
 {
@@ -405,7 +405,7 @@ static void move_all(const struct sorting *s, const struct tri_executor *executo
     mesh->n_triangles = s->n_live;
 }
 
-/* Items wait where triangles will be. */
+/* Sorts and moves the triangles. The items are stored in the memory of the mesh's new triangles. */
 static enum tri_status sort(struct sorting *s, const struct tri_executor *executor, struct tri_error *error)
 {
     _Static_assert(sizeof *s->tri == 4 * sizeof *s->item, "room for two lists of items in half as many triangles");
@@ -430,6 +430,6 @@ enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, 
     struct sorting s = {.mesh = mesh, .tri = tri, .n_triangles = n_triangles, .n_live = n_live,
                         .vertex_bits = tri_bits_of(mesh->n_vertices)};
     enum tri_status status = take_hull(mesh, tri, error);
-    s.n_live -= mesh->n_subs; /* ghosts */
+    s.n_live -= mesh->n_subs; /* ghosts are not live any more */
     return status ? status : sort(&s, executor, error);
 }

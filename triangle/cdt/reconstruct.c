@@ -1,11 +1,13 @@
-/* Triangles to a mesh: their edges are matched, boundary and segments become subsegments, attributes regions.
+/* Makes a mesh from triangles: matches their edges, makes boundary edges and segments subsegments, and groups
+ * attributes into regions.
  *
- * Every triangle contributes three half-edges. They are dealt to ranges of vertices by their lower end, and sorted
- * within a range by it, then by the upper end: so the two sides of an edge are neighbours. Ranges are matched at the
- * same time, since an edge has one lower end. Whatever the degrees, this takes O(triangles).
+ * Every triangle contributes three half-edges. They are distributed to ranges of vertices by their lower end, and
+ * sorted within a range by lower end, then upper end, so the two sides of an edge become neighbours. Ranges are matched
+ * in parallel, since an edge has only one lower end. O(triangles), regardless of vertex degrees.
  *
- * Until an edge has found its other side its link is LOOSE, which no code and no subsegment equals. Of several faults
- * the first is told: by triangle as they are taken; by lower end, then by half-edge, as they are matched. */
+ * Until the other side of an edge is found, its link is LOOSE, which differs from all codes and subsegments. Of several
+ * faults the first is reported: by triangle while triangles are copied; by lower end, then by half-edge, while edges
+ * are matched. */
 #include "triangle/cdt/reconstruct.h"
 
 #include <assert.h>
@@ -22,16 +24,16 @@
 
 enum { LOOSE = INT32_MAX };
 
-/* A half-edge is an item to sort: its code, and above it, at first, its lower end counted from the first of the range;
- * then its upper end, and whether it runs down from there. */
+/* A half-edge as an item to sort: its code in the low bits; above it, first the offset of its lower end in the range,
+ * later its upper end and a bit that is set if it runs downwards. */
 enum { CODE_BITS = 31, HIGH_SHIFT = CODE_BITS + 1, FEW = 24 };
 
 _Static_assert(4 * INT64_C(1) * TRI_MAX_TRIANGLES == INT64_C(1) << CODE_BITS, "codes fill their bits");
 
-/* A triangle that belongs to no mesh. */
+/* An invalid triangle. */
 struct fault {
-    tri_halfedge code;     /* of it, and of its edge that is amiss */
-    const char *what; /* NULL: there is none */
+    tri_halfedge code;     /* code of the triangle and of the invalid edge */
+    const char *what; /* text for the error message; NULL: no fault */
 };
 
 struct matcher {
@@ -39,20 +41,20 @@ struct matcher {
     const struct tri_pslg *pslg;
     const struct tri_elements *elements;
     const struct tri_reconstruct_options *options;
-    uint64_t *half;    /* [3 n] by range */
-    int32_t width;     /* vertices in a range */
+    uint64_t *half;    /* [3 n] half-edges, by range */
+    int32_t width;     /* number of vertices in a range */
     int width_bits;    /* width < 2^width_bits */
-    int32_t at[TRI_MOST_SHARES][TRI_MOST_SHARES]; /* [share][range] where the next half-edge goes */
-    int32_t end[TRI_MOST_SHARES];                 /* of each range in half[] */
-    struct fault fault[TRI_MOST_SHARES];          /* of each share of triangles, or of each range */
+    int32_t at[TRI_MOST_SHARES][TRI_MOST_SHARES]; /* [share][range] position of the next half-edge */
+    int32_t end[TRI_MOST_SHARES];                 /* end of each range in half[] */
+    struct fault fault[TRI_MOST_SHARES];          /* first fault in each share of triangles, or in each range */
     bool no_room[TRI_MOST_SHARES];
-    int32_t *head;     /* [n_vertices] first segment with this lower end; then on by next[n_segments] */
+    int32_t *head;     /* [n_vertices] first segment with this lower end; the others follow by next[n_segments] */
     int32_t *next;
-    int32_t *edge_of;  /* [n_segments] code of the edge that is the segment, or TRI_NONE */
+    int32_t *edge_of;  /* [n_segments] code of the edge equal to the segment, or TRI_NONE */
     int32_t n_segments;
-    int32_t *loose;    /* [n_loose] codes of edges that have one side, in order */
+    int32_t *loose;    /* [n_loose] codes of edges with one side only, in order */
     int32_t n_loose;
-    int32_t loose_at[TRI_MOST_SHARES + 1]; /* of each share */
+    int32_t loose_at[TRI_MOST_SHARES + 1]; /* start of each share in loose[] */
     struct tri_error *error;
 };
 
@@ -63,7 +65,7 @@ static enum tri_status no_memory(struct tri_error *error, int32_t n)
 
 static size_t n_shares(const struct matcher *m) { return tri_shares(m->elements->n); }
 
-/* The first fault is that of the lowest share. */
+/* Returns the fault of the lowest share as an error. */
 static enum tri_status first_fault(const struct matcher *m)
 {
     for (size_t i = 0; i < n_shares(m); i++) {
@@ -78,7 +80,7 @@ static enum tri_status first_fault(const struct matcher *m)
 
 /* --- triangles */
 
-/* Turns the triangle counter-clockwise; or says what is wrong with it. */
+/* Makes the triangle counter-clockwise. Returns NULL, or the text of the fault. */
 static const char *orient(const struct tri_mesh *mesh, tri_vertex_id v[3])
 {
     for (int k = 0; k < 3; k++)
@@ -135,7 +137,7 @@ static enum tri_status take_triangles(struct matcher *m)
 
 /* --- matching */
 
-/* Counts become places: range by range, in each the shares in order. */
+/* Converts counts to positions: range by range, and within a range by share. */
 static void divide_ranges(struct matcher *m)
 {
     int32_t sum = 0;
@@ -166,7 +168,7 @@ static tri_halfedge code_of(uint64_t half) { return (int32_t)(half & ((UINT64_C(
 static tri_vertex_id high_of(uint64_t half) { return (int32_t)(half >> HIGH_SHIFT); }
 static bool runs_down(uint64_t half) { return half >> CODE_BITS & 1; }
 
-/* The half-edges at one lower end by their upper ends; those with the same ends in order of their triangles. */
+/* Sorts the half-edges at one lower end by their upper ends; equal ones stay in the order of their triangles. */
 static void sort_bucket(const struct tri_mesh *mesh, uint64_t *half, int32_t n, uint64_t *scratch)
 {
     for (int32_t i = 0; i < n; i++) {
@@ -184,7 +186,7 @@ static void sort_bucket(const struct tri_mesh *mesh, uint64_t *half, int32_t n, 
         tri_radix_sort(half, scratch, n, HIGH_SHIFT, 64, NULL);
 }
 
-/* Joins two sides of an edge; or finds a fault in a third, or in a second that is like the first. */
+/* Links the two sides of an edge. Returns a fault if there is a third side, or if both are on the same side. */
 static struct fault join(const struct tri_mesh *mesh, const uint64_t *half, int32_t n)
 {
     assert(n > 0 && *tri_link_at(mesh, code_of(half[0])) == LOOSE);
@@ -233,7 +235,7 @@ static void list_segments(struct matcher *m)
     }
 }
 
-/* Looks the segments with this lower end up among its edges. */
+/* Finds the segments with this lower end among its edges. */
 static void find_segments(const struct matcher *m, tri_vertex_id low, const uint64_t *half, int32_t n)
 {
     for (int32_t k = m->head[low]; k != TRI_NONE; k = m->next[k]) {
@@ -257,7 +259,7 @@ static void match_range(void *context, size_t range)
     struct matcher *m = context;
     int32_t first = range > 0 ? m->end[range - 1] : 0, n = m->end[range] - first;
     uint64_t *half = m->half + first, *scratch = malloc(((size_t)n + 1) * sizeof *scratch);
-    assert(n >= 0 && m->at[n_shares(m) - 1][range] == m->end[range]); /* all have been dealt */
+    assert(n >= 0 && m->at[n_shares(m) - 1][range] == m->end[range]); /* all have been distributed */
     m->no_room[range] = !scratch;
     m->fault[range].what = NULL;
     if (scratch)
@@ -302,14 +304,14 @@ static enum tri_status allocate_and_match(struct matcher *m)
 
 /* --- subsegments */
 
-/* The edge of this code becomes a subsegment between the same ends. */
+/* Makes the edge with this code a subsegment with the given ends. */
 static void add_sub(struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id from, tri_vertex_id to, int32_t marker,
                     int32_t segment)
 {
     int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *tri_link_at(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
     assert(other >= 0 && mesh->sub[s].v[side] == mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
-    mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
+    mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* outside unknown: no part of it is reserved */
     mesh->sub[s].side[side] = code;
     *tri_link_at(mesh, code) = ~s;
     if (other == LOOSE)
@@ -401,7 +403,8 @@ static enum tri_status add_subsegments(struct matcher *m)
 
 /* --- attributes and area bounds as regions */
 
-/* Regions other than 0 by the values they stand for, in an open hash table of twice as many places as triangles. */
+/* Maps pairs of attributes and area bound to regions other than 0, by an open hash table with at least twice as many
+ * slots as triangles. */
 struct values {
     struct tri_mesh *mesh;
     const struct tri_elements *elements;
@@ -428,7 +431,7 @@ static void add_region(struct tri_mesh *mesh, const double *attributes, double b
 {
     size_t n = (size_t)mesh->n_columns;
     tri_region_id region = mesh->n_regions++;
-    assert(region <= mesh->n_triangles); /* no more than one each, and "no region" */
+    assert(region <= mesh->n_triangles); /* at most one region per triangle, and "no region" */
     mesh->regions[region] = (struct tri_region){n > 0 ? attributes[0] : 0, bound};
     if (n > 0)
         memcpy(mesh->columns + (size_t)region * n, attributes, n * sizeof *attributes);
@@ -457,7 +460,7 @@ static void assign_regions(struct values *values)
 {
     const struct tri_elements *elements = values->elements;
     struct tri_mesh *mesh = values->mesh;
-    int32_t last = 0; /* most triangles have the values of the one before */
+    int32_t last = 0; /* most triangles have the values of the previous one */
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         const double *attributes =
             elements->attributes ? elements->attributes + (size_t)t * (size_t)elements->n_attributes : NULL;
@@ -468,7 +471,8 @@ static void assign_regions(struct values *values)
     }
 }
 
-/* Arrays for as many regions as triangles, of which only what is used is ever touched. */
+/* Groups the triangles into regions. The arrays have room for one region per triangle; unused memory is never
+ * touched. */
 static enum tri_status make_regions(struct tri_mesh *mesh, const struct tri_elements *elements, struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_triangles + 1, size = 2;
@@ -490,7 +494,7 @@ static enum tri_status make_regions(struct tri_mesh *mesh, const struct tri_elem
     return status;
 }
 
-/* --- all together */
+/* --- the whole reconstruction */
 
 static enum tri_status check_elements(const struct tri_elements *elements, struct tri_error *error)
 {
@@ -518,7 +522,7 @@ static enum tri_status build(struct matcher *m)
     if (!m->options->refine)
         return TRI_OK;
     status = tri_unite_chains(mesh, m->error);
-    status = status ? status : tri_surface_keep(mesh, m->options->executor, m->error); /* as it was read */
+    status = status ? status : tri_surface_keep(mesh, m->options->executor, m->error); /* before edges are flipped */
     return status ? status : tri_flip_to_delaunay(mesh, m->options->executor, m->error);
 }
 

@@ -1,17 +1,16 @@
-/* Two polygons, left and right of the new edge, are triangulated by division and merging.
+/* Triangulates the two polygons left and right of a new edge by divide and conquer.
  *
- * The vertices left of ab, in the order in which the edges from them cross ab, make a chain from a to b; those right of
- * it, from b to a. A vertex may stand in a chain more than once, so all here is said of places in the chain.
+ * The vertices left of ab, in the order in which edges from them cross ab, form a chain from a to b; those on the right
+ * form a chain from b to a. A vertex may occur several times in a chain, so the algorithm works on places in the chain.
  *
- * INVARIANT. The string of places i < k is the shortest path from i to k in the polygon. What lies between the chain
- * and its string (pockets) is triangulated, constrained Delaunay; the string from a to b is the edge ab.
+ * INVARIANT. The string of places i < k is the shortest path from i to k inside the polygon. The pockets between the
+ * chain and its string have a constrained Delaunay triangulation. The string from a to b is the edge ab.
  *
- * MERGE (docs/theory.md, recovering an edge). Two neighbouring strings are joined by a rising bubble: O(log m) rounds,
- * each of which makes and digs away O(m) triangles.
- *
- * Source: L. Guibas and J. Stolfi, Primitives for the Manipulation of General Subdivisions and the Computation of
- * Voronoi Diagrams, ACM Transactions on Graphics 4 (1985), section 9; D. T. Lee and A. K. Lin, Generalized Delaunay
- * Triangulation for Planar Graphs, Discrete & Computational Geometry 1 (1986), who divide simple polygons. */
+ * MERGE (docs/theory.md, recovering an edge). Two adjacent strings are merged by a rising bubble, in O(log m) rounds
+ * that each make and remove O(m) triangles. Sources: L. Guibas and J. Stolfi, Primitives for the Manipulation of
+ * General Subdivisions and the Computation of Voronoi Diagrams, ACM Transactions on Graphics 4 (1985), section 9; D. T.
+ * Lee and A. K. Lin, Generalized Delaunay Triangulation for Planar Graphs, Discrete & Computational Geometry 1
+ * (1986). */
 #include "triangle/cdt/recover.h"
 
 #include <assert.h>
@@ -21,27 +20,27 @@
 #include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 
-/* A place in one of the two chains: those of the left one come first. Place i and place i + 1 are joined by border i.
- * While triangles are made their corners are places, and their links codes, ~i for border i, or ~(places + i) for the
- * piece of a string that starts at place i. */
+/* A place in one of the two chains; the left chain comes first. Border i joins places i and i + 1. During the
+ * triangulation, corners of triangles are places. Links are codes, ~i for border i, or ~(places + i) for the piece of a
+ * string that starts at place i. */
 struct tri_recovery_place {
     tri_vertex_id vertex;
-    tri_link outer;     /* border: the mesh's link on its outer side */
+    tri_link outer;     /* border: link of the mesh on its outer side */
     union {
-        tri_halfedge code; /* border, until the triangles are freed: as its triangle sees it */
-        int32_t twin;      /* from then on: which other border is the same edge, or TRI_NONE */
+        tri_halfedge code; /* border, until the triangles are freed: half-edge of its triangle */
+        int32_t twin;      /* later: the other border that is the same edge, or TRI_NONE */
     };
     int32_t inner;      /* border: link on its inner side */
-    int32_t prev, next; /* string: neighbours */
-    int32_t above;      /* string: link above the piece to next */
+    int32_t prev, next; /* string: neighbouring places */
+    int32_t above;      /* string: link above the piece to `next` */
 };
 
-/* A place on one side of the gap, with the link behind the edge from there towards lr. */
+/* A place on one side of the gap, with the link across its edge towards lr. */
 struct tri_recovery_node {
     int32_t place, link;
 };
 
-/* A merge in progress: the gap over the edge lr with its two sides, each a stack of places up to j. */
+/* A merge in progress: the gap above the edge lr. Its two sides are stacks of places up to j. */
 struct gap {
     struct tri_recovery *r;
     struct tri_mesh *mesh;
@@ -60,7 +59,7 @@ void tri_recovery_free(struct tri_recovery *r)
     *r = (struct tri_recovery){0};
 }
 
-/* --- what is crossed */
+/* --- crossed triangles */
 
 static bool add_crossed(struct tri_recovery *r, tri_halfedge code)
 {
@@ -70,7 +69,7 @@ static bool add_crossed(struct tri_recovery *r, tri_halfedge code)
     return true;
 }
 
-/* Lists the edges through which ab enters triangles (of the first triangle, the one it leaves through). */
+/* Lists the edges through which ab enters triangles; for the first triangle, the edge through which ab leaves it. */
 static bool list_crossed(struct tri_recovery *r, const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
                          tri_vertex_id b)
 {
@@ -84,21 +83,21 @@ static bool list_crossed(struct tri_recovery *r, const struct tri_mesh *mesh, tr
         return false;
     while (o != b) {
         code = *tri_link_at(mesh, code);
-        assert(code >= 0); /* no subsegment */
+        assert(code >= 0); /* not a subsegment */
         if (!add_crossed(r, code))
             return false;
         o = tri_apex(mesh, code);
         double side = o == b ? 0 : tri_orient2d(mesh->xy[a], mesh->xy[b], mesh->xy[o]);
-        assert(o == b || side != 0); /* no vertex */
+        assert(o == b || side != 0); /* not on a vertex */
         r->n_left += side > 0;
         code = tri_code(tri_of(code), side > 0 ? tri_next[tri_edge(code)] : tri_prev[tri_edge(code)]);
     }
-    r->n_left += 2; /* the first one, and b */
+    r->n_left += 2; /* the first vertex, and b */
     assert(r->n_crossed >= 2 && r->n_left >= 3 && r->n_left <= r->n_crossed + 1);
     return true;
 }
 
-enum { MORE_PLACES = 4 }; /* than triangles that are crossed: a and b stand in both chains */
+enum { MORE_PLACES = 4 }; /* more places than crossed triangles: a and b occur in both chains */
 
 static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + MORE_PLACES; }
 
@@ -116,7 +115,7 @@ static void set_border(struct tri_recovery *r, const struct tri_mesh *mesh, int3
     r->at[i].code = tri_code(t, e);
 }
 
-/* Fills both chains. Edge f of a triangle that is entered through it starts left of ab and ends right of it. */
+/* Fills both chains. If ab enters a triangle through edge f, the edge starts left of ab and ends right of it. */
 static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
 {
     int32_t left = 0, right = n_places(r) - 1;
@@ -145,7 +144,7 @@ static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
     assert(left == r->n_left - 1 && right == r->n_left);
 }
 
-/* Frees the triangles, and finds borders that are the two sides of one edge. */
+/* Frees the crossed triangles, and finds pairs of borders that are two sides of one edge. */
 static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 {
     r->n_free = 0;
@@ -163,7 +162,7 @@ static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
     }
 }
 
-/* --- division and merging */
+/* --- divide and conquer */
 
 static void set_link(struct gap *g, tri_link link, tri_link other)
 {
@@ -188,7 +187,7 @@ static struct tri_point point_at(const struct gap *g, int32_t place)
     return g->mesh->xy[g->r->at[place].vertex];
 }
 
-/* Is the angle below less than 180 degrees in q, between places p < q < s that see q? */
+/* Is the angle below q less than 180 degrees, between places p < q < s that see q? */
 static bool is_slack(const struct gap *g, int32_t p, int32_t q, tri_sub_id s)
 {
     assert(p < q && q < s);
@@ -201,7 +200,7 @@ static void push(struct gap *g, int side, int32_t place, tri_link link)
     g->side[side][g->n[side]++] = (struct tri_recovery_node){place, link};
 }
 
-/* Where the string of i..k leaves those of i..j and j..k; what lies between becomes the sides of the gap. */
+/* Finds where the string of i..k leaves the strings of i..j and j..k. The parts between become the sides of the gap. */
 static void open_gap(struct gap *g, int32_t i, int32_t j, int32_t k)
 {
     struct tri_recovery_place *at = g->r->at;
@@ -228,7 +227,8 @@ static void open_gap(struct gap *g, int32_t i, int32_t j, int32_t k)
     g->base = ~(n_places(g->r) + l);
 }
 
-/* Digs on one side of the gap; then the next place there, TRI_NONE where the base does not see it. */
+/* Removes triangles on one side of the gap that violate the Delaunay property. Returns the next place on that side, or
+ * TRI_NONE if the base does not see it. */
 static int32_t candidate(struct gap *g, int side)
 {
     if (g->n[side] == 0)
@@ -264,7 +264,7 @@ static int choose(struct gap *g)
                                           point_at(g, right));
 }
 
-/* Puts a triangle between the base and the next place of one side; its third edge is the new base. */
+/* Makes a triangle of the base and the next place on one side; its third edge becomes the new base. */
 static void add_triangle(struct gap *g, int side)
 {
     assert(g->n[side] > 0 && g->r->n_free > 0);
@@ -310,7 +310,7 @@ static void solve(struct gap *g, int32_t i, int32_t k)
     merge(g, i, j, k);
 }
 
-/* --- back into the mesh */
+/* --- transfer to the mesh */
 
 static void link_walls(struct tri_recovery *r, struct tri_mesh *mesh)
 {
@@ -330,7 +330,7 @@ static void name_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
 {
     for (int32_t i = 0; i < r->n_crossed; i++) {
         tri_vertex_id *v = mesh->tri[tri_of(r->crossed[i])].v;
-        assert(v[0] >= 0 && v[0] < n_places(r)); /* every number is in use again */
+        assert(v[0] >= 0 && v[0] < n_places(r)); /* all freed numbers are in use again */
         for (int k = 0; k < 3; k++)
             v[k] = r->at[v[k]].vertex;
     }
@@ -357,11 +357,11 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
     return TRI_OK;
 }
 
-/* A search around one end, or around both in turns. */
+/* The search for the triangle through which a segment leaves its end: around one end, or alternately around both. */
 
-enum { HUB = 16 }; /* triangles around a vertex: with more it may be a hub */
+enum { HUB = 16 }; /* a vertex with more triangles than this may be a hub */
 
-/* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
+/* Returns the next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
 static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
 {
     int k = tri_corner_of(&mesh->tri[t], v);
@@ -369,13 +369,14 @@ static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
-/* Does the ray from a (corner k of t) to q leave through t: right edge included, left edge not? */
+/* Does the ray from a (corner k of t) to q leave through t? The right edge counts as part of t, the left edge does
+ * not. */
 static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
 {
     const struct tri_triangle *at = &mesh->tri[t];
     struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
     double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
-    if (r == 0) /* on the line of the right edge: ahead, not behind? */
+    if (r == 0) /* on the line of the right edge: is q ahead of a? */
         return (right.x - a.x) * (q.x - a.x) + (right.y - a.y) * (q.y - a.y) > 0;
     return r > 0 && s < 0;
 }
@@ -387,7 +388,7 @@ static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, st
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
+/* State of the search around a vertex for the triangle through which the ray to q leaves; one triangle per step. */
 struct rotation {
     tri_vertex_id vertex;
     tri_triangle_id start, t;
@@ -401,8 +402,9 @@ static struct rotation rotate_from(const tri_triangle_id *corner, tri_vertex_id 
     return (struct rotation){a, corner[a], corner[a], q, false};
 }
 
-/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
- * the next one is at hand. After the last one r->t is TRI_NONE. */
+/* Returns the current triangle if the ray leaves through it (its left edge is tested as well, since there may be no
+ * triangle beyond it). Otherwise moves on to the next triangle and returns TRI_NONE. After the last one r->t is
+ * TRI_NONE. */
 static tri_triangle_id rotate(const struct tri_mesh *mesh, struct rotation *r)
 {
     tri_triangle_id t = r->t;
@@ -410,7 +412,7 @@ static tri_triangle_id rotate(const struct tri_mesh *mesh, struct rotation *r)
     if (leaves_through(mesh, t, k, r->q) || along_left(mesh, t, k, r->q))
         return t;
     r->t = turn(mesh, t, r->vertex, !r->clockwise);
-    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
+    if (r->t == TRI_NONE && !r->clockwise) { /* continue clockwise, from the neighbour of the first one */
         r->clockwise = true;
         r->t = turn(mesh, r->start, r->vertex, false);
     } else if (r->t == r->start) {

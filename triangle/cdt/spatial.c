@@ -1,7 +1,7 @@
-/* The two permutations of the caller's points.
+/* Sorts the input points along a Hilbert curve, and restores their order.
  *
- * INVARIANT: origin is a permutation of 0 .. n_input - 1; place is its inverse. Only input vertices move, so whatever
- * names a vertex at or above n_input stays as it is. */
+ * INVARIANT: origin is a permutation of 0 .. n_input - 1, and place is its inverse. Only input vertices move, so
+ * references to vertices at or above n_input stay unchanged. */
 #include "triangle/cdt/spatial.h"
 
 #include <assert.h>
@@ -12,7 +12,7 @@
 
 static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
 
-/* For sorting points (16 bytes each) and for moving them. */
+/* Allocates scratch memory for sorting points (16 bytes each) and for moving them. */
 static void *scratch_for(const struct tri_mesh *mesh)
 {
     _Static_assert(sizeof(struct tri_point) >= 2 * sizeof(uint64_t), "room to sort and to move");
@@ -24,7 +24,7 @@ static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)mesh->n_input);
 }
 
-/* The inverse of a permutation, malloc'ed; NULL: no memory. */
+/* Returns the inverse of a permutation, from malloc; NULL: out of memory. */
 static int32_t *inverse_of(const int32_t *order, int32_t n)
 {
     int32_t *place = array(n, sizeof *place);
@@ -55,21 +55,22 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const st
     return *place ? TRI_OK : no_memory(mesh, error);
 }
 
-/* --- and back */
+/* --- restoring the order */
 
 static inline unsigned is_callers(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     return (uint32_t)v < (uint32_t)mesh->n_input;
 }
 
-/* Looks up a name in any case, so that it need not be guessed whose it is. */
+/* Returns the input number of v. Loads mesh->origin in all cases, so that no branch is needed. */
 static inline tri_vertex_id restored_name(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     tri_vertex_id name = mesh->origin[is_callers(mesh, v) ? v : 0];
     return is_callers(mesh, v) ? name : v;
 }
 
-/* One question for three corners: where every third vertex is the caller's nobody can guess the answers. */
+/* Tests the three corners together: if every third vertex is an input vertex, single tests would be unpredictable
+ * branches. */
 static void restore_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
@@ -93,7 +94,7 @@ static void restore_ends(const struct tri_mesh *mesh)
             mesh->parents[p].v[k] = restored_name(mesh, mesh->parents[p].v[k]);
 }
 
-/* The first of the points at a place, by the caller's numbers: twin[caller's index] = caller's index. */
+/* Converts twins to input numbers: twin[input index] = input index of the first point at the same place. */
 static void restore_twins(struct tri_mesh *mesh, int32_t *twin)
 {
     for (tri_vertex_id v = 0; v < mesh->n_input; v++)

@@ -1,8 +1,8 @@
-/* Why a mesh has no triangles.
+/* Finds out why a mesh has no triangles.
  *
- * THEOREM. Nothing is enclosed exactly where the subsegments along which segments run form a forest, and a tree with
- * more than one vertex has leaves: points at which one segment ends alone. A segment between two leaves of a tree
- * closes a ring, unless all of the tree between them lies on its line. */
+ * THEOREM. The segments enclose no area if and only if the subsegments along which they run form a forest. A tree with
+ * more than one vertex has leaves: points at which a single segment ends. A segment between two leaves of a tree closes
+ * a ring, unless the path between them is straight. */
 #include "triangle/cdt/why_empty.h"
 
 #include <assert.h>
@@ -13,22 +13,22 @@
 #include "triangle/cdt/constrain.h"
 #include "triangle/geometry/predicates.h"
 
-/* A connected set of subsegments. */
+/* A connected set of walls. */
 struct part {
-    struct tri_point low, high; /* of its bounding box */
+    struct tri_point low, high; /* corners of its bounding box */
     int32_t n_vertices, n_walls;
 };
 
 struct figure {
     const struct tri_mesh *mesh;
     bool even_odd;
-    int32_t *root;     /* [n_vertices] one nearer to the vertex that stands for its part */
-    int32_t *ends;     /* [n_vertices] walls that end there */
-    struct part *parts; /* [n_vertices] of those that stand for one */
+    int32_t *root;     /* [n_vertices] union-find: parent of the vertex; roots represent connected parts */
+    int32_t *ends;     /* [n_vertices] number of walls that end there */
+    struct part *parts; /* [n_vertices] the part of each root */
     int32_t n_walls;
 };
 
-/* Does a segment run along the subsegment, so that it may enclose something? */
+/* Does the subsegment count as a wall that can enclose an area? */
 static bool is_wall(const struct figure *f, tri_sub_id s)
 {
     const struct tri_parent *parent = &f->mesh->parents[f->mesh->sub[s].parent];
@@ -67,7 +67,7 @@ static void find_parts(struct figure *f)
     }
 }
 
-/* The part of the largest extent. */
+/* Returns the part with the largest extent. */
 static int32_t find_outline(const struct figure *f)
 {
     double largest = -1;
@@ -83,7 +83,7 @@ static int32_t find_outline(const struct figure *f)
     return outline;
 }
 
-/* The vertex of the part that is farthest from p. */
+/* Returns the vertex of the part that is farthest from p. */
 static struct tri_point farthest(const struct figure *f, int32_t part, struct tri_point p)
 {
     struct tri_point far = p;
@@ -95,7 +95,7 @@ static struct tri_point farthest(const struct figure *f, int32_t part, struct tr
     return far;
 }
 
-/* Does the part lie on one line, as exactly as segments lie on theirs? */
+/* Do all vertices of the part lie on one line, up to rounding? */
 static bool is_straight(const struct figure *f, int32_t part)
 {
     const struct part *box = &f->parts[part];
@@ -108,7 +108,7 @@ static bool is_straight(const struct figure *f, int32_t part)
     return true;
 }
 
-/* Points of the caller at which one wall ends, of one part or (TRI_NONE) of all. */
+/* Finds input points at which a single wall ends, in one part or (TRI_NONE) in all. */
 static struct tri_empty find_leaves(const struct figure *f, int32_t part, enum tri_empty_reason reason)
 {
     const int32_t *origin = f->mesh->origin;
@@ -171,7 +171,7 @@ enum tri_status tri_why_empty(struct tri_empty *why, const struct tri_mesh *mesh
     return status;
 }
 
-/* --- words */
+/* --- texts */
 
 static int32_t wrong_end(const struct tri_pslg *pslg, int32_t k)
 {
@@ -183,7 +183,7 @@ static int32_t wrong_end(const struct tri_pslg *pslg, int32_t k)
     return TRI_NONE;
 }
 
-/* Are the ends of the segment, which name points, at one place? */
+/* Are both ends of the segment at the same place? Its point numbers must be valid. */
 static bool is_a_point(const struct tri_pslg *pslg, int32_t k)
 {
     const int32_t *v = &pslg->segments[2 * (size_t)k];
@@ -191,7 +191,8 @@ static bool is_a_point(const struct tri_pslg *pslg, int32_t k)
     return a[0] == b[0] && a[1] == b[1];
 }
 
-/* Why segments are skipped, by the first of them: one that names no point, if any does. */
+/* Describes the first skipped segment, preferring one with an invalid point number. Returns whether there is such a
+ * one. */
 static bool tell_skipped(char *text, size_t size, const struct tri_pslg *pslg, int32_t n_skipped, int32_t base)
 {
     int32_t wrong = TRI_NONE, empty = TRI_NONE;

@@ -1,4 +1,4 @@
-/* What a caller may have meant otherwise: why the mesh has no triangles, and which segments are skipped. */
+/* Notes on probable mistakes in the input: why the mesh has no triangles, and which segments were skipped. */
 #ifndef TRIANGLE_CDT_WHY_EMPTY_H
 #define TRIANGLE_CDT_WHY_EMPTY_H
 
@@ -7,38 +7,39 @@
 enum tri_empty_reason {
     TRI_EMPTY_NOT,
     TRI_EMPTY_LINE,      /* all points lie on one line */
-    TRI_EMPTY_BARE,      /* there are no segments, or none that is not skipped */
-    TRI_EMPTY_CANCELLED, /* by the even-odd rule the segments are no border: an even number runs along each */
-    TRI_EMPTY_OPEN,      /* the outline, the largest connected set of segments, encloses nothing: n of its points have
-                            one segment alone, the first of which are v[0] and v[1]. Where n is 2, a segment between
-                            the two closes it */
-    TRI_EMPTY_LOOSE,     /* nor does any other set, but the largest is straight: likewise of all segments */
+    TRI_EMPTY_BARE,      /* there are no segments, or all were skipped */
+    TRI_EMPTY_CANCELLED, /* an even number of segments runs along each edge, so by the even-odd rule none is a border */
+    TRI_EMPTY_OPEN,      /* the outline, the largest connected set of segments, encloses nothing: n of its points have a
+                            single segment; v[] are the first two. If n is 2, a segment between them closes the
+                            outline */
+    TRI_EMPTY_LOOSE,     /* no set of segments encloses anything, and the largest one is straight; n, v: as above, in
+                            all */
     TRI_EMPTY_HOLE,      /* hole n lies in the only face */
     TRI_EMPTY_HOLES      /* a hole lies in each of the n faces */
 };
 
 struct tri_empty {
-    enum tri_empty_reason reason;
-    int32_t n, v[2]; /* points by the caller's numbers, from 0 */
+    enum tri_empty_reason reason; /* TRI_EMPTY_NOT: the mesh has triangles */
+    int32_t n, v[2]; /* numbers of input points, from 0 */
 };
 
-/* Holes that emptied a face which was still there: how many did, and the first. */
+/* Holes that have emptied a face: their number, and the first of them. */
 struct tri_emptied {
     int32_t n, first;
 };
 
-/* Why will nothing be left of a constrained triangulation that has triangles? It is still whole. even_odd and keep_hull
- * are those of tri_carve. O(vertices + subsegments). TRI_NO_MEMORY. */
+/* Finds out why carving removes all triangles. The mesh must still be whole. even_odd and keep_hull: as for tri_carve.
+ * O(vertices + subsegments). TRI_NO_MEMORY. */
 enum tri_status tri_why_empty(struct tri_empty *why, const struct tri_mesh *mesh, bool even_odd, bool keep_hull,
                               const struct tri_emptied *holes, struct tri_error *error);
 
-/* A sentence each, without final stop; "" where there is nothing to tell. */
+/* Notes for the user: one sentence each, without a final stop; "" if there is nothing to report. */
 struct tri_notes {
-    char skipped[200]; /* segments that are skipped; not where that is why the mesh is empty */
-    char empty[240];   /* why it is */
+    char skipped[200]; /* skipped segments; "" if `empty` mentions them */
+    char empty[240];   /* why the mesh is empty */
 };
 
-/* The PSLG is the caller's, of whose segments so many are skipped; numbers in the sentences count from base. */
+/* Writes the notes. n_skipped: number of skipped segments of the PSLG. Numbers in the sentences count from base. */
 void tri_notes_make(struct tri_notes *notes, const struct tri_empty *why, const struct tri_pslg *pslg,
                     int32_t n_skipped, int32_t base);
 

@@ -1,16 +1,16 @@
-/* Exact arithmetic on unevaluated sums of doubles.
+/* Exact arithmetic with unevaluated sums of doubles.
  *
- * A pair is the exact result of one sum or product: head is the rounded result, tail what rounding left off.
- * An expansion is an array of n non-zero components in order of increasing magnitude that do not overlap in their bits;
- * its value is their exact sum, 0 is n == 0. INVARIANT: the last component is larger than all others together, hence it
- * carries the sign, and approximates the value.
+ * A pair is the exact result of one sum or product: head is the rounded result, tail the rounding error. An expansion
+ * is an array of n nonzero components in order of increasing magnitude whose bits do not overlap; its value is their
+ * exact sum, and 0 is n == 0. INVARIANT: the last component is larger than the sum of all others. So it has the sign of
+ * the value, and approximates it.
  *
- * Nothing here uses fma: products are split as Dekker did, so results are the same on every machine. What is needed is
- * IEEE double arithmetic (triangle/base/arithmetic.h) without flushing of subnormals, rounding to nearest even, and
- * operands for which no bit is lost to overflow or underflow (predicates.h says why that holds there).
+ * No fma is used: products are split as by Dekker, so results are the same on every machine. Requirements: IEEE double
+ * arithmetic (triangle/base/arithmetic.h) without flushing of subnormals, rounding to nearest even, and operands for
+ * which no bit is lost to overflow or underflow (predicates.h shows why).
  *
  * Source: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
- * Computational Geometry 18 (1997), section 2; theorem numbers below are of that paper. */
+ * Computational Geometry 18 (1997), section 2; theorem numbers below refer to that paper. */
 #ifndef TRIANGLE_GEOMETRY_EXPANSION_H
 #define TRIANGLE_GEOMETRY_EXPANSION_H
 
@@ -21,20 +21,20 @@
 
 #include "triangle/base/arithmetic.h"
 
-enum { TRI_EXPANSION_FACTOR = 16 }; /* most components that a factor of tri_expansion_product may have */
+enum { TRI_EXPANSION_FACTOR = 16 }; /* maximum length of the factors of tri_expansion_product */
 
 struct tri_pair {
     double head, tail;
 };
 
-/* a + b; |a| >= |b| or a == 0 == b (theorem 6). */
+/* Returns a + b; requires |a| >= |b|, or that both are 0 (theorem 6). */
 static inline struct tri_pair tri_fast_two_sum(double a, double b)
 {
     double head = a + b;
     return (struct tri_pair){head, b - (head - a)};
 }
 
-/* a + b (theorem 7). */
+/* Returns a + b (theorem 7). */
 static inline struct tri_pair tri_two_sum(double a, double b)
 {
     double head = a + b, b_part = head - a, a_part = head - b_part;
@@ -46,14 +46,15 @@ static inline struct tri_pair tri_two_difference(double a, double b)
     return tri_two_sum(a, -b);
 }
 
-/* a as a sum of two numbers of at most 26 bits each, so that products of such halves are exact (theorem 17). */
+/* Splits a into a sum of two numbers of at most 26 bits each, so that products of such halves are exact (theorem
+ * 17). */
 static inline struct tri_pair tri_split(double a)
 {
     double c = 0x8000001p0 * a, head = c - (c - a);
     return (struct tri_pair){head, a - head};
 }
 
-/* a * b (theorem 18). */
+/* Returns a * b (theorem 18). */
 static inline struct tri_pair tri_two_product(double a, double b)
 {
     double head = a * b;
@@ -62,7 +63,7 @@ static inline struct tri_pair tri_two_product(double a, double b)
     return (struct tri_pair){head, p.tail * q.tail - rest};
 }
 
-/* Necessary for the invariant, and cheap enough to assert. */
+/* Necessary for the invariant, and cheap enough for an assertion. */
 static inline bool tri_expansion_is_increasing(int n, const double *e)
 {
     for (int i = 0; i < n; i++) {
@@ -73,13 +74,13 @@ static inline bool tri_expansion_is_increasing(int n, const double *e)
     return true;
 }
 
-/* Rounded value, of exact sign. */
+/* Returns the rounded value, with the exact sign. */
 static inline double tri_expansion_value(int n, const double *e)
 {
     return n > 0 ? e[n - 1] : 0;
 }
 
-/* p as an expansion of at most two components. */
+/* Converts p to an expansion of at most two components. */
 static inline int tri_expansion_of_pair(struct tri_pair p, double e[2])
 {
     int n = 0;
@@ -92,8 +93,8 @@ static inline int tri_expansion_of_pair(struct tri_pair p, double e[2])
     return n;
 }
 
-/* h[m + n] = e[m] + f[n]; returns the length of h (theorem 13: e, f and h are strongly nonoverlapping, which every
- * nonadjacent expansion is). h overlaps neither e nor f. O(m + n). */
+/* Computes h[m + n] = e[m] + f[n] and returns the length of h (theorem 13: e, f and h are strongly nonoverlapping, as
+ * every nonadjacent expansion is). h must not overlap e or f in memory. O(m + n). */
 static inline int tri_expansion_sum(int m, const double *e, int n, const double *f, double *h)
 {
     int i = 0, j = 0, k = 0;
@@ -113,7 +114,7 @@ static inline int tri_expansion_sum(int m, const double *e, int n, const double 
     return k;
 }
 
-/* h[2 * m] = b * e[m]; returns the length of h (theorem 19: h is nonadjacent if e is). b != 0. O(m). */
+/* Computes h[2 * m] = b * e[m] and returns the length of h (theorem 19: h is nonadjacent if e is). b != 0. O(m). */
 static inline int tri_expansion_scale(int m, const double *e, double b, double *h)
 {
     int k = 0;
@@ -137,8 +138,8 @@ static inline int tri_expansion_scale(int m, const double *e, double b, double *
     return k;
 }
 
-/* h[m] = e[m] in as few components as their bits allow, nonadjacent; returns the length of h (theorem 23).
- * 0 <= m <= TRI_EXPANSION_FACTOR; h may be e. O(m). */
+/* Computes h[m] = e[m] with as few components as possible, nonadjacent, and returns the length of h (theorem 23). 0 <=
+ * m <= TRI_EXPANSION_FACTOR; h may be e. O(m). */
 static inline int tri_expansion_compress(int m, const double *e, double *h)
 {
     double packed[TRI_EXPANSION_FACTOR], rest = tri_expansion_value(m, e);
@@ -165,8 +166,9 @@ static inline int tri_expansion_compress(int m, const double *e, double *h)
     return k;
 }
 
-/* h[2 * m * n] = e[m] * f[n]; returns the length of h, strongly nonoverlapping. e is nonadjacent: of a pair, or
- * compressed. m, n <= TRI_EXPANSION_FACTOR. h overlaps neither e nor f. O(m * n * n). */
+/* Computes h[2 * m * n] = e[m] * f[n] and returns the length of h, which is strongly nonoverlapping. e must be
+ * nonadjacent: from a pair, or compressed. m, n <= TRI_EXPANSION_FACTOR. h must not overlap e or f in memory. O(m * n *
+ * n). */
 static inline int tri_expansion_product(int m, const double *e, int n, const double *f, double *h)
 {
     double scaled[2 * TRI_EXPANSION_FACTOR], sum[2 * TRI_EXPANSION_FACTOR * TRI_EXPANSION_FACTOR];

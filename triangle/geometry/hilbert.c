@@ -1,7 +1,7 @@
-/* Hilbert keys, and a sort by them.
+/* Hilbert keys, and sorting by them.
  *
- * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through
- * the four quadrants (table below). */
+ * The key is computed by descending the quadtree from the largest cell. One of four orientations describes the order of
+ * the curve in the four quadrants (table below). */
 #include "triangle/geometry/hilbert.h"
 
 #include <assert.h>
@@ -9,22 +9,22 @@
 #include "triangle/base/ids.h"
 #include "triangle/base/radix.h"
 
-/* An item to sort is the cell of a point and its id. Points of one cell follow a curve over their own box, unless they
- * are FEW. */
+/* An item to sort is the cell of a point and its id. Points of one cell are sorted along a curve over their own
+ * bounding box or, if there are at most FEW, by coordinates. */
 enum { BITS = 18, ID_BITS = 28, FEW = 16 };
 
 _Static_assert(2 * BITS + ID_BITS == 64 && INT64_C(1) << ID_BITS == TRI_MAX_VERTICES, "cell and id fill an item");
 
 /* Two levels in one step: [orientation][4 * two bits of x + two bits of y] is 4 * (ranks of the two quadrants on the
- * curve, 2 bits each) + the orientation inside. It follows from one level: in orientations 0 to 3 the quadrants 2 * x
- * bit + y bit have ranks 0132, 0312, 2310, 2130 and hold orientations 1030, 0211, 2123, 3302. */
+ * curve, 2 bits each) + the orientation inside. Derived from single levels: in orientations 0 to 3 the quadrants 2 * x
+ * bit + y bit have ranks 0132, 0312, 2310, 2130 and orientations 1030, 0211, 2123, 3302. */
 static const uint8_t two_levels[4][16] = {
     {0, 14, 17, 20, 5, 9, 31, 24, 59, 55, 33, 36, 60, 50, 47, 40},
     {1, 4, 58, 61, 15, 8, 54, 51, 16, 30, 32, 46, 21, 25, 37, 41},
     {42, 45, 48, 62, 38, 35, 53, 57, 26, 29, 11, 7, 22, 19, 12, 2},
     {43, 39, 27, 23, 44, 34, 28, 18, 49, 52, 10, 13, 63, 56, 6, 3}};
 
-/* Of 2^bits x 2^bits cells, bits even. */
+/* Returns the rank of cell x, y on the curve through 2^bits x 2^bits cells; bits is even. */
 static uint64_t hilbert_of(uint32_t x, uint32_t y, int bits)
 {
     assert(x >> bits == 0 && y >> bits == 0);
@@ -38,8 +38,8 @@ static uint64_t hilbert_of(uint32_t x, uint32_t y, int bits)
     return key;
 }
 
-/* Four levels in one step: the same with four bits of each and ranks of 8 bits. Made where many points share the cost
- * of it. */
+/* Four levels in one step: the same with four bits of x and y, and ranks of 8 bits. Made only if many points share the
+ * cost. */
 enum { MANY = 1024 };
 typedef uint16_t four_levels[4][256];
 
@@ -54,7 +54,7 @@ static void make_four_levels(four_levels table)
             }
 }
 
-/* The same as hilbert_of. */
+/* The same as hilbert_of, by the table of four levels. */
 static inline uint64_t hilbert_by_four(uint32_t x, uint32_t y, int bits, four_levels table)
 {
     uint64_t key = 0;
@@ -72,9 +72,9 @@ struct ordering {
     int32_t *order;
     int32_t n;
     int bits;             /* 2^bits x 2^bits cells */
-    struct tri_point low; /* of the box */
-    double scale;         /* cells in a unit of length */
-    uint16_t (*table)[256]; /* four levels; NULL: it is not worth while */
+    struct tri_point low; /* lower left corner of the bounding box */
+    double scale;         /* cells per unit of length */
+    uint16_t (*table)[256]; /* four levels per step; NULL: too few points */
     uint64_t *item;
 };
 
@@ -131,7 +131,7 @@ static struct box box_of(const struct tri_point *xy, const int32_t *order, int32
     return box;
 }
 
-/* A point with its id, to order the points of one cell. */
+/* A point with its id, to sort the points of one cell. */
 struct placed {
     struct tri_point q;
     int32_t id;
@@ -162,7 +162,7 @@ static void order_few(const struct tri_point *xy, int32_t *order, int32_t n)
 static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
                          uint64_t *scratch, uint16_t (*table)[256], const struct tri_executor *executor);
 
-/* Cells with several points are sorted within: by coordinates, or along a curve of their own. */
+/* Sorts cells with several points: by coordinates, or along a curve of their own. */
 static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
                         uint64_t *scratch, uint16_t (*table)[256], const struct tri_executor *executor)
 {
@@ -177,7 +177,7 @@ static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, b
     }
 }
 
-/* Two cells for a point, at least. */
+/* Chooses at least two cells per point. */
 static int coarse_bits(int32_t n)
 {
     int bits = 2;
@@ -204,7 +204,7 @@ static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, 
                                 n < MANY ? NULL : table, item};
     tri_execute(executor, tri_shares(n), key_share, &ordering);
     tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, side > 0 ? ID_BITS + 2 * bits : ID_BITS,
-                   executor); /* one place: by id */
+                   executor); /* all points equal: by id */
     tri_execute(executor, tri_shares(n), emit_share, &ordering);
     if (side > 0)
         order_cells(xy, order, n, coarse, item, scratch, table, executor);

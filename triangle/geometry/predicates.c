@@ -1,16 +1,17 @@
-/* The predicates where rounding could matter, cheapest question first.
+/* The slow path of the predicates, for cases in which rounding could matter; the cheapest tests come first.
  *
- * In-circle: 1. Do two of the points mirror the other two (every rectangle of a grid)? Then they are cocircular.
- * 2. Are the differences of coordinates small integers, up to a power of two? Then few products are not exact anyway.
- * 3. Does doubled precision with an error bound decide? 4. Expansions, which are exact.
- * Orientation: 1. Are the differences exact? Then two exact products are compared. 2., 3. as 3. and 4. above.
+ * In-circle: 1. Do two of the points mirror the other two (as in every rectangle of a grid)? Then they are cocircular.
+ * 2. Are the differences of coordinates small integers, up to a power of two? Then most products are exact in doubles.
+ * 3. Is doubled precision sufficient, by its error bound? 4. Expansions, which are exact. Orientation: 1. Are the
+ * differences exact? Then two exact products are compared. 2. and 3. as 3. and 4. above.
  *
- * A vector is a difference of two points, exactly: each coordinate a pair. INVARIANT: |tail| <= u |head|, u = 2^-53. */
+ * A vector is the exact difference of two points: each coordinate is a pair. INVARIANT: |tail| <= u |head|, u =
+ * 2^-53. */
 #include "triangle/geometry/predicates.h"
 
 #include "triangle/geometry/expansion.h"
 
-/* Errors in doubled precision, see doubled_minor and doubled_term; the slack covers terms in u^3. */
+/* Error bounds of doubled precision, see doubled_minor and doubled_term; the slack covers terms in u^3. */
 #define DOUBLED_MINOR_BOUND    0x1p-102 /* 15 u^2 rounded up to 16 u^2 */
 #define DOUBLED_INCIRCLE_BOUND 0x1p-99  /* 100 u^2 rounded up to 128 u^2 */
 
@@ -28,9 +29,10 @@ static bool is_double(const struct vector *v)
     return v->x.tail == 0 && v->y.tail == 0;
 }
 
-/* p.x q.y - p.y q.x up to 15 u^2 *size, where *size is |p.x q.y| + |p.y q.x| (rounded). The tail is at most 4u *size.
- * A product errs by 8 u^2 of itself: 1 for the product of tails left out, 1 and 1 for those of head and tail, 2 for
- * their sum, 3 for the sum with the product's own tail. The last two sums err by 3 and 4 u^2 of *size. */
+/* Returns p.x q.y - p.y q.x with an error of at most 15 u^2 *size, where *size is |p.x q.y| + |p.y q.x| (rounded). The
+ * tail is at most 4u *size. A product has a relative error of 8 u^2: 1 for the omitted product of tails, 1 each for the
+ * two products of head and tail, 2 for their sum, 3 for the sum with the product's own tail. The last two sums have
+ * errors of 3 and 4 u^2 *size. */
 static struct tri_pair doubled_minor(const struct vector *p, const struct vector *q, double *size)
 {
     struct tri_pair left = tri_two_product(p->x.head, q->y.head), right = tri_two_product(p->y.head, q->x.head);
@@ -42,8 +44,8 @@ static struct tri_pair doubled_minor(const struct vector *p, const struct vector
     return minor;
 }
 
-/* p.x^2 + p.y^2 up to 13 u^2 of itself: 6 for a square (1 left out, 2 for the product, 3 for its sum), 3 and 4 for
- * the last two sums.  * The tail is at most 4u of the head. */
+/* Returns p.x^2 + p.y^2 with a relative error of at most 13 u^2: 6 for a square (1 omitted, 2 for the product, 3 for
+ * its sum), 3 and 4 for the last two sums. The tail is at most 4u of the head. */
 static struct tri_pair doubled_lift(const struct vector *p)
 {
     struct tri_pair x = tri_two_product(p->x.head, p->x.head), y = tri_two_product(p->y.head, p->y.head);
@@ -52,8 +54,9 @@ static struct tri_pair doubled_lift(const struct vector *p)
     return lift;
 }
 
-/* |p|^2 (q x r) up to 69 u^2 of its size: 13 and 15 from the factors, 16 for the product of tails left out, 4 and 4 for
- * those of head and tail, 8 and 9 for their sums. The tail is at most 9u of the size, which is added to *size. */
+/* Returns |p|^2 (q x r) with an error of at most 69 u^2 of its size: 13 and 15 from the factors, 16 for the omitted
+ * product of tails, 4 and 4 for the products of head and tail, 8 and 9 for their sums. The tail is at most 9u of the
+ * size, which is added to *size. */
 static struct tri_pair doubled_term(const struct vector *p, const struct vector *q, const struct vector *r,
                                     double *size)
 {
@@ -65,7 +68,8 @@ static struct tri_pair doubled_term(const struct vector *p, const struct vector 
     return term;
 }
 
-/* The determinant if its sign is certain, else 0. Error: 69 u^2 of the terms, 9 + 9 + 2 + 11 for the sums of tails. */
+/* Returns the determinant if its sign is certain, otherwise 0. Error: 69 u^2 of the terms, 9 + 9 + 2 + 11 for the sums
+ * of tails. */
 static double doubled_incircle(const struct vector *a, const struct vector *b, const struct vector *c)
 {
     double size = 0;
@@ -115,8 +119,8 @@ static double exact_incircle(const struct vector *a, const struct vector *b, con
     return tri_expansion_value(k, three);
 }
 
-/* p.x q.y - p.y q.x for vectors that are doubles. Rounding is monotonic: products are ordered as their heads are, and
- * as their tails where the heads are equal. */
+/* Returns p.x q.y - p.y q.x for vectors whose coordinates are doubles. Rounding is monotonic, so the products compare
+ * like their heads or, if these are equal, like their tails. */
 static double exact_minor_of_doubles(const struct vector *p, const struct vector *q)
 {
     struct tri_pair left = tri_two_product(p->x.head, q->y.head), right = tri_two_product(p->y.head, q->x.head);
@@ -150,7 +154,7 @@ double tri_turn_near(struct tri_point a, struct tri_point b, struct tri_point c,
     return sign_of_minor(&p, &q);
 }
 
-/* p . q is the minor of p and q turned left. */
+/* p . q is the minor of p and q rotated left. */
 double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
@@ -159,7 +163,7 @@ double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c)
     return sign_of_minor(&p, &turned);
 }
 
-/* Doubled precision where the error, 2^-102 of size, is below 2^-80 of the result. */
+/* Uses doubled precision if its error, 2^-102 of size, is below 2^-80 of the result. */
 struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     struct vector p = difference(a, c), q = difference(b, c);
@@ -178,15 +182,16 @@ static bool same_sum(double a, double b, double c, double d)
     return s.head == t.head && s.tail == t.tail;
 }
 
-/* Does a mirror line parallel to an axis swap a with b, and c with d? */
+/* Does a reflection across an axis-parallel line exchange a with b, and c with d? */
 static bool mirror_pairs(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     return (a.y == b.y && c.y == d.y && same_sum(a.x, b.x, c.x, d.x)) ||
            (a.x == b.x && c.x == d.x && same_sum(a.y, b.y, c.y, d.y));
 }
 
-/* Do all coordinates of the three vectors fit into 25 bits, in units of one power of two? Adding 2^28 times the
- * greatest, m, rounds to multiples of a unit h with m <= 2^25 h, for either binade that the sum may fall into. */
+/* Do all coordinates of the three vectors fit into 25 bits, in units of a common power of two? Adding 2^28 times the
+ * largest coordinate, m, rounds to multiples of a unit h with m <= 2^25 h, for both binades that the sum may fall
+ * into. */
 static bool fit_25_bits(const struct vector *a, const struct vector *b, const struct vector *c)
 {
     double m = fmax(fmax(fmax(fabs(a->x.head), fabs(a->y.head)), fmax(fabs(b->x.head), fabs(b->y.head))),
@@ -204,8 +209,9 @@ static struct tri_pair small_term(const struct vector *p, const struct vector *q
     return tri_two_product(lift, minor);
 }
 
-/* For vectors that fit_25_bits. In those units lifts and minors are integers of at most 2^51, hence exact; heads are
- * below 2^104, and the five tails integers of at most 2^48 (of a product) and 2^50 (of a sum): their sum is exact. */
+/* For vectors that fit_25_bits. In these units lifts and minors are integers of at most 2^51, hence exact; heads are
+ * below 2^104, and the five tails are integers of at most 2^48 (of a product) or 2^50 (of a sum), so their sum is
+ * exact. */
 static double small_incircle(const struct vector *a, const struct vector *b, const struct vector *c)
 {
     struct tri_pair s = small_term(a, b, c), t = small_term(b, c, a), r = small_term(c, a, b);
@@ -232,9 +238,9 @@ static bool is_larger(struct tri_point a, struct tri_point b)
     return a.x > b.x || (a.x == b.x && a.y > b.y);
 }
 
-/* Raising a point of the paraboloid changes the determinant by the orientation of the other three, with the sign that
- * the exchange of that point with d gives. Of distinct cocircular points no three are collinear, for a lifted line is a
- * parabola and its plane vertical; so the largest point decides alone, and the infinitesimals of the others never
+/* Raising a point on the paraboloid changes the determinant by the orientation of the other three points, with the sign
+ * of exchanging that point with d. No three of four distinct cocircular points are collinear, because a lifted line is
+ * a parabola, whose plane is vertical. So the largest point alone decides, and the infinitesimals of the others do not
  * matter. */
 static bool is_inside_by_ties(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {

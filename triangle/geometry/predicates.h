@@ -1,13 +1,12 @@
 /* Geometric predicates: the sign of a polynomial of coordinates, decided exactly.
  *
- * A floating-point filter, inline, decides nearly every call. Where its rounding error could matter, an out-of-line
- * function decides, by exact arithmetic at last. No decision depends on the machine, the compiler or the filter.
+ * An inline floating-point filter decides nearly all calls. If its rounding error could matter, an out-of-line function
+ * decides, in the last resort by exact arithmetic. No decision depends on the machine, the compiler or the filter.
  *
  * RANGE: a coordinate is an integer multiple of 2^-268 of magnitude at most 2^200 (tri_is_exact_coordinate), as every
  * double of magnitude 2^-216 to 2^200 is. THEOREM (docs/theory.md, exact signs). In this range nothing underflows or
- * overflows.
- * FILTER: a test is |det| > k * size. A det above the computed bound is above the true one, too, so the filters need no
- * absolute term.
+ * overflows. FILTER: a test is |det| > k * size. If det exceeds the computed bound, it also exceeds the true bound, so
+ * the filters need no absolute term.
  *
  * Source: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
  * Computational Geometry 18 (1997); O. Devillers and M. Teillaud, Perturbations for Delaunay and Weighted Delaunay 3D
@@ -24,7 +23,7 @@
 
 struct tri_pair; /* triangle/geometry/expansion.h */
 
-/* With u = 2^-53, half a unit in the last place of 1. Both are exact doubles. */
+/* Filter constants, with u = 2^-53, half a unit in the last place of 1. Both are exact doubles. */
 #define TRI_ORIENT2D_BOUND (3 * 0x1p-53 + 16 * 0x1p-106)
 #define TRI_INCIRCLE_BOUND (10 * 0x1p-53 + 96 * 0x1p-106)
 
@@ -33,24 +32,25 @@ static inline bool tri_is_exact_coordinate(double x)
     return fabs(x) <= TRI_LARGEST_COORDINATE && tri_round_coordinate(x) == x;
 }
 
-/* What every predicate asserts of its points. */
+/* Every predicate asserts this for its points. */
 static inline bool tri_is_exact_point(struct tri_point p)
 {
     return tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y);
 }
 
-/* What the inline functions below call when their filter is in doubt: the same results, without that filter.
- * 5 to 50 ns where the structure of the coordinates (points of a grid, mirror images) or doubled precision decides; up
- * to 3 us, and 40 KB of stack, for points that are cocircular within a relative 10^-30 but lie on no grid. */
+/* Called by the inline functions below if their filter is not certain; the same results, without a filter. Take 5 to 50
+ * ns if the structure of the coordinates (grid points, mirror images) or doubled precision decides. Take up to 3 us,
+ * and 40 KB of stack, for points that are cocircular within a relative 10^-30 but not on a grid. */
 double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c);
 double tri_turn_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c);
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 
-/* > 0: a, b, c turn counter-clockwise; 0: collinear; < 0: clockwise. The magnitude approximates twice the area.
- * The bound: each product has three rounding errors, (1 + u)^3 - 1; the last subtraction errs by u * |det|. Together
- * with the rounding of size and of the bound itself, 3u + 12u^2 + O(u^3) would do. A size of 0 means an exact 0. */
+/* > 0: a, b, c turn counter-clockwise; 0: collinear; < 0: clockwise. The magnitude approximates twice the area. The
+ * bound: each product has three rounding errors, (1 + u)^3 - 1; the last subtraction has an error of u * |det|.
+ * Together with the rounding of size and of the bound itself, 3u + 12u^2 + O(u^3) would suffice. A size of 0 means an
+ * exact 0. */
 static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
@@ -59,13 +59,13 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
 }
 
-/* Does p lie strictly inside the triangle a, b, c? Never in one that does not turn counter-clockwise. */
+/* Is p strictly inside the triangle a, b, c? Always false unless the triangle is counter-clockwise. */
 static inline bool tri_is_inside(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point p)
 {
     return tri_orient2d(a, b, p) > 0 && tri_orient2d(b, c, p) > 0 && tri_orient2d(c, a, p) > 0;
 }
 
-/* > 0: the direction from c to d lies counter-clockwise of that from a to b; 0: they are parallel; < 0: clockwise. The
+/* > 0: the direction from c to d is counter-clockwise of the direction from a to b; 0: parallel; < 0: clockwise. The
  * bound is that of tri_orient2d. */
 static inline double tri_turn(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
@@ -75,18 +75,18 @@ static inline double tri_turn(struct tri_point a, struct tri_point b, struct tri
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_turn_near(a, b, c, d);
 }
 
-/* The sign of (a - c) . (b - c), < 0 where c lies strictly inside the circle with diameter ab. The magnitude
- * approximates the product. The bound: each term errs by 3 roundings, the sum by 1. */
+/* Returns the sign of (a - c) . (b - c), which is < 0 if c is strictly inside the circle with diameter ab. The
+ * magnitude approximates the product. The bound: each term has three rounding errors, the sum one. */
 static inline double tri_dot(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     double x = (a.x - c.x) * (b.x - c.x), y = (a.y - c.y) * (b.y - c.y), dot = x + y;
     return fabs(dot) > 4 * DBL_EPSILON * (fabs(x) + fabs(y)) ? dot : tri_dot_near(a, b, c);
 }
 
-/* The in-circle determinant if its sign is certain, else 0.
- * The bound: a minor errs by 4u + 6u^2 of its size, a lift by 4u + 6u^2 of itself, hence their product, rounded, by
- * 9u + 36u^2 of its size; the first sum adds u, the second u * |det|. With the rounding of size (one per sum) and of
- * the bound itself, 10u + 74u^2 + O(u^3) would do. */
+/* Returns the in-circle determinant if its sign is certain, otherwise 0. The bound: a minor has an error of 4u + 6u^2
+ * of its size, a lift a relative error of 4u + 6u^2, hence their rounded product one of 9u + 36u^2 of its size; the
+ * first sum adds u, the second u * |det|. With the rounding of size (one per sum) and of the bound itself, 10u + 74u^2
+ * + O(u^3) would suffice. */
 static inline double tri_incircle_filter(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
@@ -98,27 +98,28 @@ static inline double tri_incircle_filter(struct tri_point a, struct tri_point b,
     return fabs(det) > TRI_INCIRCLE_BOUND * size ? det : 0;
 }
 
-/* > 0: d lies inside the circle through a, b, c, which turn counter-clockwise; 0: on it; < 0: outside. Every exchange
- * of two points changes the sign. */
+/* > 0: d is inside the circle through a, b, c, which must turn counter-clockwise; 0: on it; < 0: outside. Exchanging
+ * two points changes the sign. */
 static inline double tri_incircle(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     double det = tri_incircle_filter(a, b, c, d);
     return det != 0 ? det : tri_incircle_near(a, b, c, d);
 }
 
-/* Does d lie inside the circle through a, b, c, which turn counter-clockwise, once ties are broken? The points are
- * distinct. Every exchange of two points changes the answer (all four collinear: always false).
- * Ties: the paraboloid that points are lifted to is raised at each point by an infinitesimal of its own, that of a
- * lexicographically larger point (x, then y) being infinitely greater. So a Delaunay triangulation is the lower hull
- * of points in general position: unique, whatever the order of insertion and the names of the points. */
+/* Is d inside the circle through a, b, c, which must turn counter-clockwise, with ties broken? The points must be
+ * distinct. Exchanging two points changes the answer (except that it is always false for four collinear points).
+ *
+ * Ties: points are lifted to a paraboloid, and each is raised by its own infinitesimal, which is infinitely greater for
+ * a lexicographically larger point (x, then y). So a Delaunay triangulation is the lower hull of points in general
+ * position: it is unique, regardless of the insertion order and the numbers of the points. */
 static inline bool tri_in_circle(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     double det = tri_incircle_filter(a, b, c, d);
     return det != 0 ? det > 0 : tri_in_circle_near(a, b, c, d);
 }
 
-/* The determinant of tri_orient2d to a relative 2^-80 (of exact sign, for constructions rather than decisions): head +
- * tail. */
+/* Returns the determinant of tri_orient2d with a relative error of 2^-80 and the exact sign, as head + tail; for
+ * constructions rather than decisions. */
 struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c);
 
 #endif

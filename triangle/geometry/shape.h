@@ -1,6 +1,6 @@
-/* The shape of a triangle: squared lengths, twice its area, its shortest edge.
+/* The shape of a triangle: squared edge lengths, twice its area, its shortest edge.
  *
- * INVARIANT. All decisions use + - * / and sqrt alone, so that they are the same on every machine. */
+ * INVARIANT. All decisions use only + - * / and sqrt, so they are the same on every machine. */
 #ifndef TRIANGLE_GEOMETRY_SHAPE_H
 #define TRIANGLE_GEOMETRY_SHAPE_H
 
@@ -10,13 +10,13 @@
 #include "triangle/base/ids.h"
 #include "triangle/geometry/point.h"
 
-/* Area over squared edge of an equilateral triangle: sqrt(3) / 4. */
+/* Area divided by squared edge length of an equilateral triangle: sqrt(3) / 4. */
 static const double TRI_EQUILATERAL = 0.43301270189221932;
 
-/* The corners, or edges, that come after and before one. */
+/* The next and the previous corner, or edge, of a triangle. */
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
 
-/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
+/* Returns log2(x) for x >= 1 with an error of at most 0.09: the exponent, plus a linear function of the mantissa. */
 static inline double tri_rough_log2(double x)
 {
     int exponent;
@@ -24,7 +24,7 @@ static inline double tri_rough_log2(double x)
     return exponent + 2 * mantissa - 2;
 }
 
-/* Cosine of an angle in degrees, 0 .. 180, by its power series: within 1e-15 of the true value everywhere. */
+/* Returns the cosine of an angle in degrees, 0 .. 180, by its power series, with an error of at most 1e-15. */
 static inline double tri_cos_degrees(double degrees)
 {
     static const double radians = 0.017453292519943295769;
@@ -41,7 +41,7 @@ static inline double tri_cos_degrees(double degrees)
 /* A triangle's shape: squared lengths opposite the corners, twice its area. */
 struct tri_shape {
     double l[3], area2;
-    int shortest; /* index of the shortest edge, the one opposite the smallest angle */
+    int shortest; /* index of the shortest edge, which is opposite the smallest angle */
 };
 
 static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tri_vertex_id v[3])
@@ -51,25 +51,25 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tr
     double dx = bx - cx, dy = by - cy;
     struct tri_shape s = {{dx * dx + dy * dy, cx * cx + cy * cy, bx * bx + by * by}, bx * cy - by * cx, 0};
     int second = s.l[1] < s.l[0], third = s.l[2] < tri_lesser(s.l[0], s.l[1]);
-    s.shortest = 2 * third + (second & ~third); /* without a branch, which nobody could predict */
+    s.shortest = 2 * third + (second & ~third); /* without a branch, which would be unpredictable */
     return s;
 }
 
-/* Its area; above 0 for corners in counterclockwise order. */
+/* Returns the area of a triangle; positive if its corners are in counter-clockwise order. */
 static inline double tri_area_of(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     return 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
 }
 
-/* The square of its longest edge. */
+/* Returns the squared length of the longest edge. */
 static inline double tri_longest2(const struct tri_shape *shape)
 {
     return tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2]));
 }
 
-/* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. That is the largest of the
- * three products: which two edges are the longer ones is as good as random, and a branch on it would be predicted
- * wrongly half the time; of products the processor takes the larger without one. */
+/* Returns the product of the two longer squared edges, which is the largest of the three products. (sin^2 of the
+ * smallest angle is area2^2 divided by it.) Which two edges are longer is random, so a branch would be mispredicted
+ * half the time; the maximum of products needs no branch. */
 static inline double tri_longer_product(double a, double b, double c)
 {
     return tri_larger(a * b, tri_larger(b * c, c * a));

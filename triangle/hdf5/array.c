@@ -1,4 +1,4 @@
-/* Chunks of a dataset, and their places. */
+/* Arrays as chunked datasets, and the offsets of their chunks. */
 #include "triangle/hdf5/array.h"
 
 #include <errno.h>
@@ -43,8 +43,8 @@ void tri_h5_array_free(struct tri_h5_array *array)
 
 /* --- datasets */
 
-/* How the dataset is kept: in chunks or in one piece, which have their place as soon as they are part of it and are not
- * filled before they are written. < 0: an error. */
+/* Returns the creation properties of a dataset: in chunks or contiguous, with space allocated at once and not filled. <
+ * 0: an error. */
 static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 {
     const hsize_t chunk[2] = {(hsize_t)array->laid->chunk_rows, (hsize_t)array->laid->width};
@@ -59,7 +59,7 @@ static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
     return -1;
 }
 
-/* A dataset of n rows; < 0: an error. */
+/* Creates a dataset of n rows; < 0: an error. */
 static hid_t create_dataset(const struct tri_h5_array *array, int64_t n, bool in_chunks)
 {
     const hsize_t width = (hsize_t)array->laid->width, size[2] = {(hsize_t)n, width}, most[2] = {H5S_UNLIMITED, width};
@@ -73,13 +73,13 @@ static bool resize(const struct tri_h5_array *array, int64_t n)
     return H5Dset_extent(array->dataset, size) >= 0;
 }
 
-/* Where chunk k lies. HDF5 tells it only at the price of going through all chunks before (H5Dget_chunk_info_by_coord in
- * 1.10); where it writes to it knows at once. False: it fails. */
+/* Finds the offset of chunk k by writing to it, which makes HDF5 call the file driver with the offset.
+ * H5Dget_chunk_info_by_coord would visit all previous chunks (in 1.10). Returns false on failure. */
 static bool find_chunk(const struct tri_h5_array *array, int64_t k)
 {
     const hsize_t first[2] = {(hsize_t)(k * array->laid->chunk_rows), 0};
     struct tri_h5_file *file = array->file;
-    file->sought = array; /* which is not looked at */
+    file->sought = array; /* its contents are ignored */
     file->found = -1;
     const bool sent = H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, first, chunk_bytes(array->laid), array) >= 0;
     file->sought = NULL;
@@ -114,7 +114,7 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
     if (!in_chunks) {
         array->dataset = create_dataset(array, n, false);
         laid->n = 1;
-        *laid->place = array->dataset >= 0 ? (int64_t)H5Dget_offset(array->dataset) : 0; /* of no rows: nowhere */
+        *laid->place = array->dataset >= 0 ? (int64_t)H5Dget_offset(array->dataset) : 0; /* none if there are no rows */
     }
     bool done = array->dataset >= 0 && (!in_chunks || resize(array, n));
     done = array->dataset >= 0 && H5Dclose(array->dataset) >= 0 && done;
@@ -122,9 +122,9 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct t
     return done && array->file->failure == 0 ? TRI_OK : tri_h5_fail(array->file, array->name, error);
 }
 
-/* --- wider numbers */
+/* --- conversion to 64 bits */
 
-/* n integers of 32 bits, little-endian, as 64 bits; in place, from the last to the first. */
+/* Converts n little-endian 32-bit integers to 64 bits; in place, from the last to the first. */
 static void widen_numbers(char *data, size_t n)
 {
     for (size_t i = n; i-- > 0;) {
@@ -133,8 +133,8 @@ static void widen_numbers(char *data, size_t n)
     }
 }
 
-/* Moves a chunk, as far as it is there, by way of the buffer. What lies in a file must not depend on what has lain
- * there before: the place holds zeros afterwards. */
+/* Moves the written part of a chunk through the buffer, and converts it. Fills the old location with zeros, because the
+ * contents of a file must not depend on what was stored there before. */
 static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from, int64_t to, char *buffer,
                                   struct tri_error *error)
 {
@@ -163,7 +163,7 @@ static enum tri_status replace_dataset(struct tri_h5_array *array, const struct 
     status = status ? status : tri_h5_array_allocate(array, old->n, error);
     for (int64_t k = 0; k < old->n && !status; k++)
         status = move_chunk(array, old->place[k], array->laid->place[k], buffer, error);
-    H5Dclose(dataset); /* and its space is free */
+    H5Dclose(dataset); /* frees the old dataset's space */
     free(buffer);
     return status;
 }

@@ -1,11 +1,11 @@
-/* Chunks of an array that is known beforehand, deflated piece by piece.
+/* Writes an array with known contents by compressing it piece by piece.
  *
- * HDF5's pipeline for this array is: shuffle, which puts byte 0 of all numbers of a chunk first, then byte 1 of all,
- * and so on, eight planes; then deflate, a zlib stream. Left to HDF5 that takes 20 ns a cell, a quarter of the time in
- * which a cell is made. But nearly all planes repeat. A chunk of 2^16 triangles begins with a multiple of 3 * 2^16, so
- * that its planes 0 and 1 are those of every other chunk, and most of the others consist of one value. Deflate streams
- * that have been flushed can be put behind each other, and their checksums combined (RFC 1950, 1951; zlib): so a plane
- * that is the same as in the chunk before is deflated once. Chunks that reach beyond the triangles take HDF5's way. */
+ * HDF5's filters for this array are shuffle, which stores byte 0 of all numbers of a chunk first, then byte 1 and so
+ * on, as eight planes; and deflate, a zlib stream. In HDF5 this takes 20 ns per cell, a quarter of the time in which a
+ * cell is made. But most planes repeat. A chunk of 2^16 triangles begins with a multiple of 3 * 2^16, so its planes 0
+ * and 1 are the same in all chunks, and most others consist of one value. Flushed deflate streams can be concatenated,
+ * and their checksums combined (RFC 1950, 1951; zlib). So a plane that equals that of the previous chunk is compressed
+ * only once. Chunks that extend beyond the triangles are written by HDF5. */
 #include "triangle/hdf5/views.h"
 
 #include <stdlib.h>
@@ -16,9 +16,9 @@
 
 enum { ROWS = 1 << 16, PLANES = 8, PLANE_ROOM = 1 << 14, STREAM_ROOM = PLANES * PLANE_ROOM + 8, LEVEL = 1 };
 
-/* A plane as it is in the stream. */
+/* A compressed plane. */
 struct plane {
-    int value;                 /* all bytes are this; < 0: they differ */
+    int value;                 /* value of all bytes; < 0: they differ */
     bool known;
     size_t n;
     uLong check;
@@ -28,7 +28,7 @@ struct plane {
 struct ends {
     struct tri_h5_file *file;
     const char *path;
-    int64_t triangles, n;      /* numbers in all */
+    int64_t triangles, n;      /* number of triangles; number of elements of the array */
     hid_t dataset, space;
     char *numbers;             /* [ROWS][8] */
     unsigned char *stream;     /* [STREAM_ROOM] */
@@ -42,9 +42,9 @@ static int64_t end_of(const struct ends *e, int64_t i)
     return i <= e->triangles ? 3 * i : 3 * e->triangles + 2 * (i - e->triangles);
 }
 
-/* --- chunks of triangles alone */
+/* --- chunks of triangles only */
 
-/* Deflates a plane of the chunk that begins with number b. False: it does not fit, which does not happen. */
+/* Compresses a plane of the chunk that begins with number b. Returns false if it does not fit, which cannot happen. */
 static bool deflate_plane(struct ends *e, struct plane *plane, int64_t b, int p)
 {
     unsigned char *bytes = (unsigned char *)e->numbers;
@@ -62,7 +62,7 @@ static bool deflate_plane(struct ends *e, struct plane *plane, int64_t b, int p)
     return true;
 }
 
-/* Brings plane p up to date. */
+/* Compresses plane p again if it has changed. */
 static bool renew_plane(struct ends *e, int64_t b, int p)
 {
     struct plane *plane = &e->planes[p];
@@ -74,12 +74,12 @@ static bool renew_plane(struct ends *e, int64_t b, int p)
     return deflate_plane(e, plane, b, p);
 }
 
-/* The stream of the chunk that begins with cell i; 0: no stream. */
+/* Makes the stream of the chunk that begins with cell i. Returns its length; 0: failure. */
 static size_t make_stream(struct ends *e, int64_t i)
 {
     unsigned char *at = e->stream;
     uLong check = adler32(0, NULL, 0);
-    *at++ = 0x78; /* the head of a zlib stream */
+    *at++ = 0x78; /* head of a zlib stream */
     *at++ = 0x01;
     for (int p = 0; p < PLANES; p++) {
         const struct plane *plane = &e->planes[p];
@@ -89,7 +89,7 @@ static size_t make_stream(struct ends *e, int64_t i)
         at += plane->n;
         check = adler32_combine(check, plane->check, ROWS);
     }
-    *at++ = 0x03; /* the last block, which is empty */
+    *at++ = 0x03; /* final empty block */
     *at++ = 0x00;
     for (int k = 3; k >= 0; k--)
         *at++ = (unsigned char)(check >> (8 * k));

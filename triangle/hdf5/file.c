@@ -1,9 +1,9 @@
-/* A file driver for HDF5 of eight functions, and the errors of both sides.
+/* A file driver for HDF5 with eight functions, and error messages.
  *
- * HDF5's own driver would open the file by its name once more, so that closing it drops the lock of the output, and
- * tells errors of the system in prose only. And where writing fails HDF5 cannot close a file: it keeps it until the
- * process ends and tries again then. Here the first failure is remembered and reported; whatever is written afterwards,
- * which nobody is going to read, goes nowhere. */
+ * HDF5's own driver would open the file by name a second time, so that closing it drops the lock of the output. It
+ * reports system errors as text only. And after a failed write HDF5 cannot close a file: it keeps the file until the
+ * process ends, and tries again then. This driver stores and reports the first failure, and ignores all later
+ * writes. */
 #include "triangle/hdf5/file.h"
 
 #include <errno.h>
@@ -16,14 +16,14 @@
 
 #include "triangle/base/system.h"
 
-enum { PAGE_BYTES = 4096, LARGE_BYTES = 1 << 16 }; /* what is large begins at a page */
+enum { PAGE_BYTES = 4096, LARGE_BYTES = 1 << 16 }; /* large objects start at a page boundary */
 
 /* --- the driver */
 
 struct driven {
-    H5FD_t head; /* HDF5's */
+    H5FD_t head; /* must come first, for HDF5 */
     struct tri_h5_file *file;
-    haddr_t allocated, written; /* ends of the file */
+    haddr_t allocated, written; /* sizes of the file so far */
 };
 
 static H5FD_t *open_driven(const char *name, unsigned flags, hid_t access, haddr_t most)
@@ -77,7 +77,7 @@ static herr_t note(struct tri_h5_file *file, int failure)
     return failure == 0 ? 0 : -1;
 }
 
-/* What has never been written reads as zeros. */
+/* Reads bytes. Bytes never written are zeros. */
 static herr_t read_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, void *data)
 {
     const struct driven *driven = (const struct driven *)head;
@@ -101,10 +101,10 @@ static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_
         driven->written = place + size;
     if (driven->file->failure == 0)
         (void)note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
-    return 0; /* where HDF5 learns of a failure it does not let go of all that it has */
+    return 0; /* if HDF5 were notified of a failure, it would not free all its resources */
 }
 
-/* The file ends where what has been allocated ends. */
+/* Sets the file size to the end of the allocated space. */
 static herr_t truncate_driven(H5FD_t *head, hid_t transfer, hbool_t closing)
 {
     struct driven *driven = (struct driven *)head;
@@ -162,11 +162,11 @@ enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct t
     file->output->failed = true;
     if (reason.no_memory)
         return tri_fail(error, TRI_NO_MEMORY, file->output->path, 0, "no memory to write %s (HDF5)", what);
-    return tri_fail(error, TRI_CANNOT_WRITE, file->output->path, 0, "cannot write %s: HDF5 says \"%s\"", what,
+    return tri_fail(error, TRI_CANNOT_WRITE, file->output->path, 0, "cannot write %s: HDF5 reports \"%s\"", what,
                     reason.text);
 }
 
-/* --- open and closed */
+/* --- opening and closing */
 
 static hid_t access_of(struct tri_h5_file *file)
 {
@@ -238,7 +238,7 @@ bool tri_h5_add_group(struct tri_h5_file *file, const char *path)
     return group >= 0 && H5Gclose(group) >= 0;
 }
 
-/* type: in the file; memory: of the data. */
+/* type: in the file; memory: type of data[]. */
 static bool add_attribute(struct tri_h5_file *file, const char *path, const char *name, hid_t type, hid_t memory, int n,
                           const void *data)
 {

@@ -1,9 +1,8 @@
-/* Datasets are opened once; a slice is one selection of rows.
+/* Datasets are opened once; a slice is a selection of rows.
  *
- * A file may come from anywhere, and HDF5 follows what it says: links and virtual datasets to other files, or storage
- * in them, pipes among these, filters from libraries, and fills what is not there with zeros. So only what the writer
- * makes is opened: arrays that this very file holds, uncompressed and in full. No array is then larger than the
- * file. */
+ * The origin of a file is not trusted. HDF5 would follow links, virtual datasets and external storage to other files,
+ * even pipes, load filters from libraries, and replace missing data by zeros. So only arrays like those of the writer
+ * are opened: stored in this file, uncompressed and complete. Then no array is larger than the file. */
 #include "triangle/hdf5/h5_read.h"
 
 #include <assert.h>
@@ -22,8 +21,8 @@ static const struct tri_h5_form *const forms = tri_h5_forms;
 struct tri_h5 {
     const char *path; /* borrowed */
     hid_t file;
-    int64_t bytes; /* of the file */
-    hid_t datasets[TRI_H5_KINDS]; /* < 0: there is none */
+    int64_t bytes; /* size of the file */
+    hid_t datasets[TRI_H5_KINDS]; /* < 0: no such dataset */
     int64_t rows[TRI_H5_KINDS];
     int32_t width[TRI_H5_KINDS];
     struct tri_h5_counts counts;
@@ -41,7 +40,7 @@ static bool has_type(hid_t dataset, unsigned wanted)
     return found;
 }
 
-/* Its rows and width, if it has the form. */
+/* Determines rows and width. Returns whether the array has the required form. */
 static bool measure(struct tri_h5 *h5, enum tri_h5_kind k)
 {
     hsize_t size[2] = {0, 1};
@@ -59,7 +58,7 @@ static bool measure(struct tri_h5 *h5, enum tri_h5_kind k)
            h5->rows[k] == h5->rows[forms[k].rows_of];
 }
 
-/* Numbers that its storage must have room for: whole chunks. */
+/* Returns the number of elements that its storage must hold, in whole chunks. */
 static double stored_numbers(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const int64_t size[2] = {h5->rows[k], h5->width[k]};
@@ -73,7 +72,7 @@ static double stored_numbers(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t 
     return n;
 }
 
-/* What is wrong with how the array is kept; NULL: nothing. */
+/* Returns the fault in the storage of the array; NULL: none. */
 static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hid_t creation)
 {
     const H5D_layout_t layout = H5Pget_layout(creation);
@@ -81,18 +80,19 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hi
     const double bytes = type >= 0 ? (double)H5Tget_size(type) : 8;
     tri_h5_drop(H5Tclose, type);
     if (layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED)
-        return "is kept in a way that is not read: virtual or compact";
+        return "has virtual or compact storage, which is not supported";
     if (H5Pget_external_count(creation) != 0)
-        return "lies in another file, which is not read";
+        return "is stored in another file, which is not supported";
     if (H5Pget_nfilters(creation) != 0)
-        return "is compressed, which is not read: h5repack -f NONE";
+        return "is compressed, which is not supported; to uncompress it: h5repack -f NONE";
     if (bytes * (double)h5->rows[k] * h5->width[k] > (double)h5->bytes ||
         (double)H5Dget_storage_size(h5->datasets[k]) < bytes * stored_numbers(h5, k, creation))
-        return "is not there in full";
+        return "is incomplete";
     return NULL;
 }
 
-/* Triangles and segments of so many points can be no more than these: twice and three times as many. */
+/* Does the array have more rows than a planar mesh allows? There are at most twice as many triangles as points, and
+ * three times as many segments. */
 static bool are_too_many(const struct tri_h5 *h5, enum tri_h5_kind k)
 {
     const int64_t points = h5->rows[TRI_H5_OF_POINTS];
@@ -102,17 +102,17 @@ static bool are_too_many(const struct tri_h5 *h5, enum tri_h5_kind k)
 static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct tri_error *error)
 {
     if (!measure(h5, k))
-        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s has not the type and size that it should",
+        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s has an unexpected type or size",
                         forms[k].name);
     hid_t creation = H5Dget_create_plist(h5->datasets[k]);
-    const char *wrong = creation < 0            ? "cannot be looked at"
-                        : are_too_many(h5, k)   ? "has more rows than a mesh of so many points"
+    const char *wrong = creation < 0            ? "cannot be examined"
+                        : are_too_many(h5, k)   ? "has more rows than a mesh with this number of points can have"
                                                 : wrong_storage(h5, k, creation);
     tri_h5_drop(H5Pclose, creation);
     return wrong ? tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s %s", forms[k].name, wrong) : TRI_OK;
 }
 
-/* Does the name lead to something in this very file, and no further? */
+/* Is the name a hard link, which refers to an object in this file? */
 static bool is_own(const struct tri_h5 *h5, const char *name)
 {
     H5L_info_t link;
@@ -132,7 +132,7 @@ static enum tri_status open_array(struct tri_h5 *h5, enum tri_h5_kind k, struct 
     return check_array(h5, k, error);
 }
 
-/* An attribute of /about; -1: there is none. */
+/* Returns an attribute of /about; -1: it does not exist. */
 static int64_t about(const struct tri_h5 *h5, const char *name)
 {
     int64_t value = -1;
@@ -161,7 +161,7 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
     if (status)
         return status;
     if (about(h5, TRI_H5_ABOUT_VERSION) > TRI_H5_VERSION)
-        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "written by a newer version: this one knows format %d",
+        return tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "written by a newer version; this version reads format %d",
                         TRI_H5_VERSION);
     const int64_t input_points = about(h5, TRI_H5_ABOUT_INPUT_POINTS);
     h5->counts = (struct tri_h5_counts){
@@ -175,7 +175,8 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
     return TRI_OK;
 }
 
-/* HDF5 does not tell a file that is not there from one that is none of its own. */
+/* Checks that the file is a regular one, because HDF5 does not distinguish a missing file from one in another
+ * format. */
 static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
 {
     struct tri_file_facts facts;
@@ -203,7 +204,7 @@ enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_err
     **h5 = (struct tri_h5){.path = path, .file = -1};
     for (int k = 0; k < TRI_H5_KINDS; k++)
         (*h5)->datasets[k] = -1;
-    (void)H5dont_atexit(); /* before all else: at the end of the process HDF5 would print about what is damaged */
+    (void)H5dont_atexit(); /* must be first: otherwise HDF5 prints messages about damaged files when the process ends */
     H5E_BEGIN_TRY
     {
         status = open_file(*h5, error);
@@ -234,7 +235,7 @@ const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5) { return &h5->
 
 /* --- slices */
 
-/* False: HDF5 could not. */
+/* Reads rows of an array. Returns false if HDF5 fails. */
 static bool read_rows(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first, int64_t n, hid_t type, void *out)
 {
     const hsize_t place[2] = {(hsize_t)first, 0}, size[2] = {(hsize_t)n, (hsize_t)h5->width[k]};

@@ -1,13 +1,13 @@
-/* Tiles into arrays.
+/* Writes tiles to arrays.
  *
- * A tile's rows go into the arrays' buffers, converted to bytes of the file, in pieces as the buffers have room. All
- * calls of HDF5 stand between H5E_BEGIN_TRY and H5E_END_TRY, which keep it from printing what goes wrong.
+ * Rows of a tile are converted to bytes of the file and copied to the arrays' buffers, as far as these have room. All
+ * calls of HDF5 are between H5E_BEGIN_TRY and H5E_END_TRY, which suppress its messages.
  *
- * WHERE CHUNKS LIE depends on the numbers of points and triangles alone, not on what came first. A planar mesh has less
- * than two triangles a point (Euler), and so has the part of it that has come so far, since corners come before
- * triangles. A chunk of points has CHUNK_POINTS rows, one of triangles twice as many; chunk k of all these arrays is
- * allocated, array by array, when the first point comes that belongs to it. Then every triangle has a chunk in time.
- * As long as there are no more than CHUNK_POINTS points no array has chunks. Segments are written behind all else. */
+ * OFFSETS OF CHUNKS depend only on the numbers of points and triangles, not on the order in which they arrive. A planar
+ * mesh has less than two triangles per point (Euler). The same holds for the part received so far, since corners come
+ * before triangles. A chunk of points has CHUNK_POINTS rows, a chunk of triangles twice as many. Chunk k of all these
+ * arrays is allocated, array by array, when the first point of chunk k arrives. So every triangle has a chunk in time.
+ * Up to CHUNK_POINTS points no array has chunks. Segments are written after everything else. */
 #include "triangle/hdf5/h5_write.h"
 
 #include <assert.h>
@@ -24,19 +24,19 @@ enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENT
 
 /* --- segments
  *
- * On their way to the end of the file: how many there will be is not known before, and they may come sooner or
- * later than points do. Few are kept in memory; more in a file that is needed only later. */
+ * They are written at the end of the file, because their number is not known before, and they may arrive earlier or
+ * later than points do. Few segments are kept in memory; more are spooled to a file that is needed only later. */
 
 enum { KEPT_SEGMENTS = 1 << 16 };
 
 struct segments {
     struct tri_output *spool; /* borrowed; empty before and afterwards */
-    int64_t n, n_read;        /* in all; handed out again */
+    int64_t n, n_read;        /* number of segments; number of those read again */
     int64_t (*ends)[2];       /* [KEPT_SEGMENTS] */
-    int32_t *markers;         /* the same; both behind those in the spool, or those that were read last */
+    int32_t *markers;         /* [KEPT_SEGMENTS] both: the segments after those in the spool, or the last batch read */
 };
 
-/* The spool holds batches of KEPT_SEGMENTS: their ends, then their markers, as they lie in memory. */
+/* The spool holds batches of KEPT_SEGMENTS: their ends, then their markers, as in memory. */
 enum { END_BYTES = KEPT_SEGMENTS * 16, BATCH_BYTES = KEPT_SEGMENTS * 20 };
 
 static enum tri_status open_segments(struct segments *segments, struct tri_output *spool, struct tri_error *error)
@@ -55,7 +55,7 @@ static void free_segments(struct segments *segments)
     *segments = (struct segments){0};
 }
 
-/* The first place of the batch that begins with segment i. */
+/* Returns the offset of the batch of segment i. */
 static uint64_t place_of(int64_t i) { return (uint64_t)(i / KEPT_SEGMENTS) * BATCH_BYTES; }
 
 static enum tri_status write_batch(struct segments *s, struct tri_error *error)
@@ -67,7 +67,7 @@ static enum tri_status write_batch(struct segments *s, struct tri_error *error)
     return tri_output_conclude(s->spool, result, error);
 }
 
-/* Keeps those of a tile. */
+/* Stores the segments of a tile. */
 static enum tri_status add_segments(struct segments *s, const struct tri_tile *tile, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -89,14 +89,14 @@ static bool read_batch(struct segments *s)
            tri_read_again(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
 }
 
-/* Once all are there: the next of them, in their order, as a tile that has nothing else; none are left: n_segments is
- * 0, and the spool is empty. */
+/* After all segments have been added: returns the next ones, in order, as a tile without other items. When none are
+ * left, n_segments is 0 and the spool is empty. */
 static enum tri_status next_segments(struct segments *s, struct tri_tile *tile, struct tri_error *error)
 {
     const int64_t left = s->n - s->n_read;
     const bool spooled = s->n > KEPT_SEGMENTS;
     enum tri_status status = TRI_OK;
-    if (spooled && s->n_read == 0) /* the last batch makes room for the first */
+    if (spooled && s->n_read == 0) /* write the last batch to make room for the first */
         status = write_batch(s, error);
     if (!status && spooled && !(left > 0 ? read_batch(s) : tri_file_cut(s->spool->file, 0)))
         status = tri_fail_system(error, TRI_CANNOT_WRITE, s->spool->path, "cannot read segments again", errno);
@@ -113,20 +113,20 @@ struct tri_h5_writer {
     struct tri_h5_options options;
     struct tri_h5_file file;
     struct tri_h5_array arrays[TRI_H5_KINDS];
-    struct tri_h5_layout layout; /* of them */
-    struct tri_h5_part *part;    /* what has rows; NULL: others have */
+    struct tri_h5_layout layout; /* offsets of the arrays */
+    struct tri_h5_part *part;    /* writes rows; NULL: other processes do */
     struct segments segments;
-    int64_t n_points, n_triangles, n_chunks; /* so far; the last of points, and of triangles, allocated */
+    int64_t n_points, n_triangles, n_chunks; /* number so far; the last: allocated chunks of points, and of triangles */
     int64_t most_narrow;
-    int64_t n_input;      /* points that there were before refinement */
-    double bounds[4];     /* least x, least y, largest x, largest y; none as long as there are no points */
+    int64_t n_input;      /* number of points that existed before refinement */
+    double bounds[4];     /* least x, least y, largest x, largest y; infinite if there are no points */
 };
 
 bool tri_h5_is_there(void) { return true; }
 
 /* --- beginning */
 
-/* Can all be kept as integers of 32 bits? */
+/* Can all values be stored as 32-bit integers? */
 static bool are_whole(const double *values, int64_t n)
 {
     for (int64_t i = 0; i < n; i++)
@@ -136,7 +136,7 @@ static bool are_whole(const double *values, int64_t n)
     return true;
 }
 
-/* The array of a kind, where it is wanted. width: of a table of any. */
+/* Begins the array of a kind if it is wanted. width: for tables of any width. */
 static void begin_array(struct tri_h5_writer *w, enum tri_h5_kind kind, bool wanted, enum tri_h5_type type,
                         int32_t width)
 {
@@ -160,7 +160,7 @@ static void begin_arrays(struct tri_h5_writer *w, const struct tri_stream *strea
 
 /* --- tiles */
 
-/* Corners among so many points have 64 bits from now on, if that is needed. */
+/* Changes corners to 64 bits if the point numbers require it. */
 static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     const enum tri_h5_kind kind = TRI_H5_OF_TRIANGLES;
@@ -170,7 +170,7 @@ static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, 
     return status ? status : tri_h5_array_widen(&w->arrays[kind], error);
 }
 
-/* Chunks for so many points and their triangles, in the order of the arrays; see above. */
+/* Allocates chunks for n_points points and their triangles, in the order of the arrays; see the head of the file. */
 static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -201,7 +201,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
         status = allocate(w, w->n_points, error);
     }
     H5E_END_TRY
-    status = status ? status : tri_h5_part_take(w->part, tile, error); /* there are no arrays of segments yet */
+    status = status ? status : tri_h5_part_take(w->part, tile, error); /* arrays of segments do not exist yet */
     return status ? status : add_segments(&w->segments, tile, error);
 }
 
@@ -219,7 +219,7 @@ static enum tri_status begin_segments(struct tri_h5_writer *w, struct tri_error 
     return status;
 }
 
-/* All arrays have their places, and their datasets are closed. */
+/* Allocates all remaining space and closes the datasets. */
 static enum tri_status end_arrays(struct tri_h5_writer *w, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -247,7 +247,7 @@ static enum tri_status write_rest(struct tri_h5_writer *w, struct tri_error *err
     return status ? status : tri_h5_part_end(w->part, error);
 }
 
-/* --- several ranks: all sizes are known, and others put the rows where they belong */
+/* --- several ranks: all sizes are known, and all ranks write their rows */
 
 static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
@@ -266,7 +266,7 @@ void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const dou
     memcpy(writer->bounds, bounds, sizeof writer->bounds);
 }
 
-/* --- all together */
+/* --- beginning and end */
 
 static void empty(struct tri_h5_writer *w)
 {
@@ -276,7 +276,7 @@ static void empty(struct tri_h5_writer *w)
                                 .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 }
 
-/* What an unfinished file holds is of no use: it is let go of without a write. */
+/* Closes an unfinished file without writing the rest, since its contents are of no use. */
 static void let_go(struct tri_h5_writer *w)
 {
     if (w->file.id >= 0 && w->file.failure == 0)
@@ -361,7 +361,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
         return tri_fail(error, TRI_NO_MEMORY, options->file->path, 0, "no memory to write the file");
     w->options = *options;
     empty(w);
-    (void)H5dont_atexit(); /* at the end of the process HDF5 would print about files that could not be written */
+    (void)H5dont_atexit(); /* otherwise HDF5 prints messages about unwritable files when the process ends */
     *sink = (struct tri_sink){w, begin_file, take_tile, end_file};
     return TRI_OK;
 }

@@ -1,4 +1,4 @@
-/* A build without HDF5: nothing can be opened, and what is told so. */
+/* Replacement for a build without HDF5: opening fails with a message. */
 #include <assert.h>
 #include <stddef.h>
 
@@ -39,7 +39,7 @@ enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_err
 
 void tri_h5_free(struct tri_h5 *h5) { (void)h5; }
 
-/* --- never called, since there is nothing open */
+/* --- never called, since nothing can be opened */
 
 const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5)
 {

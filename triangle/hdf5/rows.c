@@ -1,9 +1,9 @@
-/* A large piece is written behind its caller's back, past the system's cache where the file system allows that:
- * what a mesh of many gigabytes would push out of the cache stays there, processors copy nothing, and little is left to
- * sync at the end.
+/* Large pieces are written asynchronously, and bypass the system's cache if the file system allows it. So a mesh of
+ * many gigabytes does not displace other data from the cache, no processor copies bytes, and little is left to sync at
+ * the end.
  *
- * INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which lie at one place and have
- * not been written; all that have come before have been, or are on their way from the other buffer. */
+ * INVARIANT between calls: the buffer of an array holds its rows next - n to next - 1, which are contiguous in the file
+ * and not yet written. All earlier rows have been written, or are being written from the other buffer. */
 #include "triangle/hdf5/rows.h"
 
 #include <assert.h>
@@ -85,10 +85,10 @@ void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile)
 
 enum { BUFFER_BYTES = 1 << 20 };
 
-/* At most one piece at a time. */
+/* An asynchronous write; at most one piece at a time. */
 struct behind {
-    struct tri_behind *under_way; /* NULL: nothing is */
-    const char *data;             /* lent */
+    struct tri_behind *under_way; /* NULL: no write in progress */
+    const char *data;             /* borrowed until the write is complete */
     size_t size;
     uint64_t place;
 };
@@ -96,9 +96,9 @@ struct behind {
 struct strip {
     const struct tri_h5_laid *laid;
     int64_t next;
-    int32_t n, room; /* rows in the buffer, at most */
-    char *buffer;    /* NULL: nothing has come */
-    char *other;     /* as large: what is on its way into the file; NULL: none was needed */
+    int32_t n, room; /* rows in the buffer, and its capacity */
+    char *buffer;    /* NULL: no rows so far */
+    char *other;     /* second buffer, which is being written; NULL: not needed so far */
     struct behind behind;
 };
 
@@ -115,15 +115,15 @@ static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_erro
     return tri_fail(error, TRI_NO_MEMORY, part->file->path, 0, "no memory to write rows of the file");
 }
 
-/* --- writing that goes on while its caller does */
+/* --- asynchronous writes */
 
 static bool is_aligned(uint64_t place, const char *data, size_t size)
 {
     return (place | (uint64_t)(uintptr_t)data | size) % TRI_PAGE_BYTES == 0;
 }
 
-/* Begins to write to a place; nothing is under way. The data are lent until it is waited for. Returns 0 or what
- * tri_output_conclude makes an error of. */
+/* Starts writing at an offset; no other write may be in progress. The data are borrowed until wait_behind. Returns 0,
+ * or a result for tri_output_conclude. */
 static int start_behind(struct behind *behind, struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
     assert(!behind->under_way && tri_output_has_places(output));
@@ -134,8 +134,8 @@ static int start_behind(struct behind *behind, struct tri_output *output, uint64
     return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
 }
 
-/* Waits for what is under way, if anything is: then it is written. Returns the same. What cannot be asked for, or is
- * done in part only, is written as everything else is. */
+/* Waits until the write in progress, if any, is complete. Returns the same. Bytes that could not be written
+ * asynchronously are written directly. */
 static int wait_behind(struct behind *behind, const struct tri_output *output)
 {
     if (!behind->under_way)
@@ -147,7 +147,7 @@ static int wait_behind(struct behind *behind, const struct tri_output *output)
 
 /* --- one array */
 
-/* Where bytes go that may pass the system's cache. */
+/* Allocates a page-aligned buffer, as required to bypass the system's cache. */
 static char *new_buffer(const struct strip *s)
 {
     return tri_page_alloc((size_t)s->room * tri_h5_row_bytes(s->laid));
@@ -161,7 +161,7 @@ static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
     return s->buffer;
 }
 
-/* Waits for what is on its way, then sends the buffer after it. The same as tri_output_write_at. */
+/* Waits for the write in progress, then starts writing the buffer. Returns the same as tri_output_write_at. */
 static int send_buffer(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
 {
     int result = wait_behind(&s->behind, part->file);
@@ -187,7 +187,7 @@ static enum tri_status flush_strip(const struct tri_h5_part *part, struct strip 
     return tri_output_conclude(part->file, send_buffer(part, s, place, bytes), error);
 }
 
-/* How many rows may follow, as far as the buffer and the place reach. */
+/* Returns how many more rows fit in the buffer and in the current chunk. */
 static int32_t room_of(const struct strip *s)
 {
     const int64_t here = s->laid->chunk_rows - s->next % s->laid->chunk_rows;
@@ -199,7 +199,7 @@ static bool is_full(const struct strip *s)
     return s->n == s->room || (s->n > 0 && s->next % s->laid->chunk_rows == 0);
 }
 
-/* A full buffer is written when more comes: by then it is known where. */
+/* Adds rows. A full buffer is written only when more rows arrive, because the offset may be unknown before. */
 static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind, int64_t first, int32_t n,
                                 struct tri_error *error)
 {
@@ -236,7 +236,7 @@ enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kin
     return TRI_OK;
 }
 
-/* --- all */
+/* --- the part */
 
 enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_layout *layout, bool alone,
                                 const struct tri_stream *stream, struct tri_output *file, struct tri_error *error)

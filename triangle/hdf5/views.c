@@ -1,4 +1,5 @@
-/* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
+/* Virtual datasets and hard links. After a failed call of HDF5 all further calls do nothing; tri_h5_write_views reports
+ * the error. */
 #include "triangle/hdf5/views.h"
 
 #include <inttypes.h>
@@ -14,7 +15,7 @@ struct views {
     struct tri_h5_file *file;
     const struct tri_h5_array *arrays; /* by kind */
     bool failed;
-    enum tri_status status; /* already told */
+    enum tri_status status; /* error that has been reported already */
     struct tri_error *error;
 };
 
@@ -44,13 +45,13 @@ static void add_integers(struct views *v, const char *path, const char *name, in
 
 /* --- virtual datasets */
 
-struct part { /* a whole dataset, as a box of the view */
+struct part { /* a whole dataset that is mapped to a box of the view */
     const char *source;
     int source_rank;
     hsize_t source_size[2], first[2], size[2];
 };
 
-/* A box of an array of `size`; < 0: an error. */
+/* Selects a box in an array of the given size; < 0: an error. */
 static hid_t box_in(int rank, const hsize_t size[2], const hsize_t first[2], const hsize_t box[2])
 {
     hid_t space = H5Screate_simple(rank, size, NULL);
@@ -72,7 +73,7 @@ static void add_part(struct views *v, hid_t creation, int rank, const hsize_t si
     tri_h5_drop(H5Sclose, box);
 }
 
-/* A dataset that consists of parts of others and, elsewhere, of the fill value. */
+/* Adds a dataset that is composed of other datasets; the rest has the fill value. */
 static void add_view(struct views *v, const char *path, hid_t type, int rank, const hsize_t size[2], int fill,
                      const struct part *parts, int n)
 {
@@ -88,7 +89,7 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
 
 /* --- VTK */
 
-/* One number, as an array. */
+/* Adds an array with one number. */
 static void add_count(struct views *v, const char *path, int64_t count)
 {
     if (v->failed)
@@ -148,7 +149,7 @@ static void add_vtk(struct views *v)
     add_vtk_data(v);
 }
 
-/* --- PETSc, which older versions ask for the dimension and corners of cells */
+/* --- PETSc; older versions read the dimension and number of corners of cells */
 
 static void add_petsc(struct views *v)
 {
@@ -176,7 +177,7 @@ enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5
 
 struct xdmf {
     struct tri_output *output;
-    char *name; /* of the HDF5 file, as XML wants it */
+    char *name; /* name of the HDF5 file, escaped for XML */
     enum tri_status status;
     struct tri_error *error;
 };
@@ -186,7 +187,7 @@ static void put_words(struct xdmf *text, const char *words)
     text->status = text->status ? text->status : tri_output_write(text->output, words, strlen(words), text->error);
 }
 
-/* The characters that XML takes for its own. Malloc'ed; NULL: no memory. */
+/* Replaces characters that are special in XML. From malloc; NULL: out of memory. */
 static char *escaped(const char *name)
 {
     enum { LONGEST = 6 };

@@ -7,10 +7,10 @@
 #include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 
-/* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
- * sum of l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2,
- * and that a third of the squared sum of the l; the factor is rounded up to pay for the rounding of that square.
- * Nothing underflows in the range of predicates.h. */
+/* The error of the determinant is at most (10 + 96 u) u * permanent, with u = 2^-53 (Shewchuk 1997, section 4.4). The
+ * permanent is the sum of l_a (|b_x c_y| + |b_y c_x|). By Cauchy-Schwarz and 2 s t <= s^2 + t^2 it is at most l_a l_b +
+ * l_b l_c + l_c l_a, which is at most a third of (l_a + l_b + l_c)^2. The factor is rounded up to cover the rounding of
+ * that square. Nothing underflows in the range of predicates.h. */
 static const double DOUBT = 4e-16;
 
 void tri_cavity_free(struct tri_cavity *cavity)
@@ -23,11 +23,12 @@ void tri_cavity_free(struct tri_cavity *cavity)
     *cavity = (struct tri_cavity){0};
 }
 
-/* Beyond the triangles: two edges, those that wait among them, and one that says where the last one ends; on each side
- * of a split two corners. */
+/* Items that the arrays hold beyond one for each triangle: two edges, the pending edges among them, and one entry that
+ * marks the end of the last edge. Each side of a split adds two corners. */
 enum { MORE = 5 };
 
-/* Of one try: the arrays are too small, which stay where they are while a search goes on. It begins again. */
+/* Result of one attempt if the arrays are too small. They must not move during a search, so the caller enlarges them
+ * and starts the search again. */
 #define TOO_LARGE TRI_SEARCH_NO_MEMORY
 
 static bool grow(struct tri_cavity *c)
@@ -46,8 +47,8 @@ bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, 
     return true;
 }
 
-/* Is p in the circumdisk of a, b, c? The determinant and the sum of the l have been worked out; where the filter leaves
- * that open, which is rare, it is decided exactly. */
+/* Is p in the circumdisk of a, b, c? The caller passes the determinant and the sum of the l. If the floating-point
+ * filter cannot decide the sign, which is rare, exact arithmetic does. */
 static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const struct tri_cavity_corner *a,
                              const struct tri_cavity_corner *b, const struct tri_cavity_corner *c, double sum,
                              double det)
@@ -64,9 +65,10 @@ static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex
     return TRI_SEARCH_BEYOND;
 }
 
-/* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
- * where the last edge before it has ended; the first at a. Each comes with the cross product of its ends; so of the
- * three products that a test needs one is known, and the other two are those of the edges behind. */
+/* Traverses the cavity depth first, left first. This yields the boundary edges in order: each pending edge starts where
+ * the last boundary edge ends, and the first one starts at corner a. A pending edge carries the cross product of its
+ * ends. So one of the three products of an incircle test is known, and the other two are passed on with the next
+ * edges. */
 static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending,
                                const struct tri_cavity_corner *a)
 {
@@ -110,8 +112,8 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             break;
         edge = *--pending;
     }
-    /* So that whoever goes along the edges need not ask which is the last. The chain on the left of a split ends where
-     * that on the right begins. */
+    /* A final entry marks the end of the last edge, so loops over edges need no special case. The chain on the left of
+     * a split ends where the chain on the right begins. */
     ring->a = a;
     c->n_tri = (int32_t)(took - c->tri);
     c->n_corners = (int32_t)(q - c->corner);
@@ -127,8 +129,8 @@ static void begin_search(struct tri_cavity *c, struct tri_point p)
     c->mixed = 0;
 }
 
-/* Explores what lies in triangle t and behind n of its edges, in turn from the first on. Where p is not in the disk of
- * t, by rounding or since t is flatter than that, the fan would not be Delaunay. */
+/* Explores triangle t and the triangles across n of its edges, in order from `first`. If p is not in the circumdisk of
+ * t, because of rounding or because t is nearly flat, the fan would not be Delaunay. */
 static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t, int first,
                                     int n)
 {
@@ -160,7 +162,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
                                   tri_triangle_id t)
 {
     assert(tri_is_live(&mesh->tri[t]));
-    if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
+    if (!tri_is_in_range(p)) /* the circumcentre of a nearly flat triangle: maybe in its disk, but not in the domain */
         return TRI_SEARCH_OUTSIDE;
     enum tri_search found;
     do {
@@ -170,7 +172,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
     return found;
 }
 
-/* Rounding may place a split point off its subsegment: every edge must still be seen counter-clockwise. */
+/* Does p see every edge counter-clockwise? Rounding may place a split point off its subsegment. */
 static bool sees_edges(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
     assert(0 <= first && first <= end && end <= c->n_edges);
@@ -188,7 +190,8 @@ static int compare_links(const void *a, const void *b)
     return (p->link > q->link) - (p->link < q->link);
 }
 
-/* Is a triangle of the cavity there twice, or beyond its boundary? By sorting; no search is pending any more. */
+/* Does a triangle occur twice in the cavity, or lie across its boundary? Sorts in c->pending, which no search uses at
+ * this time. */
 static bool repeats_itself(const struct tri_cavity *c)
 {
     size_t n = (size_t)c->n_tri;
@@ -208,7 +211,8 @@ static bool repeats_itself(const struct tri_cavity *c)
     return false;
 }
 
-/* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
+/* Does the cavity overlap itself? If rounding places a split point beside a vertex, the search may go around that
+ * vertex and return to triangles that it has visited. */
 static bool overlaps_itself(const struct tri_cavity *c, tri_sub_id s)
 {
     enum { FEW = 64 };
@@ -228,7 +232,7 @@ static bool overlaps_itself(const struct tri_cavity *c, tri_sub_id s)
     return false;
 }
 
-/* One try, with the arrays as large as they are. */
+/* One attempt, with the arrays at their current size. */
 static enum tri_search search_split(struct tri_cavity *c, const struct tri_mesh *mesh, tri_sub_id s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
@@ -257,7 +261,7 @@ static enum tri_search search_split(struct tri_cavity *c, const struct tri_mesh 
 enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
                                         tri_sub_id s, int32_t *n_left)
 {
-    assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
+    assert(s >= 0 && tri_is_in_range(p)); /* in a view, s may be at or above n_subs */
     enum tri_search found;
     do {
         begin_search(c, p);
@@ -266,8 +270,9 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     return found;
 }
 
-/* Numbers for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
- * cavity (Euler), so no number is ever left over. The first comes again behind the last, as its neighbour. */
+/* Assigns numbers to the triangles of the fan: first those of the cavity, then new ones. A fan has at least as many
+ * triangles as its cavity (Euler), so no number is left over. The first number is repeated after the last, as its
+ * neighbour in the fan. */
 static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 {
     assert(c->n_tri <= c->n_edges);
@@ -280,7 +285,7 @@ static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 }
 
 #ifndef NDEBUG
-/* Every triangle of the cavity belongs to whoever changes it now, and to nobody else. */
+/* Checks that no other call has changed a triangle of the cavity. */
 static bool claim(const struct tri_cavity *c)
 {
     for (int32_t i = 0; i < c->n_tri; i++)
@@ -298,9 +303,9 @@ static bool is_inside(const struct tri_mesh *mesh, tri_triangle_id t, struct tri
     return tri_cross(a, b) >= 0 && tri_cross(b, c) >= 0 && tri_cross(c, a) >= 0;
 }
 
-/* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
- * regions stay where they are. Where rounding hides that, to the one behind its edge. Looks among the cavity's
- * triangles first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
+/* If regions meet without a subsegment between them, assigns each new triangle the region in which its centroid lies,
+ * so regions keep their places. If rounding prevents this, the triangle keeps the region inside its edge. Searches the
+ * cavity's triangles first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
 static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
@@ -325,8 +330,8 @@ void tri_cavity_take(struct tri_cavity *c, struct tri_mesh *mesh)
     take_numbers(c, mesh);
 }
 
-/* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
- * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+/* Makes the triangles of edges first .. end - 1. Links each one to its neighbours in the cycle of all edges, without
+ * special cases. If the chain is not closed, the caller corrects the links at its ends. */
 static void fill_chain(const struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
 {
     tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
@@ -365,7 +370,7 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
         if (first == end)
             continue;
         fill_chain(c, mesh, v, first, end);
-        /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
+        /* Seen from the left, the chain runs from v[1] to v[0]; seen from the right, from v[0] to v[1]. */
         tri_sub_id at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
         mesh->tri[c->tri[first]].n[2] = ~at_start;
         mesh->sub[at_start].side[side] = tri_code(c->tri[first], 2);

@@ -1,4 +1,4 @@
-/* What one call of refinement may touch while others work beside it. */
+/* The part of a mesh that one call of refinement may change while other calls run in parallel. */
 #ifndef TRIANGLE_MESH_FENCE_H
 #define TRIANGLE_MESH_FENCE_H
 
@@ -19,14 +19,15 @@ static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q
     return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
 }
 
-/* Proof at run time that calls which work on one mesh at once change different triangles: each marks what it changes.
- * For asserts in debug builds; a call without owners changes what it likes. One for each call; they share the marks. */
+/* A run-time check that calls working on one mesh in parallel change different triangles: each call marks the triangles
+ * that it changes. Used by asserts in debug builds. A call without owners may change any triangle. Each call has its
+ * own struct; all share the marks. */
 struct tri_owners {
-    int32_t *mark; /* [triangles] who changed a triangle since the marks were cleared; 0: nobody */
-    int32_t self;  /* > 0: who makes this call */
+    int32_t *mark; /* [triangles] number of the call that changed it; 0: unchanged since the marks were cleared */
+    int32_t self;  /* number of this call, > 0 */
 };
 
-/* False: somebody else has changed the triangle. */
+/* Marks the triangle as changed by this call. Returns false if another call has changed it. */
 static inline bool tri_owners_claim(const struct tri_owners *owners, tri_triangle_id triangle)
 {
     if (!owners || owners->mark[triangle] == owners->self)

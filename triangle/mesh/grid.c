@@ -1,7 +1,7 @@
-/* A grid of struct tri_mesh.
+/* A grid made from a struct tri_mesh.
  *
- * Vertex v of the mesh is point number_of(v), v itself unless vertices are left out; the node amid edge i comes behind
- * all of them. */
+ * Vertex v of the mesh is point number_of(v), which is v unless vertices are left out. The midpoints of the edges
+ * follow the vertices, in the order of the edges. */
 #include "triangle/mesh/grid.h"
 
 #include <assert.h>
@@ -13,10 +13,10 @@
 struct source {
     const struct tri_mesh *mesh;
     const struct tri_pslg *pslg;
-    struct tri_edge_list edges; /* where they are asked for */
-    struct tri_used used;       /* vertex and number are NULL: all vertices are points */
-    int32_t n_vertices;         /* points that are vertices */
-    int32_t *loose;             /* [n_loose] segments of the input that are no edges of the mesh */
+    struct tri_edge_list edges; /* empty unless edges or midpoints are requested */
+    struct tri_used used;       /* vertex and number are NULL if all vertices are points */
+    int32_t n_vertices;         /* number of points that are vertices */
+    int32_t *loose;             /* [n_loose] input segments that are not edges of the mesh */
     int32_t n_loose;
     int n_nodes;
 };
@@ -79,7 +79,7 @@ static void neighbors(const void *user, int64_t i, int64_t neighbors[3])
         neighbors[k] = across[k] == TRI_NONE ? -1 : across[k];
 }
 
-/* The mesh's, then the loose ones. */
+/* The subsegments of the mesh, then the loose segments. */
 static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
 {
     const struct source *s = user;
@@ -138,7 +138,7 @@ struct tri_grid tri_grid_voronoi(const struct tri_grid *grid)
                              .attribute = voronoi_attribute, .edge = voronoi_edge};
 }
 
-/* --- all together */
+/* --- the whole grid */
 
 /* Every boundary edge is a subsegment. */
 static int64_t count_edges(const struct tri_mesh *mesh)
@@ -149,7 +149,7 @@ static int64_t count_edges(const struct tri_mesh *mesh)
     return (3 * (int64_t)mesh->n_triangles + boundary) / 2;
 }
 
-/* Segments of the input that are no edges of the mesh, but whose ends are points. */
+/* Lists the input segments that are not edges of the mesh but whose ends are points of the grid. */
 static enum tri_status list_loose(struct source *s, const bool *is_edge, struct tri_error *error)
 {
     int32_t n = is_edge ? s->pslg->n_segments : 0;
@@ -203,7 +203,7 @@ enum tri_status tri_grid_make(struct tri_grid *grid, const struct tri_grid_optio
     struct source *s = calloc(1, sizeof *s);
     *grid = (struct tri_grid){0};
     if (!s)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to output a mesh");
     s->mesh = options->mesh;
     s->pslg = options->pslg;
     s->n_nodes = options->second_order ? 6 : 3;

@@ -1,9 +1,10 @@
-/* Walks first: each from where the last one ended, the points in order along a Hilbert curve. In triangulations whose
- * triangles are long and thin no order of the points keeps walks short; so they may take as many steps in all as there
- * are triangles, and the points that are left are found by a plane sweep.
+/* First, each point is located by a walk that starts where the last walk ended, with the points sorted along a Hilbert
+ * curve. If triangles are long and thin, no order of the points keeps walks short. So the total number of steps is
+ * limited to the number of triangles, and the remaining points are located by a plane sweep.
  *
- * THE PLANE SWEEP goes over the subsegments from left to right, their order along the sweep line in a tree (Shamos &
- * Hoey 1976). They do not cross, so the one below a point, and the triangle above that, tell the face. */
+ * THE PLANE SWEEP visits the subsegments from left to right and keeps their order along the sweep line in a tree
+ * (Shamos & Hoey 1976). Subsegments do not cross, so the triangle above the nearest subsegment below a point lies in
+ * the point's face. */
 #include "triangle/mesh/locate.h"
 
 #include <assert.h>
@@ -18,13 +19,13 @@ enum { NOT_FOUND = -2 };
 
 struct walk {
     const struct tri_mesh *mesh;
-    tri_triangle_id at; /* the triangle where the last one ended */
-    int64_t steps; /* that may still be made */
+    tri_triangle_id at; /* the triangle where the last walk ended */
+    int64_t steps; /* steps left */
 };
 
-/* One step of a visibility walk to q: the triangle across an edge of t that q lies behind, TRI_NONE where that is the
- * boundary, t itself where it holds q. In a constrained triangulation such a walk may go in circles: so the edge that
- * is tried first turns with the number of the step. */
+/* One step of a visibility walk to q. Returns the triangle across an edge of t that separates t from q, TRI_NONE if
+ * that edge is on the boundary, or t if t holds q. In a constrained triangulation such a walk may cycle, so the first
+ * edge to be tested changes with the step number. */
 static tri_triangle_id step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q)
 {
     assert(step >= 0 && tri_is_live(&mesh->tri[t]));
@@ -39,8 +40,8 @@ static tri_triangle_id step_towards(const struct tri_mesh *mesh, tri_triangle_id
     return t;
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull (it is convex: whoever leaves it does not come back), NOT_FOUND
- * where the steps did not suffice. */
+/* Returns the triangle that holds q, TRI_NONE if q is outside the hull (the hull is convex, so a walk that leaves it
+ * cannot return), or NOT_FOUND if the step limit was reached. */
 static tri_triangle_id walk_to(struct walk *w, struct tri_point q)
 {
     for (; w->steps > 0; w->steps--) {
@@ -63,11 +64,11 @@ struct sweep {
     const struct tri_mesh *mesh;
     struct event *event; /* [2 * n_subs + points] */
     int32_t n_events;
-    int32_t *start; /* [n_subs] work space: subsegments that start at one place */
+    int32_t *start; /* [n_subs] work space: subsegments that start at one point */
     struct tri_order order;
 };
 
-/* At one place the subsegments come first. */
+/* At the same point, subsegments come before query points. */
 static int compare_events(const void *a, const void *b)
 {
     const struct event *e = a, *f = b;
@@ -75,7 +76,7 @@ static int compare_events(const void *a, const void *b)
     return order != 0 ? order : (e->code < f->code) - (e->code > f->code);
 }
 
-/* 0 or 1: which end of the subsegment is the left one? */
+/* Returns which end of the subsegment is the left one: 0 or 1. */
 static int left_end(const struct tri_mesh *mesh, tri_sub_id s)
 {
     const tri_vertex_id *v = mesh->sub[s].v;
@@ -87,7 +88,7 @@ static struct tri_point end_of(const struct tri_mesh *mesh, tri_sub_id s, int ri
     return mesh->xy[mesh->sub[s].v[left_end(mesh, s) ^ right]];
 }
 
-/* > 0: q lies above subsegment s, 0: on its line. */
+/* > 0: q lies above subsegment s; 0: q lies on its line. */
 static double height_over(const struct tri_mesh *mesh, tri_sub_id s, struct tri_point q)
 {
     assert(s >= 0 && s < mesh->n_subs);
@@ -105,19 +106,19 @@ static bool is_below(const void *place, tri_sub_id s)
     return height_over(at->mesh, s, at->q) > 0;
 }
 
-/* The highest subsegment below q, or TRI_NONE. */
+/* Returns the highest subsegment below q, or TRI_NONE. */
 static tri_sub_id find_below(const struct sweep *w, struct tri_point q)
 {
     return tri_order_find(&w->order, is_below, &(struct place){w->mesh, q});
 }
 
-/* Of two subsegments that start at one place: does a lie below b? */
+/* Does a lie below b? Both start at the same point. */
 static bool is_lower(const void *mesh, tri_sub_id a, tri_sub_id b)
 {
     return height_over(mesh, a, end_of(mesh, b, 1)) > 0;
 }
 
-/* What happens at one place: subsegments end, others start. */
+/* Handles the events at one point: removes subsegments that end there and inserts those that start there. */
 static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
 {
     int32_t n_start = 0;
@@ -137,11 +138,11 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
     }
 }
 
-/* The triangle above subsegment s; where q lies on it, and there is none, the one below. */
+/* Returns the triangle above subsegment s. If q lies on s and there is no triangle above, returns the one below. */
 static tri_triangle_id face_at(const struct tri_mesh *mesh, tri_sub_id s, bool is_on)
 {
     const tri_halfedge *side = mesh->sub[s].side;
-    int above = left_end(mesh, s); /* left of its direction, if it runs to the right */
+    int above = left_end(mesh, s); /* the left side, if the subsegment runs to the right */
     tri_halfedge code = side[above] != TRI_NONE || !is_on ? side[above] : side[1 - above];
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
@@ -197,12 +198,12 @@ static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_p
     free(w.event);
     free(w.start);
     tri_order_clear(&w.order);
-    return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
 }
 
-/* --- both */
+/* --- walks and sweep combined */
 
-/* Puts the numbers of the points in range first, along the curve; returns how many they are. */
+/* Lists the points within the range of the predicates in `order`, sorted along the curve. Returns their number. */
 static int32_t arrange(const struct tri_point *points, int32_t n, int32_t *order, uint64_t *scratch)
 {
     int32_t n_order = 0;
@@ -222,7 +223,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
     if (room) {
         struct walk w = {mesh, 0, mesh->n_triangles};
         for (int32_t i = 0; i < n; i++)
-            faces[i] = TRI_NONE; /* what is out of range is outside */
+            faces[i] = TRI_NONE; /* points out of range are outside */
         int32_t n_order = mesh->n_triangles > 0 ? arrange(points, n, order, scratch) : 0;
         for (int32_t i = 0; i < n_order; i++) {
             faces[order[i]] = walk_to(&w, points[order[i]]);
@@ -232,7 +233,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
     free(order);
     free(scratch);
     if (!room)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
     return all ? TRI_OK : sweep_for(mesh, points, n, faces, error);
 }
 

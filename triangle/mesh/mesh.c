@@ -1,8 +1,8 @@
-/* Storage of the mesh: growth, links, reordering, compaction, and the check of its invariants.
+/* Storage of the mesh: growth, links, reordering, compaction, and validation.
  *
- * Growth is by half, by less where memory is bounded: as a storage does it or through realloc, by which the C library
- * moves pages of large arrays rather than bytes, so that the peak stays near what is used. The triangle array starts at
- * a cache line, so that a triangle never straddles two. */
+ * Arrays grow by half, or by less if memory is bounded. They grow in the mesh's storage or by realloc. For large arrays
+ * the C library remaps pages instead of copying bytes, so the peak stays near the memory in use. The triangle array is
+ * aligned to a cache line, so that no triangle straddles two lines. */
 #include "triangle/mesh/mesh.h"
 
 #include <assert.h>
@@ -18,7 +18,7 @@ enum { LINE = 64 };
 
 _Static_assert(sizeof(struct tri_triangle) == 32, "two triangles fill a cache line");
 
-/* The raw block of an aligned array lies one pointer before it. */
+/* A pointer to the allocated block is stored just before the aligned array. */
 static void *raw_of(void *aligned)
 {
     void *raw = NULL;
@@ -43,8 +43,8 @@ static void *grow_aligned(void *old, size_t used, size_t bytes)
     return aligned;
 }
 
-/* The capacity to take for `need` items: more by a share of what there is or, where `tight`, is needed, at least 64; 0
- * where need is above the limit. */
+/* Returns the new capacity for `need` items: half more than the current capacity or, if `tight`, a sixteenth more than
+ * needed; at least 64. Returns 0 if `need` is above the limit. */
 static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit, bool tight)
 {
     if (need > limit)
@@ -58,7 +58,7 @@ static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit, bool
 /* One of the arrays that grow with refinement. */
 struct array {
     void *at;
-    size_t item; /* bytes */
+    size_t item; /* bytes per item */
     int32_t n, capacity;
 };
 
@@ -110,7 +110,7 @@ static bool grow_array(struct tri_mesh *mesh, enum tri_array which, int32_t capa
     return fresh || a.item == 0;
 }
 
-/* Of the arrays that grow with refinement, with room for more. */
+/* Returns the bytes allocated for the arrays that grow with refinement. */
 static size_t bytes_reserved(const struct tri_mesh *mesh)
 {
     size_t bytes = 0;
@@ -191,7 +191,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
     *mesh = (struct tri_mesh){0};
 }
 
-/* The counts and capacities of one mesh are those of another. */
+/* Copies counts and capacities from one mesh to another. */
 static void take_counts(struct tri_mesh *to, const struct tri_mesh *from)
 {
     to->n_vertices = from->n_vertices;
@@ -223,7 +223,7 @@ static bool fill_array(struct tri_mesh *to, enum tri_array which, const void *fr
     return true;
 }
 
-/* *to, which is empty, receives the arrays of *from, in this storage. */
+/* Copies the arrays of *from into the empty mesh *to, allocated in the given storage. */
 static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const struct tri_storage *storage)
 {
     bool memory = true;
@@ -269,7 +269,7 @@ enum tri_status tri_mesh_have_lengths(struct tri_mesh *mesh, bool has, struct tr
     return no_memory(error, "lengths", mesh->n_vertices);
 }
 
-/* The arrays that one count belongs to. */
+/* Arrays that have the same number of items. */
 struct group {
     enum tri_array first, last;
     int32_t *capacity;
@@ -277,7 +277,7 @@ struct group {
     const char *items;
 };
 
-/* Where memory is bounded they grow by less rather than leave. */
+/* If memory is bounded, first tries a smaller capacity before it moves the arrays to another storage. */
 static enum tri_status choose_capacity(struct tri_mesh *mesh, const struct group *g, int64_t need, int32_t *capacity,
                                        struct tri_error *error)
 {
@@ -346,7 +346,7 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
     return status || parents <= mesh->parent_capacity ? status : reserve_parents(mesh, parents, error);
 }
 
-/* Of all coordinates the largest. */
+/* Returns the largest absolute coordinate. */
 static double size_of(const struct tri_pslg *pslg)
 {
     double size = 0;
@@ -355,16 +355,16 @@ static double size_of(const struct tri_pslg *pslg)
     return size;
 }
 
-/* 1 for coordinates of ordinary size, else the power of two that brings the largest one to the order of 1, or as near
- * to that as leaves all coordinates of a mesh (triangle/geometry/point.h) doubles of the caller's, too: they are
- * multiples of 2^-268 units, and doubles of 2^-1074. */
+/* Returns 1 for coordinates of ordinary size. Otherwise returns a power of two that scales the largest coordinate to
+ * about 1, subject to one limit: all coordinates of the mesh (triangle/geometry/point.h) must be doubles in the
+ * caller's units as well. The former are multiples of 2^-268 units, the latter multiples of 2^-1074. */
 static double unit_for(double size)
 {
     int exponent;
     if (size == 0 || (size >= 0x1p-100 && size <= TRI_LARGEST_COORDINATE / 2))
         return 1;
     frexp(size, &exponent);
-    return ldexp(1, exponent > -805 ? exponent - 1 : -806); /* the largest is in [1, 2) then, or below */
+    return ldexp(1, exponent > -805 ? exponent - 1 : -806); /* scales the largest coordinate into [1, 2) or below */
 }
 
 struct taking {
@@ -418,9 +418,9 @@ tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_verte
     return s;
 }
 
-/* One array of items on the way to their new places. */
+/* State while one array of items is reordered. */
 struct gathering {
-    char *array; /* from where the first item goes */
+    char *array; /* where the first item goes */
     char *scratch;
     const char *origin; /* item 0 */
     size_t item;
@@ -428,7 +428,7 @@ struct gathering {
     int32_t n;
 };
 
-/* Inlined where the length is known, so that a copy is no call. */
+/* Inlined for known sizes, so that each copy is a plain assignment instead of a call. */
 static inline void gather_items(struct gathering g, struct tri_range range, size_t item)
 {
     for (int32_t i = range.first; i < range.last; i++)

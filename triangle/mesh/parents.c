@@ -1,4 +1,4 @@
-/* The parents at each vertex, listed once (struct tri_incidence), and how two of them meet. */
+/* Lists the parents at each vertex (struct tri_incidence), and classifies how two parents meet. */
 #include "triangle/mesh/parents.h"
 
 #include <assert.h>
@@ -10,7 +10,7 @@
 #include "triangle/mesh/cavity.h"
 #include "triangle/tunables.h"
 
-/* Where more parents than this end at a vertex, they are listed in order of direction. */
+/* If more parents than this end at a vertex, they are sorted by direction. */
 enum { MANY_PARENTS = 16 };
 
 bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
@@ -19,7 +19,7 @@ bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b
     return a_down != b_down ? b_down : tri_orient2d(o, a, b) > 0;
 }
 
-/* The end of a parent that is not vertex v. */
+/* Returns the end of the parent that is not vertex v. */
 static struct tri_point far_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
 {
     const int32_t *ends = mesh->parents[parent].v;
@@ -41,7 +41,7 @@ static bool is_before(const void *context, int32_t a, int32_t b)
 void tri_incidence_fill(struct tri_mesh *mesh)
 {
     size_t n = (size_t)mesh->incidence.n_vertices;
-    int32_t *fill = mesh->incidence.start + 1; /* shifted by one, so that filling leaves the starts in place */
+    int32_t *fill = mesh->incidence.start + 1; /* shifted by one, so that filling leaves the final starts in place */
     memset(mesh->incidence.start, 0, (n + 2) * sizeof *mesh->incidence.start);
     for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
@@ -75,7 +75,7 @@ enum tri_status tri_incidence_list(struct tri_mesh *mesh, struct tri_error *erro
     return TRI_OK;
 }
 
-/* The parents that vertex v lies on: its own, or those that end there. */
+/* Returns the parents that vertex v lies on: the one it was inserted on, or those that end at v. */
 static const tri_parent_id *parents_of(const struct tri_mesh *mesh, tri_vertex_id v, int32_t *n)
 {
     *n = 0;
@@ -89,8 +89,8 @@ static const tri_parent_id *parents_of(const struct tri_mesh *mesh, tri_vertex_i
     return mesh->incidence.parent + mesh->incidence.start[v];
 }
 
-/* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
- * on which q lies, up to rounding, is among them, and those on either side of it. */
+/* Selects four of the n parents at a hub, which are sorted by direction: the two before the direction to q and the two
+ * after it. A parent on which q lies, up to rounding, is among them, and so are its neighbours on both sides. */
 static int list_neighbours(const struct tri_mesh *mesh, tri_vertex_id hub, const tri_parent_id *incident, int32_t n,
                            struct tri_point q, tri_parent_id *beside)
 {
@@ -127,8 +127,7 @@ bool tri_is_on_parent(const struct tri_mesh *mesh, tri_vertex_id v)
     return n > 0;
 }
 
-/* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a
- * wheel. */
+/* Does a parent join the two vertices? Searches the shorter of their lists, since one vertex may be a hub. */
 static bool are_joined(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
 {
     int32_t nu, nv;
@@ -153,7 +152,7 @@ tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, 
     return TRI_NONE;
 }
 
-/* The angle between the legs oa and ob. */
+/* Classifies the angle between the legs oa and ob. */
 static enum tri_corner corner_at(struct tri_point o, struct tri_point a, struct tri_point b)
 {
     double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;

@@ -1,15 +1,15 @@
-/* What every PSLG must fulfil before anything else looks at it. */
+/* Basic checks of a PSLG, made before any other use. */
 #include "triangle/mesh/pslg.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_RECORDS = 1 << 28 }; /* of any kind: four times that is still an int32_t's range of indices */
+enum { MOST_RECORDS = 1 << 28 }; /* of each kind: four times this number still fits an int32_t index */
 
 static enum tri_status check_count(const char *what, int32_t n, const void *array, struct tri_error *error)
 {
     if (n < 0 || (n > 0 && !array))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %d of them, without an array", what, (int)n);
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the number of %s is %d, without an array", what, (int)n);
     if (n > MOST_RECORDS)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%d %s are more than one mesh can hold", (int)n, what);
     return TRI_OK;

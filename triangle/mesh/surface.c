@@ -1,9 +1,9 @@
-/* A vertex is located by a walk from the triangle that held the one before. If that meets the boundary, a search
- * through a tree of boxes finds the triangle: they are sorted along a Hilbert curve, and the two parts of a box hold
- * the halves of its range of triangles.
+/* Each vertex is located by a walk from the triangle that held the previous one. If the walk meets the boundary, a tree
+ * of bounding boxes is searched instead. The triangles are sorted along a Hilbert curve, and the two children of a box
+ * hold the two halves of its range of triangles.
  *
- * INVARIANT. The result does not depend on the way: triangles share no more than edges, on which all at them give the
- * same bits, and the search alone decides on what lies outside by rounding. */
+ * INVARIANT. The result does not depend on the method: triangles share only edges, on which both sides compute
+ * identical bits, and only the box search decides for vertices that rounding has placed outside. */
 #include "triangle/mesh/surface.h"
 
 #include <stdlib.h>
@@ -16,15 +16,16 @@
 enum { FEW = 8, AT_ONCE = 4096, SIDES = 4 };
 
 struct box {
-    double most[SIDES]; /* x, y, -x, -y of the triangles in it, and of vertices beside them by rounding */
+    double most[SIDES]; /* upper bounds of x, y, -x, -y of its triangles, enlarged by the rounding of vertices */
 };
 
 struct tri_surface {
-    struct tri_mesh mesh;   /* its arrays alone */
-    tri_triangle_id *order; /* [mesh.n_triangles] along the curve */
-    struct box *box;        /* [1] the whole, [2 i] and [2 i + 1] the parts of [i]; FEW triangles or less have none */
-    bool has_chains;        /* parents may be chains of several subsegments */
-    int32_t n_settled;      /* the first vertices, which have their attributes */
+    struct tri_mesh mesh;   /* only its growing arrays are set */
+    tri_triangle_id *order; /* [mesh.n_triangles] triangles sorted along the curve */
+    struct box *box;        /* [1] is the root, [2 i] and [2 i + 1] the children of [i]; leaves hold at most FEW
+                               triangles */
+    bool has_chains;        /* parents may consist of several subsegments */
+    int32_t n_settled;      /* number of leading vertices whose attributes are set */
 };
 
 static double within(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
@@ -45,8 +46,8 @@ void tri_interpolate_edge(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
     }
 }
 
-/* Twice the area of the triangle that p makes with each edge. Rounding changes it by at most 2^-50 of *all, the sum of
- * the sizes of the products. */
+/* Computes twice the area of the triangle that p forms with each edge. The rounding error is at most 2^-50 of *all, the
+ * sum of the absolute values of the products. */
 static void areas_by_products(const struct tri_mesh *mesh, const tri_vertex_id v[3], struct tri_point p, double area[3],
                               double *all)
 {
@@ -59,8 +60,9 @@ static void areas_by_products(const struct tri_mesh *mesh, const tri_vertex_id v
     }
 }
 
-/* On the plane through the corners of a triangle. Weights are areas. In thin triangles and next to edges each is right
- * to its last places, however small it is. On an edge the triangles on both sides do the same. */
+/* Evaluates at p the linear function through the corners of a triangle. The weights are areas. In thin triangles and
+ * near edges each weight is accurate to its last places, however small it is. On an edge, the triangles on both sides
+ * compute the same value. */
 static void interpolate(const struct tri_mesh *mesh, const tri_vertex_id corners[3], struct tri_point p, double *to)
 {
     const int first = corners[1] < corners[0] && corners[1] < corners[2] ? 1 : corners[2] < corners[0] ? 2 : 0;
@@ -86,7 +88,7 @@ static void interpolate(const struct tri_mesh *mesh, const tri_vertex_id corners
     }
 }
 
-/* Vertices keep within 2^-49 of the coordinates to their segments (docs/guarantees.md). */
+/* The bounds are enlarged because a vertex may lie off its segment by 2^-49 of its coordinates (docs/guarantees.md). */
 static void make_box(const struct tri_surface *s, size_t i, int32_t first, int32_t end)
 {
     double *most = s->box[i].most;
@@ -107,7 +109,7 @@ static void make_box(const struct tri_surface *s, size_t i, int32_t first, int32
     }
 }
 
-/* The boxes are the room to sort in before they are made. */
+/* The array of boxes serves as scratch space for the sort before the boxes are made. */
 enum tri_status tri_surface_keep(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     if (mesh->n_attributes == 0 || mesh->surface || mesh->n_triangles == 0)
@@ -146,14 +148,14 @@ void tri_surface_free(struct tri_surface *s)
     free(s);
 }
 
-/* --- locating */
+/* --- point location */
 
 struct search {
     const struct tri_surface *surface;
     struct tri_point p;
-    tri_parent_id parent; /* not below 0: only triangles with an edge on it count */
-    tri_triangle_id best; /* the one that p is least outside of */
-    double depth;         /* how far, below 0; HUGE_VAL: it holds p */
+    tri_parent_id parent; /* >= 0: consider only triangles with an edge on this parent */
+    tri_triangle_id best; /* the triangle that holds p or is nearest to it */
+    double depth;         /* minus the distance of p outside `best`; HUGE_VAL: p is inside */
 };
 
 static void try_triangle(struct search *search, tri_triangle_id t)
@@ -213,7 +215,7 @@ void tri_surface_set(const struct tri_mesh *mesh, const tri_vertex_id *vertices,
     }
 }
 
-/* Part by part along a curve, since vertices may have any order. */
+/* Processes blocks of vertices, each sorted along a curve, because vertices may be in any order. */
 static void settle_share(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;

@@ -1,4 +1,4 @@
-/* Edges are told once by a rule that looks at two triangles alone: the one with the lower number tells. */
+/* Each edge is listed once, by a rule that looks at its two triangles only: the one with the lower number lists it. */
 #include "triangle/mesh/topology.h"
 
 #include <assert.h>
@@ -22,7 +22,7 @@ void tri_neighbors(const struct tri_mesh *mesh, tri_triangle_id t, tri_triangle_
     }
 }
 
-/* Does this triangle come first at the edge? `other` is the edge seen from beyond. */
+/* Does this half-edge list the edge? `other` is the half-edge on the other side. */
 static bool is_first(tri_halfedge code, tri_halfedge other) { return other == TRI_NONE || other > code; }
 
 static int32_t count_edges(const struct tri_mesh *mesh)
@@ -96,7 +96,7 @@ struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, tri_halfedge code)
     return (struct tri_blend){{p.x * mesh->unit, p.y * mesh->unit}, {ends[0], ends[1], ends[0]}, {0.5, 0}};
 }
 
-/* The orientation predicate approximates the area well even where plain arithmetic has lost it. */
+/* Uses the orientation predicate for the area, because it stays accurate for nearly flat triangles. */
 struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, tri_triangle_id t)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
@@ -181,9 +181,9 @@ void tri_used_free(struct tri_used *used)
     *used = (struct tri_used){0};
 }
 
-/* One pass over the triangles for each question.
+/* Counts and shapes, each by one pass over the triangles.
  *
- * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as
+ * Extremes are kept as squares and cosines, and converted to lengths and degrees once at the end. The cosine falls as
  * the angle grows, so the smallest angle has the largest cosine. */
 
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
@@ -196,7 +196,7 @@ struct usage {
     _Atomic(bool) *used; /* [n_vertices] */
 };
 
-/* Threads that meet at a vertex say the same. */
+/* Several threads may store to one vertex; all store the same value. */
 static void note_corners(void *context, size_t share)
 {
     const struct usage *u = context;
@@ -239,13 +239,13 @@ void tri_count_refined(struct tri_counts *counts, const struct tri_mesh *mesh, i
     counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
 }
 
-/* Extremes in the mesh's units: least, greatest. */
+/* Extremes in the mesh's units: [0] least, [1] greatest. */
 struct extremes {
     double area2[2], length2[2];
-    double total_area2; /* sums of shares, added in their order: the same for any number of threads */
+    double total_area2; /* sums of shares are added in order, so the result does not depend on the number of threads */
     double least_altitude2, greatest_aspect;
-    double least_sine2;  /* squared sine of the smallest angle, at most 60 degrees, so that the sine tells all */
-    double least_cosine; /* of the largest angle, at least 60 degrees */
+    double least_sine2;  /* squared sine of the smallest angle; unambiguous, since that angle is at most 60 degrees */
+    double least_cosine; /* cosine of the largest angle, which is at least 60 degrees */
 };
 
 static void widen(double range[2], double value)
@@ -254,7 +254,7 @@ static void widen(double range[2], double value)
     range[1] = value > range[1] ? value : range[1];
 }
 
-/* Limits rise, or fall; so a bin is the number of limits passed, counted without a branch. */
+/* Limits are monotone, so the bin is the number of limits passed, counted without branches. */
 static int aspect_bin(double aspect)
 {
     int bin = 0;
@@ -304,7 +304,7 @@ static void convert(struct tri_shapes *shapes, const struct extremes *x, double 
     shapes->largest_angle = DEGREES * acos(fmax(x->least_cosine, -1));
 }
 
-/* A piece of the mesh and what was found in it. */
+/* Results for one share of the triangles. */
 struct tally {
     struct tri_shapes shapes;
     struct extremes extremes;
@@ -355,7 +355,7 @@ void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, 
     if (mesh->n_triangles == 0)
         return;
     for (int k = 0; k < TRI_ANGLE_BINS; k++)
-        s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
+        s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common and must be exact */
     size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(executor, shares, measure_share, &s);
     for (size_t i = 1; i < shares; i++)

@@ -1,5 +1,5 @@
-/* Numbers to and from the bytes of binary files, which are little-endian whatever the machine: the same mesh, the same
- * bytes. */
+/* Conversion of numbers to and from the bytes of binary files, which are little-endian on every machine. So the same
+ * mesh gives the same bytes. */
 #ifndef TRIANGLE_TEXT_BINARY_H
 #define TRIANGLE_TEXT_BINARY_H
 

@@ -1,11 +1,12 @@
-/* Chains of boundary edges.
+/* Finds the chains of boundary edges.
  *
- * Edges of one triangle are listed with the triangle on their left, sorted by their first node, with the markers of the
- * segments they are; of segments with the same ends the last one counts. They are among the segments, in every mesh:
- * one pass over the triangles tells which sides of segments have one.
+ * The sides of segments are listed with their markers and sorted by their first node; if segments have the same ends,
+ * the last one counts. In every mesh all boundary edges are segments, so one pass over the triangles finds the sides
+ * that have a triangle. A boundary edge has its triangle on the left.
  *
- * At every node as many of them arrive as leave; so a walk along unused edges ends where it began: a loop. Where loops
- * touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker changes. */
+ * At every node as many boundary edges arrive as leave, so a walk along unused edges returns to its start and forms a
+ * loop. At a node shared by several loops, the walk takes the first edge that leaves. A loop is cut at changes of the
+ * marker. */
 #include "triangle/text/boundary.h"
 
 #include <assert.h>
@@ -14,15 +15,15 @@
 struct side {
     int64_t from, to, segment;
     int32_t marker;
-    bool used;     /* by a triangle, while segments are told from the boundary; then by a loop */
+    bool used;     /* has a triangle; later, used by a loop */
     bool boundary;
 };
 
 struct builder {
     const struct tri_grid *grid;
-    struct side *sides; /* [n], by from and to */
+    struct side *sides; /* [n] sorted by from and to */
     int64_t n;
-    int64_t *loop;      /* [n] the sides of the loop that is walked */
+    int64_t *loop;      /* [n] the sides of the current loop */
     struct tri_boundary *boundary;
     int64_t n_nodes;
 };
@@ -35,7 +36,7 @@ static int compare(const void *left, const void *right)
     return a->to != b->to ? (a->to > b->to) - (a->to < b->to) : (a->segment < b->segment) - (a->segment > b->segment);
 }
 
-/* The first side that is not before (from, to). */
+/* Returns the first side that is not before (from, to). */
 static int64_t find(const struct builder *b, int64_t from, int64_t to)
 {
     const struct side wanted = {.from = from, .to = to, .segment = INT64_MAX};
@@ -55,7 +56,7 @@ static bool has_side(const struct builder *b, int64_t i, int64_t from, int64_t t
     return i < b->n && b->sides[i].from == from && b->sides[i].to == to;
 }
 
-/* Which sides of segments have a triangle: `used`. on_segment: a byte for each point. */
+/* Sets `used` for sides of segments that have a triangle. on_segment: one byte per point. */
 static void use_sides(struct builder *b, const char *on_segment)
 {
     for (int64_t t = 0; t < b->grid->n_triangles; t++) {
@@ -70,7 +71,7 @@ static void use_sides(struct builder *b, const char *on_segment)
     }
 }
 
-/* Only sides with a triangle, and none on the other side, stay. */
+/* Keeps only the sides with a triangle whose other side has none. */
 static void keep_boundary(struct builder *b)
 {
     int64_t n = 0;
@@ -87,7 +88,7 @@ static void keep_boundary(struct builder *b)
     b->n = n;
 }
 
-/* False: no memory. */
+/* Lists the boundary edges in b->sides. Returns false if out of memory. */
 static bool list_sides(struct builder *b)
 {
     char *on_segment = calloc((size_t)b->grid->n_points + 1, 1);
@@ -109,7 +110,7 @@ static bool list_sides(struct builder *b)
     return true;
 }
 
-/* An unused side that leaves the node; -1: none. */
+/* Returns an unused side that leaves the node; -1: none. */
 static int64_t next_side(const struct builder *b, int64_t node)
 {
     for (int64_t i = find(b, node, INT64_MIN); i < b->n && b->sides[i].from == node; i++)
@@ -129,7 +130,7 @@ static int64_t walk(struct builder *b, int64_t side)
     return n;
 }
 
-/* Twice the area within, from its first node, so that no large numbers cancel. */
+/* Returns twice the area inside the loop. Coordinates are relative to its first node to avoid cancellation. */
 static double area_of(const struct builder *b, int64_t n)
 {
     struct tri_grid_point origin, p, q;
@@ -144,7 +145,7 @@ static double area_of(const struct builder *b, int64_t n)
     return area2;
 }
 
-/* Where a loop of n sides may be cut: behind a side with another marker; n: nowhere. */
+/* Returns where a loop of n sides can be cut: after a side with a different marker; n: nowhere. */
 static int64_t first_cut(const struct builder *b, int64_t n)
 {
     for (int64_t i = 0; i < n; i++)

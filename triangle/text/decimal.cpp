@@ -1,11 +1,11 @@
-/* Numbers to text and back, over the C++17 library's charconv, which C has no counterpart of.
+/* Conversion between numbers and text, based on charconv of the C++17 library; C has no equivalent.
  *
- * Reading is std::from_chars (libstdc++ 12 or later: earlier ones go through strtod). Printing has a fast path of its
- * own, since std::to_chars takes 85 ns for 17 digits: one 64 x 128 bit product with a tabulated power of ten yields
- * them, and a bound on its error says whether they are certainly the rounded ones. Where they are not, the exact
- * routine of the library decides, so the fast path can only be fast or absent, never wrong. The scheme of fast digits
- * with a proof or a refusal is that of Loitsch, "Printing floating-point numbers quickly and accurately with integers"
- * (PLDI 2010), reduced to the one precision that files have; the theorem stands at seventeen_digits. */
+ * Reading uses std::from_chars (libstdc++ 12 or later: earlier versions call strtod). Printing has its own fast path,
+ * because std::to_chars takes 85 ns for 17 digits: one 64 x 128 bit product with a tabulated power of ten yields the
+ * digits, and an error bound shows whether they are correctly rounded. If this is not certain, the exact routine of the
+ * library is used, so the fast path never prints a wrong digit. The scheme is that of Loitsch, "Printing floating-point
+ * numbers quickly and accurately with integers" (PLDI 2010), reduced to 17 digits; the theorem is at
+ * seventeen_digits. */
 #include "triangle/text/decimal.h"
 
 #include <cassert>
@@ -25,7 +25,7 @@ const char digit_pairs[] = "0001020304050607080910111213141516171819202122232425
 
 void store_pair(char *at, uint32_t pair) { std::memcpy(at, digit_pairs + 2 * pair, 2); }
 
-/* Eight digits, leading zeros included; n < 10^8. */
+/* Stores eight digits, including leading zeros; n < 10^8. */
 void store_eight(char *at, uint32_t n)
 {
     const uint32_t high = n / 10000, low = n % 10000;
@@ -35,7 +35,7 @@ void store_eight(char *at, uint32_t n)
     store_pair(at + 6, low % 100);
 }
 
-/* Digits of n without leading zeros, ending right before `end`. Returns their beginning. */
+/* Stores the digits of n without leading zeros, ending just before `end`. Returns their start. */
 char *store_backwards(char *end, uint64_t n)
 {
     while (n >= 100) {
@@ -66,12 +66,12 @@ char *print_unsigned(char *at, uint64_t n)
     return end;
 }
 
-/* libc++ before LLVM 20 has std::from_chars for integers alone, and std::to_chars brings 100 kB of tables. */
+/* libc++ before LLVM 20 has std::from_chars for integers only, and its std::to_chars adds 100 kB of tables. */
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000
 #define PTRIANGLE_NO_CHARCONV
 #endif
 
-/* The exact routine that every doubtful case falls back on. */
+/* Prints exactly; used whenever the fast path is not certain. */
 char *print_exactly(char *at, double value)
 {
 #ifdef PTRIANGLE_NO_CHARCONV
@@ -95,10 +95,10 @@ struct power {
 
 constexpr int min_power = -292, max_power = 324;
 
-/* floor(log2(10^k)); checked against the powers themselves when the table is made. */
+/* floor(log2(10^k)); checked against the exact powers when the table is made. */
 constexpr int floor_log2_10(int k) { return static_cast<int>((k * 1741647LL) >> 19); }
 
-/* A 256-bit mantissa with its top bit set, limbs from the least significant. */
+/* A 256-bit mantissa with its top bit set; limbs start with the least significant. */
 struct mantissa {
     uint64_t limb[4];
     int log2; /* floor(log2(value)) */
@@ -113,7 +113,7 @@ constexpr mantissa shifted_left(mantissa x)
     return x;
 }
 
-/* x * 10, cut off: the three or four bits that leave at the top come back as the exponent. */
+/* Returns x * 10, truncated. The product is shifted right by three or four bits, which are added to the exponent. */
 constexpr mantissa times_ten(const mantissa &x)
 {
     uint64_t product[5] = {};
@@ -131,7 +131,7 @@ constexpr mantissa times_ten(const mantissa &x)
     return y;
 }
 
-/* x / 10, cut off. */
+/* Returns x / 10, truncated. */
 constexpr mantissa over_ten(const mantissa &x)
 {
     mantissa y = {{}, x.log2};
@@ -151,8 +151,8 @@ struct power_table {
     bool exponents_agree = true;
 };
 
-/* Each of the at most 324 steps cuts off less than 2^-251 of the value: less than 2^-242 in all, 2^-114 of g's last
- * bit. */
+/* Computes the table. Each of the at most 324 steps truncates less than 2^-251 of the value: less than 2^-242 in total,
+ * which is 2^-114 of g's last bit. */
 constexpr power_table make_powers()
 {
     power_table table;
@@ -178,10 +178,10 @@ struct scaled {
     uint64_t whole, fraction;
 };
 
-/* m * 2^e * 10^k as a whole number and 64 bits of fraction f. With g from the table, the product m * g is cut off by
- * less than 1 (lower half of it) and short by less than m * (1 + 2^-100) / 2^64 <= 1 + 2^-100 (g) in units of 2^64; a
- * unit is at most 1/8 of a bit of f here, since the shift is at least 3; f itself is cut off by less than 1. So the
- * true fraction lies in [f, f + 1.26). */
+/* Returns m * 2^e * 10^k as a whole number and 64 bits of fraction f. Errors, with g from the table: truncating the
+ * lower half of m * g loses less than 1, and the error of g makes it too small by less than m * (1 + 2^-100) / 2^64 <=
+ * 1 + 2^-100, in units of 2^64. Such a unit is at most 1/8 of a bit of f, since the shift is at least 3. Truncating f
+ * loses less than 1. So the true fraction lies in [f, f + 1.26). */
 scaled scale(uint64_t m, int e, int k)
 {
     const power &g = powers.of[k - min_power];
@@ -193,15 +193,16 @@ scaled scale(uint64_t m, int e, int k)
 }
 
 struct decimal {
-    uint64_t digits; /* seventeen of them: [10^16, 10^17); 0: not decided */
+    uint64_t digits; /* seventeen digits: [10^16, 10^17); 0: undecided */
     int exponent;    /* value = d.dddd * 10^exponent */
 };
 
-/* The digits of a normal value, given as significand in [2^52, 2^53) times 2^(exponent - 52).
+/* Returns the digits of a normal value, given as a significand in [2^52, 2^53) times 2^(exponent - 52).
  *
- * Theorem: they are those of the correctly rounded value. x = value * 10^k is short by less than 1.26 * 2^-64 (scale),
- * so its side of the midpoint between two integers is known unless f, its fraction, is 2^63 - 1 or 2^63; there (exact
- * ties among them) nothing is decided. If x was taken for less than 10^17 but is not, it rounds to 10^17 either way. */
+ * Theorem: they are those of the correctly rounded value. The computed x = value * 10^k is too small by less than 1.26
+ * * 2^-64 (scale). So its side of the midpoint between two integers is certain, unless its fraction f is 2^63 - 1 or
+ * 2^63. In that case, which includes exact ties, the result is undecided. If x seems less than 10^17 but is not, it
+ * rounds to 10^17 either way. */
 decimal seventeen_digits(uint64_t significand, int exponent)
 {
     const uint64_t m = significand << 11;
@@ -220,7 +221,7 @@ decimal seventeen_digits(uint64_t significand, int exponent)
     return digits == ten_17 ? decimal{ten_16, ten + 1} : decimal{digits, ten};
 }
 
-/* Number of digits left of 17 when final zeros are dropped. */
+/* Returns how many of the 17 digits remain without trailing zeros. */
 size_t significant(const char *digits)
 {
     size_t n = 17;
@@ -240,7 +241,7 @@ char *print_exponent(char *at, int exponent)
     return at + 2;
 }
 
-/* Lays out digits as %g does. Copies are of fixed length, hence TRI_REAL_ROOM. */
+/* Formats the digits like %g. Copies have a fixed length, hence TRI_REAL_ROOM. */
 char *print_decimal(char *at, const decimal &d)
 {
     char digits[24] = {};
@@ -292,7 +293,7 @@ char *print_positive(char *at, double value) { return print_exactly(at, value); 
 
 #endif
 
-/* std::from_chars, or its stand-in. */
+/* Result of std::from_chars or its replacement. */
 struct scanned {
     const char *ptr;
     std::errc ec;
@@ -300,9 +301,9 @@ struct scanned {
 
 #ifdef PTRIANGLE_NO_CHARCONV
 
-/* By strtod, which rounds correctly in the C libraries that libc++ comes with. It wants a final 0 and the locale's
- * point, so the number is copied. It skips blanks and accepts a +, which from_chars does not. Out of range it gives an
- * infinity or a zero: that is what callers make of it. */
+/* Uses strtod, which rounds correctly in the C libraries that come with libc++. strtod needs a final 0 and the decimal
+ * point of the locale, so the number is copied. It skips blanks and accepts a +, unlike from_chars. Out of range it
+ * returns an infinity or zero, as the callers would. */
 scanned scan_double(const char *at, const char *end, double *value, bool hexadecimal)
 {
     static const char of_numbers[] = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.+-()_";
@@ -354,8 +355,8 @@ bool is_hexadecimal(const char *at, const char *end)
     return end - at > 2 && at[0] == '0' && (at[1] | 0x20) == 'x' && digit_value(at[2]) < 16;
 }
 
-/* What from_chars leaves to its caller: whether a decimal number out of range is too large or too small. That is the
- * sign of the sum of its exponent and the position of its first significant digit. */
+/* Decides whether a decimal number out of range is too large or too small, which from_chars does not report. This is
+ * the sign of the sum of its exponent and the position of its first significant digit. */
 bool is_too_large(const char *at, const char *end)
 {
     int64_t position = 0, exponent = 0;
@@ -388,7 +389,7 @@ const char *scan_hexadecimal(const char *at, const char *end, double *value)
     return result.ptr;
 }
 
-/* The number behind the sign. */
+/* Reads the number after the sign. */
 const char *scan_unsigned_real(const char *at, const char *end, double *value)
 {
     if (is_hexadecimal(at, end))
@@ -399,16 +400,16 @@ const char *scan_unsigned_real(const char *at, const char *end, double *value)
     return result.ptr;
 }
 
-/* Adds a digit, base <= 16; sticks at the largest value. */
+/* Appends a digit, base <= 16; saturates at the largest value. */
 uint64_t with_digit(uint64_t value, uint64_t base, uint64_t digit)
 {
-    if (value < 1ULL << 60) /* nearly always, and without a division */
+    if (value < 1ULL << 60) /* by far the most common case; needs no division */
         return value * base + digit;
     const uint64_t limit = std::numeric_limits<uint64_t>::max();
     return value > (limit - digit) / base ? limit : value * base + digit;
 }
 
-/* Sign and size as the nearest int64_t. */
+/* Returns the nearest int64_t for a sign and an absolute value. */
 int64_t with_sign(uint64_t size, bool negative)
 {
     const uint64_t limit = static_cast<uint64_t>(std::numeric_limits<int64_t>::max());
@@ -451,7 +452,7 @@ const char *tri_scan_real(const char *at, const char *end, double *value)
         return at;
     if (*at != '-' && *at != '+')
         return scan_unsigned_real(at, end, value);
-    if (end - at < 2 || at[1] == '-') /* from_chars would take a second sign */
+    if (end - at < 2 || at[1] == '-') /* from_chars would accept a second sign */
         return at;
     const char *const stop = scan_unsigned_real(at + 1, end, value);
     if (*at == '-')

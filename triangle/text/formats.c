@@ -1,4 +1,4 @@
-/* Which writer and reader a name asks for. */
+/* Selects a writer and reader by the ending of a file name. */
 #include "triangle/text/formats.h"
 
 #include <stddef.h>
@@ -22,9 +22,9 @@ const struct tri_format *tri_format_of(const char *name)
     return NULL;
 }
 
-/* --- names that are no formats */
+/* --- names with other suffixes */
 
-/* Where the suffix begins, with its dot; NULL: there is none. */
+/* Returns the suffix of a name, including its dot; NULL: there is none. */
 static const char *suffix_of(const char *name)
 {
     const char *last = name + tri_path_folder_length(name), *dot = strrchr(last, '.');

@@ -1,17 +1,16 @@
-/* Gmsh's mesh format 4.1, binary (.msh).
+/* Writes Gmsh's mesh format 4.1, binary (.msh); see the Gmsh reference manual, "MSH file format".
  *
- * Triangles lie on a surface for each value of their first attribute, segments on a curve for each marker; where
- * that value is a whole number above 0 it is also the physical tag, by which solvers know regions and boundaries.
- * Others get tags above these, since some readers want a tag for each or for none. The exact values are data of
- * their own: "marker" and "attribute_0" and so on, of nodes and elements. Nodes are numbered from 1 as they are,
- * elements from 1 as they stand in the file, since some readers rely on that. Sections have text around them and
- * numbers in bytes in them: sizes and tags of nodes and elements are 64 bits wide, those in data 32. (Gmsh reference
- * manual, "MSH file format".)
+ * There is one surface for each value of the first attribute of triangles, and one curve for each marker of segments. A
+ * value that is a whole number above 0 is also the physical tag, by which solvers identify regions and boundaries.
+ * Other values get tags above these, because some readers require a tag for all or for none. The exact values are
+ * stored as data of nodes and elements: "marker", "attribute_0" and so on. Nodes are numbered from 1 in their order,
+ * elements from 1 in file order, since some readers rely on that. Sections are binary with text around them: sizes and
+ * tags of nodes and elements are 64 bits wide, tags in data sections 32.
  *
- * The file of a part has the nodes and elements of that part, by the tags that they have in a file of all. Entities are
- * those of all, too; behind them come partitioned ones: surfaces and curves of the part, and for each interface (nodes
- * that this part shares with the same others) a curve without elements, child of the surface on which the file of all
- * has its nodes. Their tags are the same in all parts. */
+ * The file of a part has the nodes and elements of the part, with their tags of the whole mesh. All entities of the
+ * whole mesh are listed, followed by partitioned entities: surfaces and curves of the part, and for each interface
+ * (nodes shared with the same other parts) a curve without elements, child of the surface to which the whole mesh
+ * assigns its nodes. Their tags are the same in all parts. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,14 +24,14 @@
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9 };
 enum { ENTITY_BYTES = 96 };
 
-/* Groups of surfaces or curves. */
+/* The groups of surfaces, or of curves. */
 struct groups {
     struct tri_grouping all;
-    int n;                               /* of them that are entities */
+    int n;                               /* number of groups that are entities */
     int32_t dimension;
     int32_t physical[TRI_MOST_GROUPS];   /* tags; 0: none */
-    int64_t first[TRI_MOST_GROUPS + 1];  /* what of them goes into the file, group by group, counted as in `place` */
-    const int64_t *place;                /* in the grouping; NULL: these are the places themselves */
+    int64_t first[TRI_MOST_GROUPS + 1];  /* ranges of the group members in this file, as indices into `place` */
+    const int64_t *place;                /* positions in the grouping; NULL: the indices themselves */
 };
 
 struct gmsh {
@@ -40,18 +39,18 @@ struct gmsh {
     struct tri_output *output;
     const struct tri_executor *executor;
     struct tri_error *error;
-    enum tri_status status;        /* of what has been put so far */
+    enum tri_status status;        /* of the first write that failed */
     struct groups surfaces, curves;
     double low[2], high[2];
-    const struct tri_parts *parts; /* NULL: there are none */
+    const struct tri_parts *parts; /* NULL: the mesh is not divided */
     int part;
-    int64_t n_nodes;               /* in the file */
-    int64_t n_inner;               /* nodes that no other part has */
-    int64_t *border;               /* [n_nodes - n_inner] the others */
+    int64_t n_nodes;               /* number of nodes in the file */
+    int64_t n_inner;               /* number of nodes that no other part has */
+    int64_t *border;               /* [n_nodes - n_inner] the other nodes */
     int32_t k;                     /* column of a data section, or MARKER */
 };
 
-/* --- what is in the file */
+/* --- contents of the file */
 
 static int64_t node_at(const struct gmsh *g, int64_t i)
 {
@@ -61,7 +60,7 @@ static int64_t node_at(const struct gmsh *g, int64_t i)
     return i < g->n_inner ? g->parts->inner[g->parts->first_inner[g->part] + i] : g->border[i - g->n_inner];
 }
 
-/* The place of an element in its grouping. */
+/* Returns the position of an element in its grouping. */
 static int64_t place_at(const struct groups *groups, int64_t i) { return groups->place ? groups->place[i] : i; }
 
 static int64_t size_of(const struct groups *groups, int k) { return groups->first[k + 1] - groups->first[k]; }
@@ -75,7 +74,8 @@ static int count_blocks(const struct groups *groups)
     return n;
 }
 
-/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. NULL: each is its own. */
+/* Returns the first of the ascending positions at .. end - 1 that is not below the bound; end: none. place == NULL:
+ * each position is its index. */
 static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t bound)
 {
     while (at < end) {
@@ -88,7 +88,8 @@ static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t
     return at;
 }
 
-/* Places begin .. end - 1 of a list of the parts, or, where that is NULL, of all; they ascend, as groups do. */
+/* Selects entries begin .. end - 1 of a list of positions, or, if it is NULL, of all elements. They ascend, as do
+ * groups. */
 static void choose(struct groups *groups, const int64_t *place, int64_t begin, int64_t end)
 {
     groups->place = place;
@@ -121,7 +122,7 @@ static enum tri_status choose_nodes(struct gmsh *g)
     return TRI_OK;
 }
 
-/* Nothing, once something has failed. */
+/* Writes bytes, unless an earlier write failed. */
 static void put_bytes(struct gmsh *g, const char *bytes, const char *end)
 {
     if (!g->status)
@@ -160,7 +161,7 @@ static char *put_box(const struct gmsh *g, char *at)
     return tri_put_f64(tri_put_f64(tri_put_f64(at, g->high[0]), g->high[1]), 0);
 }
 
-/* Its box, its physical tag if any, and no parts of a boundary. */
+/* Stores the bounding box, the physical tag if any, and an empty list of boundary entities. */
 static char *put_shape(const struct gmsh *g, char *at, int32_t physical)
 {
     at = tri_put_u64(put_box(g, at), physical > 0);
@@ -190,14 +191,15 @@ static void put_entities(struct gmsh *g, const struct groups *groups)
     }
 }
 
-/* Numbers of points, curves, surfaces and volumes. */
+/* Writes the numbers of points, curves, surfaces and volumes. */
 static void put_numbers(struct gmsh *g, int64_t curves, int64_t surfaces)
 {
     char bytes[32], *at = tri_put_i64(tri_put_u64(bytes, 0), curves);
     put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
 }
 
-/* "marker_1", "region_2.5": dimension, tag and name of each group, without blanks, which some readers do not take. */
+/* Writes dimension, tag and name of each group, such as "marker_1" or "region_2.5". Names have no blanks, which some
+ * readers reject. */
 static void put_names(struct gmsh *g, const struct groups *groups, const char *what)
 {
     for (int k = 0; k < groups->n; k++) {
@@ -209,7 +211,7 @@ static void put_names(struct gmsh *g, const struct groups *groups, const char *w
     }
 }
 
-/* By these solvers find regions and boundaries. */
+/* Solvers find regions and boundaries by these names. */
 static void write_names(struct gmsh *g)
 {
     char head[48];
@@ -231,19 +233,19 @@ static void write_entities(struct gmsh *g)
 
 /* --- partitioned entities */
 
-/* The tag of a group's entity, or of the part of it that is in this file: behind those of all. */
+/* Returns the tag of a group's entity, or of its part in this file. The latter follow those of the whole mesh. */
 static int32_t tag_of(const struct gmsh *g, const struct groups *groups, int k)
 {
     return (g->parts ? (g->part + 1) * groups->n : 0) + k + 1;
 }
 
-/* Behind those of the curves. */
+/* The tags of interfaces follow those of the curves. */
 static int32_t interface_tag(const struct gmsh *g, int64_t i)
 {
     return (int32_t)((g->parts->n + 1) * g->curves.n + i + 1);
 }
 
-/* There is one in any case: nodes lie on it. */
+/* Returns the first surface with triangles, to which the nodes are assigned; 0 if there is none. */
 static int first_surface(const struct gmsh *g)
 {
     for (int k = 0; k < g->surfaces.n; k++)
@@ -295,7 +297,7 @@ static int64_t count_interfaces(const struct gmsh *g)
     return n;
 }
 
-/* No ghosts. */
+/* Writes the partitioned entities; there are no ghost entities. */
 static void write_pieces(struct gmsh *g)
 {
     char bytes[16];
@@ -312,7 +314,7 @@ static void write_pieces(struct gmsh *g)
     put_text(g, "\n$EndPartitionedEntities\n");
 }
 
-/* --- nodes: all on the first surface, but for interfaces */
+/* --- nodes: all on the first surface, except those of interfaces */
 
 static char *tag_row(const void *user, int64_t i, char *at)
 {
@@ -328,21 +330,22 @@ static char *place_row(const void *user, int64_t i, char *at)
     return tri_put_f64(tri_put_f64(tri_put_f64(at, point.at[0]), point.at[1]), 0);
 }
 
-/* The head of $Nodes and $Elements: blocks, items, least and greatest tag. */
+/* Writes the head of $Nodes or $Elements: number of blocks and items, least and greatest tag. */
 static void put_totals(struct gmsh *g, int64_t blocks, int64_t n, int64_t least, int64_t greatest)
 {
     char bytes[32], *at = tri_put_i64(tri_put_i64(bytes, blocks), n);
     put_bytes(g, bytes, tri_put_i64(tri_put_i64(at, least), greatest));
 }
 
-/* The head of a block: dimension and tag of the entity, a number that means something else in each section, items. */
+/* Writes the head of a block: dimension and tag of the entity, a number whose meaning depends on the section, number of
+ * items. */
 static void put_block(struct gmsh *g, int32_t dimension, int32_t tag, int32_t kind, int64_t n)
 {
     char bytes[20], *at = tri_put_i32(tri_put_i32(tri_put_i32(bytes, dimension), tag), kind);
     put_bytes(g, bytes, tri_put_i64(at, n));
 }
 
-/* Nodes first .. first + n - 1 of the file, without parameters. */
+/* Writes nodes first .. first + n - 1 of the file, without parametric coordinates. */
 static void write_node_block(struct gmsh *g, int32_t dimension, int32_t tag, int64_t first, int64_t n)
 {
     put_block(g, dimension, tag, 0, n);
@@ -362,7 +365,7 @@ static void write_node_blocks(struct gmsh *g)
     }
 }
 
-/* Inner nodes ascend. */
+/* Visits only the first and the last inner node, because inner nodes ascend. */
 static void put_node_totals(struct gmsh *g)
 {
     int64_t least = INT64_MAX, greatest = 0;
@@ -395,7 +398,7 @@ static int64_t item_at(const struct groups *groups, int64_t i)
     return tri_grouped(&groups->all, place_at(groups, i));
 }
 
-/* Gmsh has the nodes amid edges in the order of the edges from corner to corner. */
+/* Gmsh orders the midpoints of edges by edges: first to second corner, second to third, third to first. */
 static char *triangle_row(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 1, 2, 5, 3, 4};
@@ -427,7 +430,7 @@ static void write_blocks(struct gmsh *g, const struct groups *groups, int32_t ki
     }
 }
 
-/* Tags ascend, triangles before segments. */
+/* Tags ascend; triangles come before segments. */
 static void put_element_totals(struct gmsh *g)
 {
     const struct groups *both[] = {&g->surfaces, &g->curves};
@@ -453,7 +456,7 @@ static void write_elements(struct gmsh *g)
     put_text(g, "\n$EndElements\n");
 }
 
-/* --- data: a tag and a number; triangles have no marker, and segments no attributes: 0 */
+/* --- data: a tag and a number; markers of triangles and attributes of segments are 0 */
 
 enum { MARKER = -1 };
 
@@ -488,7 +491,7 @@ static char *segment_datum(const void *user, int64_t i, char *at)
     return put_datum(at, tag, g->k == MARKER ? tri_segment_group(g->grid, item_at(&g->curves, i)) : 0);
 }
 
-/* Without time: one step, one component. */
+/* Writes the head of a data section: one time step, one component. */
 static void begin_data(struct gmsh *g, const char *section, int64_t n)
 {
     char head[192], name[32] = "marker";
@@ -517,7 +520,7 @@ static void write_all_data(struct gmsh *g)
 {
     const struct tri_grid *grid = g->grid;
     if (grid->n_points > INT32_MAX || grid->n_triangles + grid->n_segments > INT32_MAX)
-        return; /* the format has no room for their tags */
+        return; /* the format uses 32-bit tags here */
     g->k = MARKER;
     if (grid->has_markers) {
         write_node_data(g);
@@ -535,7 +538,7 @@ static enum tri_status write_all(struct gmsh *g)
 {
     char one[4];
     put_text(g, "$MeshFormat\n4.1 1 8\n");
-    put_bytes(g, one, tri_put_i32(one, 1)); /* tells the order of bytes */
+    put_bytes(g, one, tri_put_i32(one, 1)); /* shows the byte order */
     put_text(g, "\n$EndMeshFormat\n");
     write_names(g);
     write_entities(g);

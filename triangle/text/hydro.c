@@ -1,11 +1,11 @@
-/* Two text formats of hydrodynamic models, which number from 1 and have the boundary as strings of nodes: SMS (.2dm)
- * and ADCIRC (fort.14).
+/* Writes two text formats of hydrodynamic models, which number from 1 and store the boundary as strings of nodes: SMS
+ * (.2dm) and ADCIRC (fort.14).
  *
- * Both take the first attribute of a point for its elevation or depth. In .2dm a triangle's material is its first
- * attribute, if that is a whole number above 0, else 1; a node string carries its marker behind the last node. In
- * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on
- * loops round the mesh, islands round holes, of the type that a marker of 10 to 29 says. (xmswiki.com, "2D Mesh Files
- * *.2dm"; adcirc.org, "ADCIRC Grid and Boundary Information File".) */
+ * In both, the first attribute of a point is its elevation or depth. In .2dm the material of a triangle is its first
+ * attribute if that is a whole number above 0, otherwise 1; a node string ends with its marker. In fort.14, boundary
+ * pieces with the marker TRI_OPEN_BOUNDARY are open boundaries, and all others are land: mainland on loops around the
+ * mesh, islands around holes. A marker from 10 to 29 selects the type. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org,
+ * "ADCIRC Grid and Boundary Information File".) */
 #include <string.h>
 
 #include "triangle/text/boundary.h"
@@ -21,8 +21,8 @@ struct hydro {
     const struct tri_executor *executor;
     struct tri_error *error;
     struct tri_boundary boundary;
-    const char *card;                       /* with which nodes begin */
-    const struct tri_boundary_piece *piece; /* whose rows are written */
+    const char *card;                       /* first word of a node line */
+    const struct tri_boundary_piece *piece; /* the piece being written */
 };
 
 static char *put_words(char *at, const char *text)
@@ -45,7 +45,7 @@ static enum tri_status put_rows(struct hydro *h, int64_t n, size_t bytes, tri_ro
     return tri_write_table(h->output, 0, n, bytes, row, h, h->executor, h->error);
 }
 
-/* Number, place, and the first attribute. */
+/* Number, coordinates, and the first attribute. */
 static char *node_row(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
@@ -70,7 +70,7 @@ static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), cons
 
 /* --- .2dm */
 
-/* The nodes of second-order triangles go round, beginning with a corner. */
+/* The nodes of second-order triangles go around the triangle, starting at a corner. */
 static char *element_card(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 5, 1, 3, 2, 4};
@@ -84,7 +84,7 @@ static char *element_card(const void *user, int64_t i, char *at)
     return put_words(put_integer(at, material > 0 ? material : 1), "\n");
 }
 
-/* Ten nodes a line; the last is negative. */
+/* Ten nodes per line; the last node is negative. */
 static char *string_card(const void *user, int64_t i, char *at)
 {
     const struct hydro *h = user;
@@ -131,7 +131,8 @@ static char *element_line(const void *user, int64_t i, char *at)
     return put_words(at, "\n");
 }
 
-/* Mainland 0 or island 1; 10 and 20 more with a marker of 10 to 29, and 12 or 22, a river, where that is the marker. */
+/* Returns the type of a land boundary: 0 for mainland, 1 for an island. Markers from 10 to 29 add 10 or 20; marker 12
+ * or 22, a river, is the type itself. */
 static int64_t land_type(const struct tri_boundary_piece *piece)
 {
     const int64_t tens = piece->marker >= 10 && piece->marker < 30 ? piece->marker / 10 * 10 : 0;
@@ -143,7 +144,7 @@ static bool is_open(const struct tri_boundary_piece *piece)
     return piece->outer && piece->marker == TRI_OPEN_BOUNDARY;
 }
 
-/* A loop round the mesh ends where it began; that an island does, its type says. */
+/* Number of nodes to write. A closed loop around the mesh repeats its first node; islands are closed by their type. */
 static int64_t shown_nodes(const struct tri_boundary_piece *piece)
 {
     return piece->n + (piece->closed && piece->outer);

@@ -1,6 +1,7 @@
 /* The layouts of Triangle's files, row by row.
  *
- * A row begins with the number of its item, four wide; widths and blanks are those of Triangle, byte for byte. */
+ * A row begins with the number of its item, four characters wide. Widths and blanks are those of Triangle, byte for
+ * byte. */
 #include <string.h>
 
 #include "triangle/text/decimal.h"
@@ -8,12 +9,12 @@
 
 _Static_assert((int)TRI_ROW_SLACK >= (int)TRI_REAL_ROOM, "a row may end with a real");
 
-/* Longest texts of an integer and of a real, with the blanks before them. */
+/* Longest texts of an integer and of a real, including the blanks before them. */
 enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4 };
 
 enum { MOST_BLANKS = 4 };
 
-/* Stores MOST_BLANKS of them, of which n count: a copy of fixed length is no call. */
+/* Stores MOST_BLANKS blanks, of which n are kept: a copy of fixed length needs no call. */
 static char *put_blanks(char *at, int n)
 {
     memset(at, ' ', MOST_BLANKS);
@@ -38,7 +39,7 @@ static char *put_end(char *at)
     return at + 1;
 }
 
-/* -1 means nothing in every base. */
+/* -1 means "none" for every base. */
 static int64_t shown(const struct tri_grid *grid, int64_t index) { return index < 0 ? index : index + grid->base; }
 
 static char *put_number(char *at, const struct tri_grid *grid, int64_t i)
@@ -46,7 +47,7 @@ static char *put_number(char *at, const struct tri_grid *grid, int64_t i)
     return tri_print_integer(at, i + grid->base, 4);
 }
 
-/* A line of counts, the first of which is that of the rows behind it. */
+/* Writes a line of counts, the first of which is the number of rows, and then the rows. */
 static enum tri_status write_table(struct tri_output *output, const struct tri_grid *grid, const int64_t *counts,
                                    int n_counts, size_t max_row_bytes, tri_row_call *row,
                                    const struct tri_executor *executor, struct tri_error *error)
@@ -121,7 +122,7 @@ enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *
     return write_table(output, grid, counts, 3, ele_bytes(grid), ele_row, executor, error);
 }
 
-/* --- .poly: no vertices; segments, holes, regions */
+/* --- .poly without vertices: segments, holes, regions */
 
 static char *segment_row(const void *user, int64_t i, char *at)
 {
@@ -142,7 +143,7 @@ enum tri_status tri_write_segment_rows(struct tri_output *output, const struct t
     return tri_write_table(output, first, n, SEGMENT_BYTES, segment_row, grid, executor, error);
 }
 
-/* Holes or regions: so many reals in each row. */
+/* Holes or regions: n_reals numbers per row. */
 struct sites {
     int32_t base;
     int64_t n_reals;
@@ -248,7 +249,7 @@ enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_grid
     return write_table(output, grid, counts, 2, 4 * INTEGER_BYTES + 1, neigh_row, executor, error);
 }
 
-/* --- .off: always counts from 0, has corners alone, and z, which is 0 */
+/* --- .off: always counts from 0, has corners only, and z = 0 */
 
 static char *off_vertex_row(const void *user, int64_t i, char *at)
 {

@@ -13,7 +13,7 @@ char *tri_name(const char *stem, size_t length, const char *ending)
     return name;
 }
 
-/* Whatever the locale. */
+/* Lower case, independent of the locale. */
 static char small(char c) { return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); }
 
 bool tri_name_ends(const char *name, const char *ending)

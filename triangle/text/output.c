@@ -1,7 +1,7 @@
-/* Safe outputs: temporary files, locks, names.
+/* Safe output: temporary files, locks, final names.
  *
- * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
- * be replaced gets a second name, by which it can be put back. */
+ * All or nothing: after every file has been closed, only renames can fail. Before the first rename, each file to be
+ * replaced gets a second name, from which it can be restored. */
 #include "triangle/text/output.h"
 
 #include <assert.h>
@@ -15,13 +15,13 @@
 
 enum {
     MAX_NAMES = 1000, /* temporary names to try */
-    HOST_BYTES = 100, /* of the host's name in a temporary name, at most */
-    NAME_BYTES = 200  /* of a temporary name: file systems allow 255 */
+    HOST_BYTES = 100, /* longest host name in a temporary name */
+    NAME_BYTES = 200  /* longest temporary name; file systems allow 255 bytes */
 };
 
 void tri_outputs_begin(struct tri_output_set *set) { *set = (struct tri_output_set){0}; }
 
-/* directory_of's directory followed by name; malloc'ed. */
+/* Returns the folder of the path directory_of followed by name; from malloc. */
 static char *beside(const char *directory_of, const char *name)
 {
     return tri_name(directory_of, tri_path_folder_length(directory_of), name);
@@ -37,7 +37,7 @@ static enum tri_status cannot_create(const struct tri_output *output, struct tri
 
 /* --- temporary files */
 
-/* ".tri-<host>-", with which the names of this host begin. */
+/* Stores ".tri-<host>-", the prefix of temporary names of this host. */
 static void put_prefix(char name[NAME_BYTES])
 {
     char host[HOST_BYTES];
@@ -48,8 +48,8 @@ static void put_prefix(char name[NAME_BYTES])
     snprintf(name, NAME_BYTES, ".tri-%s-", host);
 }
 
-/* A name for process and number i beside the path, malloc'ed. Short, since the path's own name may be as long as names
- * can be. */
+/* Returns a temporary name for this process and number i, in the folder of the path; from malloc. Does not contain the
+ * path's own name, which may have the maximum length already. */
 static char *temporary_name(const char *path, int i)
 {
     char name[NAME_BYTES];
@@ -59,7 +59,7 @@ static char *temporary_name(const char *path, int i)
     return beside(path, name);
 }
 
-/* The process in a name of this host; 0: another host's, or no name of a temporary file. */
+/* Returns the process number in a temporary name of this host; 0: another host, or not a temporary name. */
 static long process_of(const char *name, const char *prefix)
 {
     size_t length = strlen(prefix);
@@ -73,14 +73,15 @@ static long process_of(const char *name, const char *prefix)
     return number > 0 && strcmp(at + process + 1 + number, ".tmp") == 0 ? strtol(at, NULL, 10) : 0;
 }
 
-/* Temporary files in one folder. */
+/* State while leftover temporary files in one folder are removed. */
 struct leftovers {
     tri_file folder;
-    char prefix[NAME_BYTES]; /* of this host's */
+    char prefix[NAME_BYTES]; /* prefix of temporary names of this host */
 };
 
-/* Removes the file if its process is gone and nobody works on it. Who makes one looks, once he has the lock, whether it
- * is still there. A file of this process is never opened: to close it again would drop its lock. */
+/* Removes the file if its process no longer exists and no process holds its lock. (A process that creates a file
+ * checks, after locking it, that it still exists.) Files of this process are never opened, because closing one would
+ * drop its lock. */
 static bool remove_if_left(void *user, const char *name)
 {
     const struct leftovers *left = user;
@@ -102,7 +103,7 @@ static tri_file open_folder_of(const char *path)
     return folder;
 }
 
-/* Temporary files beside `path` whose processes are gone. */
+/* Removes temporary files in the folder of `path` whose processes no longer exist. */
 static void remove_left(const char *path)
 {
     struct leftovers left = {.folder = open_folder_of(path)};
@@ -121,19 +122,19 @@ static bool is_same_directory(const char *a, const char *b)
 static void tidy_up(const struct tri_output_set *set, const char *path)
 {
     for (int i = 0; i < set->n; i++)
-        if (is_same_directory(set->outputs[i].path, path)) /* done already */
+        if (is_same_directory(set->outputs[i].path, path)) /* done before */
             return;
     remove_left(path);
 }
 
-/* Is the file ours, and still there? Somebody who tidied up may have come between its making and its lock. */
+/* Locks a new file. Returns false if another process has locked or removed it since it was created. */
 static bool is_kept(tri_file file)
 {
     struct tri_file_facts facts;
     return tri_file_lock(file) != TRI_LOCKED_BY_ANOTHER && tri_file_look(file, &facts) && facts.names > 0;
 }
 
-/* The system decides between processes and threads that try the same name. */
+/* If several processes or threads try the same name, the system lets only one of them create it. */
 static enum tri_status create_temporary(struct tri_output_set *set, struct tri_output *output, struct tri_error *error)
 {
     for (int i = 0; i < MAX_NAMES; i++) {
@@ -160,7 +161,7 @@ static enum tri_status create_temporary(struct tri_output_set *set, struct tri_o
 
 /* --- opening */
 
-/* A device or a pipe: there is nothing to replace. */
+/* Opens a device or pipe, which is written directly. */
 static enum tri_status open_in_place(struct tri_output *output, struct tri_error *error)
 {
     do
@@ -173,10 +174,10 @@ static enum tri_status open_in_place(struct tri_output *output, struct tri_error
         return TRI_OK;
     (void)tri_file_close(output->file);
     output->file = TRI_NO_FILE;
-    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "has become another file since it was looked at");
+    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "was replaced by another file in the meantime");
 }
 
-/* Refuses what cannot become a file. */
+/* Rejects paths that cannot become a file. */
 static enum tri_status check_target(const struct tri_output *output, const struct tri_file_facts *old,
                                     struct tri_error *error)
 {
@@ -188,7 +189,7 @@ static enum tri_status check_target(const struct tri_output *output, const struc
     return old && !tri_path_allows(output->path, TRI_WRITABLE) ? cannot_create(output, error) : TRI_OK;
 }
 
-/* old: of the file at path; NULL: there is none. */
+/* old: facts about the file at path; NULL: there is none. */
 static struct tri_output_place place_of(const char *path, const struct tri_file_facts *old)
 {
     char folder[TRI_PATH];
@@ -217,7 +218,8 @@ bool tri_is_same_file(const char *a, const char *b)
     return is_same_place(&of_a, a, &of_b, b);
 }
 
-/* No two outputs are one file: the second would replace the first. The system is asked once for each, not for pairs. */
+/* Checks that no other output is the same file: the second would replace the first. Needs one system call per output,
+ * not per pair. */
 static enum tri_status check_others(const struct tri_output_set *set, const struct tri_output *output,
                                     struct tri_error *error)
 {
@@ -234,7 +236,7 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
     struct tri_file_facts old;
     const bool exists = tri_path_look(path, &old), replaces = exists && old.kind == TRI_REGULAR;
     output->path = !exists || replaces ? tri_path_resolve(path)
-                                       : beside("", path); /* /dev/stdout must not be followed */
+                                       : beside("", path); /* /dev/stdout must not be resolved */
     if (!output->path && errno == EPERM)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "is a link that another user made, which is not followed");
     if (!output->path)
@@ -255,7 +257,7 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
     return status;
 }
 
-/* Closing any opening of a file drops its lock: so this comes right before the other one is closed. */
+/* Closing any descriptor of a file drops the lock, so this is called just before the other one is closed. */
 static void close_direct(struct tri_output *output)
 {
     (void)tri_file_close(output->direct);
@@ -347,14 +349,13 @@ tri_file tri_output_direct(struct tri_output *output)
     return output->no_direct ? output->file : output->direct;
 }
 
-/* All that has been written is on the disk afterwards. Where there is no way to ask for it, nothing happens. */
+/* Waits until everything written is on the disk. Does nothing if the system cannot sync this file. */
 static enum tri_status sync_output(struct tri_output *output, struct tri_error *error)
 {
     return tri_output_conclude(output, tri_file_sync(output->file) ? 0 : errno, error);
 }
 
-/* Starts the writing of an open file to the disk, if the system has a call for that. Returns its bytes; 0: it is not
- * open. */
+/* Starts writing an open file to the disk, if the system has a call for that. Returns its size; 0: it is not open. */
 static uint64_t send_off(const struct tri_output *output)
 {
     struct tri_file_facts facts;
@@ -364,7 +365,7 @@ static uint64_t send_off(const struct tri_output *output)
     return facts.size;
 }
 
-/* In pieces, between which whoever asks for the end is heard. */
+/* Syncs in pieces, and checks between them for a request to stop. */
 static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_error *error)
 {
     enum { PIECE = 1 << 24 };
@@ -377,7 +378,7 @@ static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_erro
     return bytes > 0 ? sync_output(output, error) : TRI_OK;
 }
 
-/* All are sent off before one is waited for: so a journal takes in all of them at once. */
+/* Starts writing all files before waiting for one, so that a journaling file system commits all of them together. */
 enum tri_status tri_outputs_sync(struct tri_output_set *set, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -405,7 +406,8 @@ enum tri_status tri_output_write(struct tri_output *output, const char *data, si
 
 enum { SHIFT_BYTES = 1 << 20 };
 
-/* Forwards from the end, so that nothing is overwritten before it has been moved; backwards from the begin. */
+/* Moves bytes forwards starting from the end, or backwards starting from the beginning, so that nothing is overwritten
+ * before it has been moved. */
 static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
 {
     const uint64_t end = output->size;
@@ -452,9 +454,9 @@ static enum tri_status close_output(struct tri_output *output, struct tri_error 
     return close_file(output, error);
 }
 
-/* --- final names */
+/* --- renaming */
 
-/* A second name for the file that is going to be replaced, if there is one. */
+/* Gives the file to be replaced, if there is one, a second name. */
 static void keep_old(struct tri_output_set *set, struct tri_output *output)
 {
     for (int i = 0; output->temporary && !output->old && i < MAX_NAMES; i++) {
@@ -482,7 +484,7 @@ static enum tri_status rename_output(struct tri_output *output, struct tri_error
     return TRI_OK;
 }
 
-/* What stood under the name before stands there again: the old file, or none. */
+/* Restores what was under the name before: the old file, or none. */
 static void put_back(struct tri_output *output)
 {
     if (output->renamed && output->old && tri_path_rename(output->old, output->path)) {
@@ -493,7 +495,7 @@ static void put_back(struct tri_output *output)
     }
 }
 
-/* So the new name is on the disk. A folder that cannot be read is passed over. */
+/* Makes sure that the new name is on the disk. Ignores folders that cannot be opened. */
 static enum tri_status sync_folder(const struct tri_output *output, struct tri_error *error)
 {
     const tri_file folder = open_folder_of(output->path);
@@ -527,7 +529,7 @@ void tri_outputs_abort(struct tri_output_set *set)
     set->n = 0;
 }
 
-/* --- files that several processes write */
+/* --- files written by several processes */
 
 static bool put_words(char *at, size_t room, const char *text)
 {

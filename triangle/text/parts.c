@@ -1,9 +1,10 @@
-/* GROUPS. The values are listed in order, then the items are sorted by counting, so that each group keeps their order.
+/* GROUPS. The different values are listed in order, then the items are sorted by counting, so that they keep their
+ * order within a group.
  *
- * PARTS. A triangle lies where its centroid is; of equal places its number decides. The cut between the parts below k
- * and those from k on is kept as item k: a triangle finds its part by going down the bisections, halving what it may be
- * in. A segment is an edge of a triangle of each part that has one. So where only one part has both ends, it is that
- * one; else the triangles with such edges tell. */
+ * PARTS. A triangle is assigned by its centroid; for equal positions its number decides. The cut between parts below k
+ * and parts from k on is stored as cut k. The part of a triangle is found by descending the tree of bisections. A
+ * segment that is an edge could belong to the part of each of its triangles. If an end of the segment is used by one
+ * part only, this is the part; otherwise the triangles with that edge are searched. */
 #include "triangle/text/parts.h"
 
 #include <assert.h>
@@ -16,7 +17,7 @@
 
 /* --- groups */
 
-/* The first group whose value is not below. */
+/* Returns the first group whose value is not below `value`. */
 static int place_of(const struct tri_grouping *g, double value)
 {
     int low = 0, high = g->n;
@@ -30,7 +31,7 @@ static int place_of(const struct tri_grouping *g, double value)
     return low;
 }
 
-/* False: there are too many values, or one is not a number. */
+/* Adds a value. Returns false if there are too many values, or if it is NaN. */
 static bool count_value(struct tri_grouping *g, double value)
 {
     int k = place_of(g, value);
@@ -54,7 +55,7 @@ static void make_one(struct tri_grouping *g, int64_t n)
     g->first[1] = n;
 }
 
-/* From numbers of items in n groups, first[n + 1], to the place of the first in each. */
+/* Converts numbers of items in n groups, first[n + 1], to the position of the first item in each. */
 static void accumulate(int64_t *first, int n)
 {
     int64_t before = 0;
@@ -65,7 +66,7 @@ static void accumulate(int64_t *first, int n)
     }
 }
 
-/* Room for n items among the extras of a storage; NULL: malloc'ed. NULL and errno: there is none. */
+/* Allocates room for n items from a storage; NULL: from malloc. Returns NULL and sets errno if there is no room. */
 static void *find_room(const struct tri_storage *storage, int64_t n, size_t bytes)
 {
     const size_t all = (size_t)n * bytes;
@@ -133,7 +134,7 @@ double tri_segment_group(const struct tri_grid *grid, int64_t i)
 
 enum { MOST_SAMPLES = 1 << 18 };
 
-/* A point and a part that uses it; parts count from 1 while users are told from nobody. */
+/* A point and a part that uses it. Part numbers count from 1 here, so that 0 can mean "none". */
 struct use {
     int64_t point;
     int32_t part;
@@ -144,15 +145,15 @@ struct edge {
     int64_t segment;
 };
 
-/* Where a triangle lies. */
+/* Position of a triangle. */
 struct site {
     double at[2];
     int64_t triangle;
 };
 
-/* What lies before the site, along the axis, is on the side of the lower parts. */
+/* Triangles before the site, along the axis, belong to the lower parts. */
 struct cut {
-    int axis; /* -1: all is */
+    int axis; /* -1: all triangles do */
     struct site site;
 };
 
@@ -160,18 +161,18 @@ struct work {
     struct tri_parts *parts;
     const struct tri_grid *grid;
     struct site *sample;
-    struct cut cut[TRI_MOST_PARTS]; /* cut[k] between parts below k and from k on */
-    int16_t *part;         /* [n_triangles] of a triangle; they count from 1 */
-    int32_t *user;         /* [n_points] 0: nobody so far; k: part k; -k: several, k the last that was told of */
-    int32_t *segment_part; /* [n_segments] 0: not known yet */
-    struct use *use;       /* of points of several parts */
+    struct cut cut[TRI_MOST_PARTS]; /* cut[k] separates parts below k from those from k on */
+    int16_t *part;         /* [n_triangles] part of each triangle, from 1 */
+    int32_t *user;         /* [n_points] 0: no part so far; k: part k; -k: several parts, the last one noted is k */
+    int32_t *segment_part; /* [n_segments] 0: not assigned yet */
+    struct use *use;       /* uses of points that belong to several parts */
     int64_t n_uses, room;
-    struct edge *edge;     /* segments between shared points, by their ends */
+    struct edge *edge;     /* segments between shared points, sorted by their ends */
     size_t n_edges;
     bool no_memory;
 };
 
-/* --- cutting the plane */
+/* --- bisection */
 
 static int by_axis(int axis, const struct site *a, const struct site *b)
 {
@@ -184,7 +185,7 @@ static int by_axis(int axis, const struct site *a, const struct site *b)
 static int by_x(const void *a, const void *b) { return by_axis(0, a, b); }
 static int by_y(const void *a, const void *b) { return by_axis(1, a, b); }
 
-/* A third of each: a sum might be too large. */
+/* Adds a third of each coordinate, because the sum might overflow. */
 static struct site site_of(const struct work *w, int64_t t)
 {
     struct site site = {{0, 0}, t};
@@ -199,7 +200,7 @@ static struct site site_of(const struct work *w, int64_t t)
     return site;
 }
 
-/* The axis along which the sites lie farther apart. */
+/* Returns the axis along which the extent of the sites is larger. */
 static int longer_axis(const struct site *site, int64_t n)
 {
     double extent[2];
@@ -214,7 +215,7 @@ static int longer_axis(const struct site *site, int64_t n)
     return extent[1] > extent[0];
 }
 
-/* Cuts n sites into parts first .. first + n_parts - 1; no deeper than the logarithm of their number. */
+/* Divides n sites into parts first .. first + n_parts - 1. The depth of the recursion is the logarithm of n_parts. */
 static void bisect(struct work *w, struct site *site, int64_t n, int first, int n_parts)
 {
     const int lower = n_parts / 2;
@@ -262,7 +263,7 @@ static int part_at(const struct work *w, const struct site *site)
     return first;
 }
 
-/* --- who uses which point */
+/* --- parts of points */
 
 static void note(struct work *w, int64_t point, int32_t part)
 {
@@ -297,7 +298,7 @@ static bool use_corners(struct work *w)
     return !w->no_memory;
 }
 
-/* --- whose are segments */
+/* --- parts of segments */
 
 static int by_ends(const void *left, const void *right)
 {
@@ -318,7 +319,7 @@ static bool is_between_shared(const struct work *w, const int64_t ends[2])
     return w->user[ends[0]] < 0 && w->user[ends[1]] < 0;
 }
 
-/* Those with an inner point are its part's. */
+/* Assigns segments with an end in only one part to that part. */
 static void assign_plain(struct work *w)
 {
     for (int64_t s = 0; s < w->grid->n_segments; s++) {
@@ -345,7 +346,7 @@ static bool list_edges(struct work *w)
     return w->edge;
 }
 
-/* Segments with these ends, which a part has. */
+/* Assigns segments with these ends to a part, unless they have a lower one. */
 static void assign_edge(struct work *w, const int64_t ends[2], int32_t part)
 {
     const struct edge wanted = edge_of(ends[0], ends[1], 0);
@@ -375,7 +376,7 @@ static void assign_by_triangles(struct work *w)
     }
 }
 
-/* Those that are no edges have a part of one end; each part uses both ends of its segments. */
+/* Assigns segments that are not edges to a part of an end. Then each part uses both ends of its segments. */
 static void assign_loose(struct work *w)
 {
     for (int64_t s = 0; s < w->grid->n_segments; s++) {
@@ -403,13 +404,14 @@ static bool assign_segments(struct work *w)
 static int32_t part_of_triangle(const struct work *w, int64_t t) { return w->part[t]; }
 static int32_t part_of_segment(const struct work *w, int64_t s) { return w->segment_part[s]; }
 
-/* Of no triangle: the first part. 0: it is shared. */
+/* Points without triangles belong to the first part. Returns 0 for shared points. */
 static int32_t part_of_point(const struct work *w, int64_t i)
 {
     return w->user[i] == 0 ? 1 : w->user[i] > 0 ? w->user[i] : 0;
 }
 
-/* Items by part, each as its place in the grouping, ascending. part_of: 0, or the part that lists it. */
+/* Lists items by part, each as its position in the grouping, ascending. part_of returns the part that lists an item, or
+ * 0. */
 static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(const struct work *w, int64_t item),
                          const struct tri_grouping *groups, int64_t *list, int64_t *first)
 {
@@ -472,7 +474,7 @@ static void list_shared(struct work *w)
     p->first_shared[p->n_interfaces] = p->n_shared;
 }
 
-/* A point may have been noted more than once for a part. */
+/* Sorts the uses and removes duplicates: a point may have been noted several times for a part. */
 static void sort_uses(struct work *w)
 {
     int64_t n = 0;
@@ -500,7 +502,7 @@ static bool make_lists(struct work *w, const struct tri_grouping *surfaces, cons
     return true;
 }
 
-/* --- all together */
+/* --- the whole division */
 
 static enum tri_status get_room(struct work *w, struct tri_error *error)
 {

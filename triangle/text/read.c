@@ -1,7 +1,7 @@
-/* Reading .node, .poly, .ele and .area files: each is a sequence of headers and tables over triangle/text/text.h.
+/* Reads .node, .poly, .ele and .area files: each is a sequence of headers and tables, read by triangle/text/text.h.
  *
- * No array is allocated before the count in the header has been compared with the records that remain, so that a header
- * of a few bytes cannot ask for gigabytes. */
+ * Arrays are allocated only after the count in the header has been compared with the number of remaining records, so
+ * that a header of a few bytes cannot request gigabytes. */
 #include "triangle/text/read.h"
 
 #include <stdarg.h>
@@ -13,22 +13,22 @@
 
 enum {
     MAX_SEGMENTS = TRI_MAX_TRIANGLES,
-    FREE_ATTRIBUTES = 64 /* columns that a header may announce although no record has them */
+    FREE_ATTRIBUTES = 64 /* columns that a header may announce even if no record has them */
 };
 
-/* A file on its way into the caller's structs. */
+/* State of reading one file. */
 struct reader {
     const struct tri_read_options *options;
-    struct tri_pslg *pslg;         /* points, segments and so on go there, */
-    struct tri_elements *elements; /* triangles and their bounds there */
-    int32_t base, n_points;        /* what numbers count from, and how many points there are to name */
+    struct tri_pslg *pslg;         /* receives points, segments, holes and regions */
+    struct tri_elements *elements; /* receives triangles and their area bounds */
+    int32_t base, n_points;        /* first number in the file (0 or 1); number of points that may be referenced */
     struct tri_text text;
     struct tri_cursor cursor;
-    enum tri_status status;        /* after a failure nothing more is done */
+    enum tri_status status;        /* after a failure nothing more is read */
     struct tri_error *error;
 };
 
-/* At the line that was read last. */
+/* Reports an error at the line that was read last. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
@@ -42,7 +42,7 @@ static void fail(struct reader *r, enum tri_status status, const char *format, .
     r->status = tri_fail(r->error, status, r->text.name, r->cursor.line, "%s", text);
 }
 
-/* To be ended in any case. */
+/* end_reading must be called in any case. */
 static void begin_reading(struct reader *r, const char *path)
 {
     const struct tri_read_options *o = r->options;
@@ -63,7 +63,7 @@ static enum tri_status end_reading(struct reader *r)
 
 /* --- headers */
 
-/* Names of a section in errors. */
+/* A section: its names in errors, and a limit. */
 struct section {
     const char *noun, *nouns;
     int64_t limit; /* largest count */
@@ -89,8 +89,8 @@ static void check_count(struct reader *r, const struct section *section, int64_t
              (long long)section->limit);
 }
 
-/* Reads the next record as a header: the count, which is checked and returned (0 after a failure), and up to n_more
- * further fields. more: to begin with what a missing field means. */
+/* Reads the next record as a header. Checks and returns its count (0 after a failure), and reads up to n_more further
+ * fields into more[], which the caller has initialised with the defaults of missing fields. */
 static int64_t read_header(struct reader *r, const struct section *section, int64_t *more, int n_more)
 {
     struct tri_fields fields;
@@ -113,7 +113,7 @@ static int64_t read_header(struct reader *r, const struct section *section, int6
     return r->status ? 0 : count;
 }
 
-/* Attributes are bounded by what the file could hold, except for a few that may be missing from every record. */
+/* The number of attributes is limited by the file size, except for a few that may be missing in all records. */
 static void check_attributes(struct reader *r, int64_t n_attributes, int64_t n_rows)
 {
     const int64_t size = (int64_t)r->text.size;
@@ -128,7 +128,7 @@ static void check_attributes(struct reader *r, int64_t n_attributes, int64_t n_r
 
 /* --- arrays and tables */
 
-/* Room for n elements, or NULL for none. */
+/* Allocates room for n elements; returns NULL if n is 0. */
 static void *allocate(struct reader *r, size_t n, size_t size)
 {
     if (r->status || n == 0)
@@ -170,7 +170,7 @@ static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
     return fault;
 }
 
-/* The number of the record that comes next decides, if it is 0 or 1. */
+/* Returns the number of the next record if it is 0 or 1, otherwise the default. */
 static int32_t detect_base(struct tri_cursor cursor, int32_t default_base)
 {
     struct tri_fields fields;
@@ -180,7 +180,8 @@ static int32_t detect_base(struct tri_cursor cursor, int32_t default_base)
     return number == 0 || number == 1 ? (int32_t)number : default_base;
 }
 
-/* node_path: where the vertices are if there are none here; NULL: they must be. Returns whether they are. */
+/* Reads vertices, or, if this file has none, reads them from node_path (NULL: error). must_be_here: no vertices are an
+ * error. Returns whether the vertices are in this file. */
 static bool read_vertices(struct reader *r, const char *node_path, bool must_be_here)
 {
     int64_t more[3] = {2, 0, 0};
@@ -225,7 +226,7 @@ enum tri_status tri_read_node(const char *path, const struct tri_read_options *o
 
 /* --- segments */
 
-/* An index that no int32_t holds stays out of range. */
+/* Converts a number to an index from 0. Numbers beyond int32_t stay out of range. */
 static int32_t index_from(int64_t number, int32_t base)
 {
     if (number < INT32_MIN + 1)
@@ -254,7 +255,7 @@ static const char *parse_segment(void *user, size_t i, struct tri_fields *fields
     return r->pslg->segment_markers ? tri_fields_marker(fields, &r->pslg->segment_markers[i]) : NULL;
 }
 
-/* Why the segment will be skipped, or NULL. */
+/* Returns why the segment will be skipped, or NULL. */
 static const char *reason_to_skip(const struct tri_pslg *pslg, size_t i)
 {
     const int32_t *const v = &pslg->segments[2 * i];
@@ -268,7 +269,8 @@ static const char *reason_to_skip(const struct tri_pslg *pslg, size_t i)
     return a[0] == b[0] && a[1] == b[1] ? "its endpoints are at the same place" : NULL;
 }
 
-/* One warning for each segment to skip. The cursor, which stands before the segments, only follows for the line. */
+/* Warns about each segment that will be skipped. The cursor, at the start of the segments, is used to find line
+ * numbers. */
 static void warn_of_segments(const struct reader *r, struct tri_cursor cursor)
 {
     const struct tri_read_options *o = r->options;
@@ -280,7 +282,7 @@ static void warn_of_segments(const struct reader *r, struct tri_cursor cursor)
         struct tri_fields fields;
         while (cursor.record <= first + i && tri_cursor_next(&cursor, &fields))
             continue;
-        struct tri_error warning; /* as a buffer that prints */
+        struct tri_error warning; /* used as a buffer that formats and escapes text */
         tri_fail(&warning, TRI_BAD_INPUT, r->text.name, cursor.line, "segment %lld is ignored: %s",
                  (long long)i + r->base, reason);
         o->warn(o->warn_user, r->text.name, warning.line, warning.text);
@@ -309,7 +311,7 @@ static const char *parse_hole(void *user, size_t i, struct tri_fields *fields)
     return tri_fields_point(fields, &values[2 * i]);
 }
 
-/* One value serves as both. */
+/* A single value is used both as attribute and as area bound. */
 static const char *parse_region(void *user, size_t i, struct tri_fields *fields)
 {
     double *const values = (double *)user + 4 * i;
@@ -326,7 +328,7 @@ static const char *parse_region(void *user, size_t i, struct tri_fields *fields)
     return bound == TRI_FIELD_BAD ? "has an area bound that is not a finite number" : NULL;
 }
 
-/* A count, and as many records of n_values reals. */
+/* Reads a count, and that many records of n_values reals. */
 static double *read_sites(struct reader *r, const struct section *section, size_t n_values,
                           const char *(*row)(void *, size_t, struct tri_fields *), int32_t *n)
 {
@@ -355,7 +357,7 @@ enum tri_status tri_read_poly(const char *poly_path, const char *node_path, cons
 
 /* --- .ele */
 
-/* The nodes behind the third. */
+/* Reads the nodes after the third. */
 static void parse_extra(const struct reader *r, size_t i, struct tri_fields *fields)
 {
     const int32_t n = r->elements->n_nodes - 3;

@@ -1,6 +1,6 @@
-/* Reading Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, parts included: nodes, triangles and
- * lines, and of the data those that it names, "marker" and "attribute_0" and so on. Other sections are passed. Nodes
- * and elements keep the order of the file. */
+/* Reads Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, including parts: nodes, triangles, lines,
+ * and the data that gmsh.c writes, "marker", "attribute_0" and so on. Other sections are skipped. Nodes and elements
+ * keep the order of the file. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,13 +17,13 @@ struct reading {
     struct tri_reading to;
     struct tri_bytes file;
     bool has_format, has_nodes, has_elements;
-    bool any_data; /* the first numbers of nodes are an attribute, however they are called */
+    bool any_data; /* use the first data at nodes as an attribute, regardless of their name */
     struct tri_tags nodes, triangles, segments;
-    int64_t n_elements;      /* of any kind */
-    int64_t n_triangles, n_segments; /* read so far */
+    int64_t n_elements;      /* number of elements of any type */
+    int64_t n_triangles, n_segments; /* number read so far */
 };
 
-/* A section of data: a tag and a number for each node, or each element. */
+/* A data section: a tag and a number for each node or each element. */
 struct data {
     char name[MOST_NAME];
     bool of_nodes;
@@ -50,21 +50,22 @@ static bool read_format(struct reading *r)
     const char *line;
     size_t n;
     if (!tri_bytes_line(&r->file, &line, &n) || !is_line(line, n, "4.1 1 8"))
-        return FAIL(r, "not of version 4.1, binary: Gmsh writes that with -format msh41 -bin");
+        return FAIL(r, "not a binary file of version 4.1; Gmsh writes these with -format msh41 -bin");
     if (!tri_bytes_has(&r->file, 1, 4) || tri_take_i32(&r->file) != 1)
-        return FAIL(r, "big-endian: only little-endian files are read");
+        return FAIL(r, "the file is big-endian; only little-endian files are supported");
     r->has_format = true;
     return true;
 }
 
-/* Blocks and items of a section; false: not there, or more than the file could hold of such a size. */
+/* Reads the numbers of blocks and items of a section. Returns false if they are missing, or exceed what the file can
+ * hold for this item size. */
 static bool take_totals(struct reading *r, uint64_t *blocks, uint64_t *n, uint64_t item)
 {
     if (!tri_bytes_has(&r->file, 4, 8))
         return false;
     *blocks = tri_take_u64(&r->file);
     *n = tri_take_u64(&r->file);
-    r->file.at += 16; /* least and greatest tag */
+    r->file.at += 16; /* skip least and greatest tag */
     return tri_bytes_has(&r->file, *n, item) && *n <= INT32_MAX;
 }
 
@@ -77,7 +78,7 @@ static bool take_block(struct reading *r, struct block *block)
 {
     if (!tri_bytes_has(&r->file, 1, 20))
         return false;
-    r->file.at += 8; /* dimension and tag of the entity */
+    r->file.at += 8; /* skip dimension and tag of the entity */
     block->kind = tri_take_i32(&r->file);
     block->n = tri_take_u64(&r->file);
     return true;
@@ -92,7 +93,7 @@ static bool take_node(struct reading *r, int64_t i, const char *tag, const char 
     r->to.mesh->points[2 * i] = x;
     r->to.mesh->points[2 * i + 1] = y;
     return (isfinite(x) && isfinite(y) && z == 0) ||
-           FAIL(r, "node %" PRId64 " is not finite, or not at z = 0", r->nodes.tag[i]);
+           FAIL(r, "node %" PRId64 " has a coordinate that is not finite, or z is not 0", r->nodes.tag[i]);
 }
 
 static bool read_nodes(struct reading *r)
@@ -108,7 +109,7 @@ static bool read_nodes(struct reading *r)
         if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
             return ends_early(r, "Nodes");
         if (block.kind != 0)
-            return FAIL(r, "nodes with parameters are not read");
+            return FAIL(r, "nodes with parametric coordinates are not supported");
         const char *tags = r->file.at, *places = tags + 8 * block.n;
         for (uint64_t i = 0; i < block.n; i++)
             if (!take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i))
@@ -131,14 +132,14 @@ static int nodes_of(int32_t kind)
     }
 }
 
-/* The place of the node that is named there. */
+/* Reads a node tag and converts it to a node number. */
 static bool take_place(struct reading *r, const char *at, int32_t *place)
 {
     *place = (int32_t)tri_tags_place(&r->nodes, tri_get_i64(at));
-    return *place >= 0 || FAIL(r, "an element names node %" PRId64 ", which is not there", tri_get_i64(at));
+    return *place >= 0 || FAIL(r, "an element refers to node %" PRId64 ", which does not exist", tri_get_i64(at));
 }
 
-/* Gmsh has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+/* Gmsh orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
 static bool take_triangle(struct reading *r, const char *at, int n_nodes)
 {
     static const int opposite[] = {2, 0, 1};
@@ -165,7 +166,7 @@ static bool take_elements(struct reading *r, const struct block *block)
     const int n = nodes_of(block->kind);
     const size_t bytes = 8 * (size_t)(n + 1);
     if (n >= 3 && r->n_triangles > 0 && r->to.elements->n_nodes != n)
-        return FAIL(r, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, "the mesh has triangles of three nodes and of six nodes");
     if (n >= 3)
         r->to.elements->n_nodes = n;
     for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
@@ -174,7 +175,7 @@ static bool take_elements(struct reading *r, const struct block *block)
     return true;
 }
 
-/* Which are of what kind shows later. */
+/* Allocates room for n elements of each kind, because their kinds are not known yet. */
 static bool begin_elements(struct reading *r, int64_t n)
 {
     const bool room = tri_reading_triangles(&r->to, n, 6) && tri_reading_segments(&r->to, n) &&
@@ -209,7 +210,8 @@ static bool read_elements(struct reading *r)
         if (!take_block(r, &block) || block.n > n - done)
             return ends_early(r, "Elements");
         if (nodes_of(block.kind) == 0)
-            return FAIL(r, "an element of type %" PRId32 ": triangles and lines are read", block.kind);
+            return FAIL(r, "an element is of type %" PRId32 "; only triangles, lines and points are supported",
+                        block.kind);
         if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
             return ends_early(r, "Elements");
         if (!take_elements(r, &block))
@@ -239,7 +241,8 @@ static bool skip_lines(struct reading *r, int64_t n)
     return n == 0;
 }
 
-/* Names, then numbers: no time, one component, and how many there are. False: in another form. */
+/* Reads the head of a data section: names, reals (times), and numbers, among them the number of components, which must
+ * be 1, and of items. Returns false for other forms. */
 static bool take_data_head(struct reading *r, struct data *data)
 {
     const char *line;
@@ -248,14 +251,14 @@ static bool take_data_head(struct reading *r, struct data *data)
     if (!take_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
         return false;
     snprintf(data->name, sizeof data->name, "%.*s", length < MOST_NAME ? (int)length : 0, line);
-    for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* as older files have it */
+    for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* older files have blanks */
         *blank = '_';
     return skip_lines(r, names - 1) && take_count(r, &reals) && skip_lines(r, reals) && take_count(r, &numbers) &&
            numbers >= 3 && skip_lines(r, 1) && take_count(r, &components) && components == 1 &&
            take_count(r, &data->n) && skip_lines(r, numbers - 3);
 }
 
-/* A column of reals among `width` more, which are 0 so far. The places of tags: of nodes, or of triangles. */
+/* Appends a column to `*width` existing ones; missing values are 0. tags: of nodes, or of triangles. */
 static bool add_column(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                   double **columns, int32_t *width)
 {
@@ -280,7 +283,7 @@ static bool add_column(struct reading *r, const struct data *data, const struct 
     return true;
 }
 
-/* Markers of nodes, or of segments. */
+/* Reads markers of nodes, or of segments. */
 static bool take_markers(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                     int32_t **markers)
 {
@@ -317,12 +320,12 @@ static bool read_data(struct reading *r, bool of_nodes)
 {
     struct data data = {.of_nodes = of_nodes};
     if (!r->has_elements)
-        return FAIL(r, "data before the elements are not read");
+        return FAIL(r, "a data section comes before the elements");
     if (!take_data_head(r, &data))
-        return true; /* of another kind */
+        return true; /* data of another form are ignored */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
-        return FAIL(r, "%.*s: not one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
+        return FAIL(r, "%.*s does not have one number for each of the %" PRId64 " %s", MOST_NAME, data.name, items,
                     of_nodes ? "nodes" : "elements");
     data.at = r->file.at;
     r->file.at += (uint64_t)data.n * DATUM_BYTES;
@@ -355,11 +358,11 @@ static bool read_sections(struct reading *r)
         if (n == 0)
             continue;
         if (*line != '$' || n > 40)
-            return FAIL(r, r->has_format ? "what stands between two sections is none" : "not a .msh file");
+            return FAIL(r, r->has_format ? "unexpected text between two sections" : "not a .msh file");
         if (!read_section(r, line + 1, n - 1))
             return false;
         snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);
-        r->file.at--; /* of what has no content the end of the line stands before it */
+        r->file.at--; /* include the line break before the end tag if the section is empty */
         if (!tri_bytes_pass(&r->file, end))
             return FAIL(r, "the section %.*s has no end", (int)n, line);
         (void)tri_bytes_line(&r->file, &line, &n);

@@ -1,8 +1,10 @@
-/* Reading SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. Both number nodes in any way.
+/* Reads SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. In both formats node numbers are
+ * arbitrary.
  *
- * What stands for nothing is taken for nothing: elevations that are all 0, and materials that are all 1, are no
- * attributes. Of fort.14 the marker of a segment is 2 on open boundaries, the type of land from 10 on, otherwise 1;
- * whoever wrote the mesh may have had others. Segments are those of the boundary: neither format has any inside. */
+ * Default values are ignored: if all elevations are 0, or all materials are 1, there is no attribute. In fort.14 the
+ * marker of a segment is 2 on open boundaries, the type on land boundaries of type 10 or above, and otherwise 1; the
+ * mesh that was written may have had other markers. All segments are on the boundary, because neither format stores
+ * inner ones. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,12 +18,12 @@ struct reading {
     struct tri_text text;
     struct tri_tags nodes;
     double *z;                   /* [n_points] */
-    int64_t most_ends, most_markers; /* room in the arrays of segments */
+    int64_t most_ends, most_markers; /* capacity of the arrays of segments */
 };
 
 #define FAIL(r, line, ...) tri_reading_fail(&(r)->to, TRI_BAD_INPUT, line, __VA_ARGS__)
 
-/* --- what both have */
+/* --- common parts */
 
 static bool begin_nodes(struct reading *r, int64_t n)
 {
@@ -29,7 +31,7 @@ static bool begin_nodes(struct reading *r, int64_t n)
     return tri_tags_begin_nodes(&r->nodes, n, &r->to) && (r->z || tri_reading_no_memory(&r->to));
 }
 
-/* Number, place and elevation. */
+/* Reads number, position and elevation of a node. */
 static const char *take_node(void *user, size_t i, struct tri_fields *fields)
 {
     struct reading *r = user;
@@ -41,7 +43,7 @@ static const char *take_node(void *user, size_t i, struct tri_fields *fields)
     return tri_fields_real(fields, &r->z[i]) == TRI_FIELD_BAD ? "has an elevation that is not finite" : NULL;
 }
 
-/* The next field names a node; -1: it does not. */
+/* Reads a node tag and returns the node number; -1: there is no such node. */
 static int32_t take_place(const struct reading *r, struct tri_fields *fields)
 {
     int64_t tag;
@@ -62,7 +64,7 @@ static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t mar
     return true;
 }
 
-/* Elevations become the attribute of the points. */
+/* Stores the elevations as the attribute of the points, unless all are 0. */
 static void hand_over(struct reading *r)
 {
     bool any = false;
@@ -88,7 +90,7 @@ static enum tri_status read_with(bool (*read)(struct reading *r), const char *pa
     return r.to.status;
 }
 
-/* --- fort.14: a title, numbers of elements and nodes, nodes, elements, open boundaries, land */
+/* --- fort.14: title, numbers of elements and nodes, nodes, elements, open boundaries, land boundaries */
 
 static const char *take_element(void *user, size_t i, struct tri_fields *fields)
 {
@@ -96,14 +98,14 @@ static const char *take_element(void *user, size_t i, struct tri_fields *fields)
     int64_t n;
     tri_fields_skip(fields);
     if (tri_fields_integer(fields, &n) != TRI_FIELD_GOOD || n != 3)
-        return "is no triangle";
+        return "is not a triangle";
     for (size_t k = 0; k < 3; k++)
         if ((r->to.elements->corners[3 * i + k] = take_place(r, fields)) < 0)
-            return "has a corner that is no node";
+            return "has a corner that is not a node";
     return NULL;
 }
 
-/* The next record's first numbers; false: they are not there, or negative. */
+/* Reads the first one or two numbers of the next record. Returns false if they are missing or negative. */
 static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 {
     struct tri_fields fields;
@@ -113,7 +115,7 @@ static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 
 static bool goes_round(int64_t type) { return type == 1 || type == 11 || type == 21; }
 
-/* n nodes, a line each. */
+/* Reads n nodes, one per line. */
 static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
 {
     int32_t first = -1, last = -1;
@@ -121,7 +123,7 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
         struct tri_fields fields;
         const int32_t node = tri_cursor_next(cursor, &fields) ? take_place(r, &fields) : -1;
         if (node < 0)
-            return FAIL(r, cursor->line, "a node of a boundary is missing, or no node");
+            return FAIL(r, cursor->line, "a node of a boundary is missing or does not exist");
         if (i > 0 && !add_segment(r, last, node, marker))
             return false;
         first = i == 0 ? node : first;
@@ -130,7 +132,7 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
     return !closed || first == last || add_segment(r, last, first, marker);
 }
 
-/* How many boundaries there are, how many nodes, and each. */
+/* Reads the number of boundaries, the number of their nodes, and each boundary. */
 static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
 {
     int64_t n, n_nodes;
@@ -139,7 +141,7 @@ static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool o
     for (int64_t i = 0; i < n; i++) {
         int64_t type = 0;
         if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
-            return FAIL(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
+            return FAIL(r, cursor->line, "the number of nodes of a boundary, or its type, is missing");
         const int32_t marker = open ? TRI_OPEN_BOUNDARY : type >= 10 && type < 100 ? (int32_t)type : 1;
         if (!read_string(r, cursor, n_nodes, !open && goes_round(type), marker))
             return false;
@@ -158,7 +160,7 @@ static bool read_14(struct reading *r)
     struct tri_cursor cursor = tri_cursor_begin(&r->text);
     struct tri_fields fields;
     int64_t n_elements, n_nodes;
-    if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* the title has a number in it */
+    if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* skip a title with a number */
         (void)tri_cursor_next(&cursor, &fields);
     if (!take_numbers(&cursor, &n_elements, &n_nodes))
         return FAIL(r, cursor.line, "the numbers of elements and nodes are missing");
@@ -180,15 +182,15 @@ enum tri_status tri_read_14(const char *path, struct tri_pslg *mesh, struct tri_
     return read_with(read_14, path, mesh, elements, executor, error);
 }
 
-/* --- .2dm: cards in any order, each of which begins with a word */
+/* --- .2dm: cards in any order, each starting with a word */
 
 enum card { CARD_NODE, CARD_TRIANGLE, CARD_SIX_NODES, CARD_STRING, CARD_UNKNOWN, CARDS, CARD_NONE };
 
 struct cards {
     const char *at, *end;
     size_t line;
-    enum card card; /* of the line that was taken, */
-    struct tri_fields fields; /* and what follows its word */
+    enum card card; /* card of the current line */
+    struct tri_fields fields; /* the fields after its word */
 };
 
 static bool is_word(const char *at, const char *word, size_t n)
@@ -196,7 +198,7 @@ static bool is_word(const char *at, const char *word, size_t n)
     return strlen(word) == n && memcmp(at, word, n) == 0;
 }
 
-/* Other elements, such as quadrilaterals, are no triangles; other cards are of no concern. */
+/* Other elements, such as quadrilaterals, are CARD_UNKNOWN; other cards are ignored. */
 static enum card card_of(const char *word, size_t n)
 {
     if (is_word(word, "ND", n))
@@ -237,14 +239,14 @@ static bool count_cards(struct reading *r, int64_t count[CARDS])
 {
     for (struct cards c = all_cards(r); next_card(&c);) {
         if (c.card == CARD_UNKNOWN)
-            return FAIL(r, c.line, "an element that is no triangle");
+            return FAIL(r, c.line, "an element is not a triangle");
         if (c.card != CARD_NONE)
             count[c.card]++;
     }
     if (count[CARD_TRIANGLE] > 0 && count[CARD_SIX_NODES] > 0)
-        return FAIL(r, 0, "triangles of three nodes and of six in one mesh");
+        return FAIL(r, 0, "the mesh has triangles of three nodes and of six nodes");
     if (count[CARD_NODE] > INT32_MAX || count[CARD_TRIANGLE] + count[CARD_SIX_NODES] > INT32_MAX)
-        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more nodes or triangles than are read");
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "too many nodes or triangles");
     return true;
 }
 
@@ -259,7 +261,8 @@ static bool read_nodes(struct reading *r)
     return tri_tags_order(&r->nodes, "node", &r->to);
 }
 
-/* Nodes go round the triangle, beginning with a corner; ours are the corners, then those opposite to each. */
+/* In the file, nodes go around the triangle, starting at a corner. Here, the corners come first, then the midpoints
+ * opposite each. */
 static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields)
 {
     static const int place_of_three[] = {0, 1, 2}, place_of_six[] = {0, 5, 1, 3, 2, 4};
@@ -291,7 +294,7 @@ static bool read_triangles(struct reading *r)
         if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
             continue;
         if (!take_corners(r, i, &c.fields))
-            return FAIL(r, c.line, "a triangle has a node that is missing, or no node");
+            return FAIL(r, c.line, "a triangle has a node that is missing or does not exist");
         if (tri_fields_real(&c.fields, &material[i]) != TRI_FIELD_GOOD)
             material[i] = 1;
         any = any || material[i] != 1;
@@ -305,11 +308,11 @@ static bool read_triangles(struct reading *r)
     return true;
 }
 
-/* A string ends with a negative number; behind it stands its marker. Lines of ten nodes may go before. */
+/* A string may extend over several lines. It ends with a negative number, which is followed by its marker. */
 static bool read_strings(struct reading *r)
 {
     int32_t last = -1;
-    int64_t first = 0; /* segment of the string */
+    int64_t first = 0; /* first segment of the string */
     for (struct cards c = all_cards(r); next_card(&c);) {
         int64_t tag, marker = 0;
         bool ends = false;
@@ -317,7 +320,7 @@ static bool read_strings(struct reading *r)
             ends = tag < 0 && tag > INT64_MIN;
             const int32_t node = (int32_t)tri_tags_place(&r->nodes, ends ? -tag : tag);
             if (node < 0)
-                return FAIL(r, c.line, "a node string has a node that is not there");
+                return FAIL(r, c.line, "a node string has a node that does not exist");
             if (last >= 0 && !add_segment(r, last, node, 0))
                 return false;
             last = node;
@@ -339,7 +342,7 @@ static bool read_2dm(struct reading *r)
     if (!count_cards(r, count))
         return false;
     if (count[CARD_NODE] == 0)
-        return FAIL(r, 0, "no mesh: there are no nodes (ND)");
+        return FAIL(r, 0, "no mesh: the file has no nodes (ND)");
     const int n_nodes = count[CARD_SIX_NODES] > 0 ? 6 : 3;
     return begin_nodes(r, count[CARD_NODE]) &&
            tri_reading_triangles(&r->to, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], n_nodes) && read_nodes(r) &&

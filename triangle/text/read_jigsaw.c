@@ -1,9 +1,9 @@
-/* Reading JIGSAW's .msh, which shares nothing but its suffix with Gmsh's: sections of KEY = numbers, then rows of
- * numbers with semicolons between them.
+/* Reads JIGSAW's .msh format, which shares only its suffix with Gmsh's: sections of KEY = numbers, followed by rows of
+ * numbers separated by semicolons.
  *
- * Of a mesh POINT, TRIA3 and VALUE are read, of a grid COORD and VALUE; other sections are passed. Points count from 0.
- * In a grid values run along y first. A grid whose coordinates are evenly spaced, to a thousandth of a step, is a
- * raster; any other becomes a mesh of two triangles a cell. */
+ * For a mesh, POINT, TRIA3 and VALUE are read; for a grid, COORD and VALUE. Other sections are skipped. Points count
+ * from 0. Values of a grid run along y first. A grid whose coordinates are evenly spaced, within a thousandth of a
+ * step, is a raster; any other becomes a mesh with two triangles per cell. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,14 +16,14 @@ struct jigsaw {
     bool is_grid;
     int64_t n_values;
     double *values;   /* [n_values] */
-    int64_t n[2];     /* coordinates along x and y */
-    double *coord[2]; /* [n[k]] rising */
+    int64_t n[2];     /* number of coordinates along x and y */
+    double *coord[2]; /* [n[k]] increasing */
 };
 
 static bool begin_array(struct jigsaw *j, double **array, int64_t n)
 {
     if (*array)
-        return TRI_WORDS_FAIL(j->words, "a section that is there twice");
+        return TRI_WORDS_FAIL(j->words, "a section occurs twice");
     *array = malloc(((size_t)n + 1) * sizeof **array);
     return *array || tri_reading_no_memory(&j->words->to);
 }
@@ -36,7 +36,7 @@ static bool take_coordinates(struct jigsaw *j, double *to, int64_t n)
     return true;
 }
 
-/* Behind each place stands a number of a group. */
+/* Coordinates are followed by a group number. */
 static bool take_points(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
@@ -61,7 +61,7 @@ static bool take_triangles(struct jigsaw *j)
     if (!tri_words_count(w, "the number of triangles", 8, &n))
         return false;
     if (w->to.elements->corners)
-        return TRI_WORDS_FAIL(w, "a section that is there twice");
+        return TRI_WORDS_FAIL(w, "a section occurs twice");
     if (!tri_reading_triangles(&w->to, n, 3))
         return false;
     for (int64_t i = 0; i < 4 * n; i++) {
@@ -97,7 +97,7 @@ static bool take_axis(struct jigsaw *j)
     j->n[axis - 1] = n;
     for (int64_t i = 1; i < n; i++)
         if (!(j->coord[axis - 1][i] > j->coord[axis - 1][i - 1]))
-            return TRI_WORDS_FAIL(j->words, "coordinates that do not rise");
+            return TRI_WORDS_FAIL(j->words, "coordinates do not increase");
     return true;
 }
 
@@ -106,7 +106,7 @@ static bool take_head(struct jigsaw *j)
     struct tri_words *w = j->words;
     int64_t version;
     if (!tri_words_next(w) || !tri_words_is(w, "mshid"))
-        return TRI_WORDS_FAIL(w, "no .msh file, neither of Gmsh ($MeshFormat) nor of JIGSAW (mshid)");
+        return TRI_WORDS_FAIL(w, "not a .msh file of Gmsh ($MeshFormat) or of JIGSAW (mshid)");
     if (!tri_words_whole(w, "mshid", 1, 3, &version))
         return false;
     j->is_grid = tri_words_next(w) && tri_words_is(w, "euclidean-grid");
@@ -114,7 +114,7 @@ static bool take_head(struct jigsaw *j)
            TRI_WORDS_FAIL(w, "neither euclidean-mesh nor euclidean-grid");
 }
 
-/* Sections that are no field have a row for each item, except one that is itself a row. */
+/* Skips a section. It has one line per item, except "radii", which is a single row. */
 static bool pass_section(struct jigsaw *j)
 {
     const bool is_row = tri_words_is(j->words, "radii");
@@ -140,7 +140,7 @@ static bool take_section(struct jigsaw *j)
     return tri_words_is(w, "coord") ? take_axis(j) : pass_section(j);
 }
 
-/* --- what has been read becomes a field */
+/* --- conversion to a size field */
 
 static bool is_even(const double *coord, int64_t n)
 {
@@ -164,7 +164,7 @@ static bool make_raster(struct jigsaw *j, struct tri_size_file *file)
     return true;
 }
 
-/* Points are numbered as the values are. */
+/* Points are numbered like the values. */
 static bool make_mesh_of_grid(struct jigsaw *j)
 {
     struct tri_reading *to = &j->words->to;
@@ -189,15 +189,15 @@ static bool make_field(struct jigsaw *j, struct tri_size_file *file)
 {
     struct tri_words *w = j->words;
     if (j->is_grid && (j->n[0] == 0 || j->n[1] == 0))
-        return TRI_WORDS_FAIL(w, "a grid without COORD along x and y");
+        return TRI_WORDS_FAIL(w, "a grid needs COORD along x and along y");
     const int64_t expected = j->is_grid ? j->n[0] * j->n[1] : w->to.mesh->n_points;
     if (!j->values || j->n_values != expected || expected == 0)
-        return TRI_WORDS_FAIL(w, "%lld values, not one for each of %lld places", (long long)j->n_values,
+        return TRI_WORDS_FAIL(w, "the number of values is %lld, the number of places %lld", (long long)j->n_values,
                               (long long)expected);
     if (j->is_grid && is_even(j->coord[0], j->n[0]) && is_even(j->coord[1], j->n[1]))
         return make_raster(j, file);
     if (j->is_grid && (w->to.mesh->points || w->to.elements->corners))
-        return TRI_WORDS_FAIL(w, "a grid with points or triangles of its own");
+        return TRI_WORDS_FAIL(w, "a grid must not have points or triangles");
     if (j->is_grid && !make_mesh_of_grid(j))
         return false;
     w->to.mesh->attributes = j->values;

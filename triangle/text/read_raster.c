@@ -1,4 +1,4 @@
-/* Reading rasters of lengths: ESRI ASCII grids (.asc), whose values are those of cells, and arrays of NumPy (.npy). */
+/* Reads rasters of edge lengths: ESRI ASCII grids (.asc), whose values belong to cells, and NumPy arrays (.npy). */
 #include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
@@ -25,7 +25,7 @@ static const char *const head_names[HEADS] = {"ncols", "nrows", "xllcorner", "xl
 
 struct asc {
     int64_t rows, columns;
-    double value[HEADS]; /* by enum head; those of the counts are not used */
+    double value[HEADS]; /* values by enum head; those of the counts are unused */
     bool has[HEADS];
 };
 
@@ -41,24 +41,24 @@ static bool take_head(struct tri_words *w, struct asc *asc)
 {
     const enum head head = head_of(w);
     if (head == HEADS)
-        return TRI_WORDS_FAIL(w, "\"%.*s\" is no entry of an ESRI ASCII grid", (int)(w->length < 40 ? w->length : 40),
-                              w->word);
+        return TRI_WORDS_FAIL(w, "\"%.*s\" is not an entry of an ESRI ASCII grid",
+                              (int)(w->length < 40 ? w->length : 40), w->word);
     if (asc->has[head])
-        return TRI_WORDS_FAIL(w, "%s is there twice", head_names[head]);
+        return TRI_WORDS_FAIL(w, "%s occurs twice", head_names[head]);
     asc->has[head] = true;
     if (head == COLUMNS || head == ROWS)
         return tri_words_whole(w, head_names[head], 1, INT32_MAX, head == ROWS ? &asc->rows : &asc->columns);
     return tri_words_real(w, head_names[head], head != NO_DATA, &asc->value[head]);
 }
 
-/* An entry, not a number, nan or inf. */
+/* Is the next word an entry, and not a number, nan or inf? */
 static bool is_head(const struct tri_words *w)
 {
     const bool is_nan = (w->at[0] == 'n' || w->at[0] == 'N') && (w->at[1] == 'a' || w->at[1] == 'A');
     return isalpha((unsigned char)*w->at) && *w->at != 'i' && *w->at != 'I' && !is_nan;
 }
 
-/* Entries stand in any order before the first number. */
+/* Reads the entries, which precede the first number in any order. */
 static bool take_heads(struct tri_words *w, struct asc *asc)
 {
     while (tri_words_seek(w) && is_head(w))
@@ -70,7 +70,7 @@ static bool take_heads(struct tri_words *w, struct asc *asc)
     for (int k = 0; k < 2; k++) {
         const enum head corner = k ? Y_CORNER : X_CORNER, size = asc->has[DX + k] ? DX + (enum head)k : CELL;
         if (!asc->has[COLUMNS + k] || asc->has[corner] == asc->has[corner + 1])
-            return TRI_WORDS_FAIL(w, "%s is missing, or there twice",
+            return TRI_WORDS_FAIL(w, "%s is missing or occurs twice",
                                   head_names[asc->has[COLUMNS + k] ? corner : COLUMNS + (enum head)k]);
         if (!(asc->value[size] > 0))
             return TRI_WORDS_FAIL(w, "%s is not above 0", head_names[size]);
@@ -95,7 +95,7 @@ bool tri_size_read_asc(struct tri_words *w, struct tri_size_file *file)
         file->field.origin[k] = asc.has[corner] ? asc.value[corner] + asc.value[size] / 2 : asc.value[corner + 1];
     }
     const double none = asc.value[NO_DATA];
-    for (int64_t row = asc.rows - 1; row >= 0; row--) /* from the top */
+    for (int64_t row = asc.rows - 1; row >= 0; row--) /* rows are stored from the top */
         for (int64_t i = 0; i < asc.columns; i++) {
             double *value = &file->values[row * asc.columns + i];
             if (!(isnan(none) ? tri_words_real(w, "a length", false, value) : tri_words_length(w, value)))
@@ -110,14 +110,14 @@ bool tri_size_read_asc(struct tri_words *w, struct tri_size_file *file)
 
 struct npy {
     bool big_endian, by_columns;
-    char kind;        /* f, i, u */
-    int bytes;        /* of a value */
+    char kind;        /* 'f', 'i' or 'u': real, signed, unsigned */
+    int bytes;        /* bytes per value */
     int64_t shape[2]; /* rows, columns */
 };
 
 enum { MOST_HEAD = 4096 };
 
-/* What stands behind 'key': in the dictionary; NULL: nothing. */
+/* Returns the text after 'key': in the dictionary; NULL: no such key. */
 static const char *behind_key(const char *head, const char *key)
 {
     const char *at = strstr(head, key);
@@ -156,7 +156,7 @@ static enum tri_status take_npy_head(struct npy *npy, struct tri_bytes *bytes, c
     const int64_t length = version == 1 ? (int64_t)(tri_get_u32(bytes->at + 8) & 0xffff) : tri_get_u32(bytes->at + 8);
     bytes->at += version == 1 ? 10 : 12;
     if (length > MOST_HEAD || length > bytes->end - bytes->at)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "the head of the .npy file is not complete, or too long");
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "the header of the .npy file is incomplete or too long");
     memcpy(head, bytes->at, (size_t)length);
     bytes->at += length;
     const char *order = behind_key(head, "fortran_order'");
@@ -168,7 +168,7 @@ static enum tri_status take_npy_head(struct npy *npy, struct tri_bytes *bytes, c
     return TRI_OK;
 }
 
-/* Bits of a value, the sign of whole numbers stretched to 64. */
+/* Assembles the bits of a value; signed integers are sign-extended to 64 bits. */
 static double npy_value(const struct npy *npy, const char *at)
 {
     uint64_t bits = 0;
@@ -191,7 +191,7 @@ static double npy_value(const struct npy *npy, const char *at)
     return value;
 }
 
-/* Places of the first and the last value in each direction; the raster has the lowest row first. */
+/* Sets origin and step from the positions of the first and the last value. The raster starts with its lowest row. */
 static bool place(struct tri_size_field *field, const double extent[4])
 {
     const int64_t n[2] = {field->values.width, field->values.n};
@@ -227,8 +227,8 @@ static enum tri_status take_npy(struct tri_size_file *file, struct tri_bytes *by
             const double value = npy_value(&npy, bytes->at + from * npy.bytes);
             file->values[row * columns + column] = isnan(value) ? 0 : value;
         }
-    return place(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0, "an extent without room: "
-                                                           "its places are the same, or too far apart");
+    return place(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0,
+                                                           "the extent is empty or too large");
 }
 
 enum tri_status tri_size_read_npy(struct tri_size_file *file, const char *path, const double extent[4],
@@ -236,8 +236,8 @@ enum tri_status tri_size_read_npy(struct tri_size_file *file, const char *path, 
 {
     struct tri_bytes bytes;
     if (!extent)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "an array knows no places: FILE.npy@XMIN,YMIN,XMAX,YMAX says "
-                        "where its first and its last value are");
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "a .npy file needs an extent: FILE.npy@XMIN,YMIN,XMAX,YMAX, the "
+                        "positions of its first and its last value");
     enum tri_status status = tri_bytes_load(&bytes, path, error);
     status = status ? status : take_npy(file, &bytes, path, extent, error);
     tri_bytes_free(&bytes);

@@ -1,5 +1,6 @@
-/* Reading fields of Gmsh that are text: meshes of version 2.2 and 4.1 with numbers at nodes (the first $NodeData of one
- * component), and parsed views (.pos) of scalar triangles and points. Places are x and y; z is not looked at. */
+/* Reads size fields from text files of Gmsh: meshes of version 2.2 and 4.1 with numbers at nodes (the first $NodeData
+ * with one component), and parsed views (.pos) of scalar triangles, lines and points. Only x and y are used; z is
+ * ignored. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,9 +13,9 @@
 
 struct gmsh {
     struct tri_words *words;
-    bool blocks; /* version 4.1: nodes and elements come in blocks */
+    bool blocks; /* version 4.1: nodes and elements are stored in blocks */
     struct tri_tags nodes;
-    int64_t n_nodes, n_triangles; /* read so far */
+    int64_t n_nodes, n_triangles; /* number read so far */
 };
 
 static bool take_any(struct gmsh *g, const char *what, int64_t *value)
@@ -30,7 +31,8 @@ static bool take_place(struct gmsh *g, double *xy)
            tri_words_real(g->words, "a coordinate", true, &z);
 }
 
-/* Numbers of all blocks, of all items, and their least and greatest tags; in version 2.2 the second alone. */
+/* Reads the number of blocks, the number of items, and their least and greatest tags; in version 2.2 only the number of
+ * items. */
 static bool take_totals(struct gmsh *g, const char *what, int64_t *blocks, int64_t *n)
 {
     int64_t tag;
@@ -41,7 +43,7 @@ static bool take_totals(struct gmsh *g, const char *what, int64_t *blocks, int64
            (!g->blocks || (take_any(g, "the least tag", &tag) && take_any(g, "the greatest tag", &tag)));
 }
 
-/* Of a block its dimension, its tag, a kind, and how many items it has. */
+/* Reads the head of a block: its dimension, its tag, a kind, and the number of items. */
 static bool take_block(struct gmsh *g, int64_t *kind, int64_t left, int64_t *n)
 {
     int64_t entity;
@@ -67,7 +69,7 @@ static bool read_nodes(struct gmsh *g)
 {
     int64_t blocks, n, parametric;
     if (g->nodes.tag)
-        return TRI_WORDS_FAIL(g->words, "$Nodes is there twice");
+        return TRI_WORDS_FAIL(g->words, "$Nodes occurs twice");
     if (!take_totals(g, "the number of nodes", &blocks, &n) || !tri_tags_begin_nodes(&g->nodes, n, &g->words->to))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
@@ -75,23 +77,23 @@ static bool read_nodes(struct gmsh *g)
         if (g->blocks && !take_block(g, &parametric, n - g->n_nodes, &here))
             return false;
         if (g->blocks && parametric != 0)
-            return TRI_WORDS_FAIL(g->words, "nodes with parameters are not read");
+            return TRI_WORDS_FAIL(g->words, "nodes with parametric coordinates are not supported");
         if (!take_nodes(g, here))
             return false;
     }
     if (g->n_nodes < n)
-        return TRI_WORDS_FAIL(g->words, "%" PRId64 " nodes, not %" PRId64, g->n_nodes, n);
+        return TRI_WORDS_FAIL(g->words, "there are %" PRId64 " nodes instead of %" PRId64, g->n_nodes, n);
     return tri_tags_order(&g->nodes, "node", &g->words->to);
 }
 
-/* Nodes of an element by its type; 0: one that is not read. */
+/* Returns the number of nodes of an element type; 0: not supported. */
 static int nodes_of(int64_t kind)
 {
     static const int nodes[] = {[1] = 2, [2] = 3, [8] = 3, [9] = 6, [15] = 1};
     return kind >= 0 && kind < (int64_t)(sizeof nodes / sizeof *nodes) ? nodes[kind] : 0;
 }
 
-/* Corners come first; what is no triangle is passed. */
+/* Reads the nodes of an element; corners come first. Elements other than triangles are ignored. */
 static bool take_element(struct gmsh *g, int64_t kind)
 {
     const int n = nodes_of(kind);
@@ -105,7 +107,7 @@ static bool take_element(struct gmsh *g, int64_t kind)
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
-            return TRI_WORDS_FAIL(g->words, "an element names node %" PRId64 ", which is not there", tag);
+            return TRI_WORDS_FAIL(g->words, "an element refers to node %" PRId64 ", which does not exist", tag);
         if (is_triangle && k < 3)
             corners[k] = (int32_t)place;
     }
@@ -135,7 +137,7 @@ static bool read_elements(struct gmsh *g)
 {
     int64_t blocks, n, kind = 0, done = 0;
     if (!g->nodes.tag || g->words->to.elements->corners)
-        return TRI_WORDS_FAIL(g->words, "$Elements before $Nodes, or twice");
+        return TRI_WORDS_FAIL(g->words, "$Elements comes before $Nodes or occurs twice");
     if (!take_totals(g, "the number of elements", &blocks, &n) || !tri_reading_triangles(&g->words->to, n, 3))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
@@ -150,7 +152,8 @@ static bool read_elements(struct gmsh *g)
     return true;
 }
 
-/* A name in a line of its own, a time, and numbers, the second and third of which are components and nodes. */
+/* Reads the head of a data section: names, one per line, times, and integers, of which the second and third are the
+ * numbers of components and nodes. */
 static bool take_data_head(struct gmsh *g, int64_t *components, int64_t *n)
 {
     int64_t count, other;
@@ -179,7 +182,7 @@ static bool read_data(struct gmsh *g)
     int64_t components, n, tag;
     double value;
     if (!g->nodes.tag)
-        return TRI_WORDS_FAIL(g->words, "$NodeData before $Nodes");
+        return TRI_WORDS_FAIL(g->words, "$NodeData comes before $Nodes");
     if (!take_data_head(g, &components, &n))
         return false;
     if (components != 1 || mesh->attributes)
@@ -193,7 +196,7 @@ static bool read_data(struct gmsh *g)
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
-            return TRI_WORDS_FAIL(g->words, "a value at node %" PRId64 ", which is not there", tag);
+            return TRI_WORDS_FAIL(g->words, "a value is given for node %" PRId64 ", which does not exist", tag);
         mesh->attributes[place] = value;
     }
     return true;
@@ -204,17 +207,17 @@ static bool read_format(struct gmsh *g)
     int64_t binary, bytes;
     double version;
     if (!tri_words_next(g->words) || !tri_words_is(g->words, "$meshformat"))
-        return TRI_WORDS_FAIL(g->words, "no .msh file");
+        return TRI_WORDS_FAIL(g->words, "not a .msh file");
     if (!tri_words_real(g->words, "a version", true, &version) || !take_any(g, "a kind of file", &binary) ||
         !take_any(g, "a size", &bytes))
         return false;
     g->blocks = version == 4.1;
     return ((g->blocks || version == 2.2) && binary == 0) ||
-           TRI_WORDS_FAIL(g->words, "of version %g%s: 2.2 and 4.1 are read as text, and 4.1 as binary", version,
-                          binary ? ", binary" : "");
+           TRI_WORDS_FAIL(g->words, "version %g%s is not supported; only 2.2 and 4.1 as text and 4.1 as binary are",
+                          version, binary ? ", binary," : "");
 }
 
-/* Passes what is left of the section. */
+/* Skips the rest of the section. */
 static bool end_section(struct gmsh *g, const char *name, size_t n)
 {
     char end[64];
@@ -231,7 +234,7 @@ static bool read_section(struct gmsh *g)
     const size_t n = g->words->length - 1;
     bool good = true;
     if (g->words->word[0] != '$')
-        return TRI_WORDS_FAIL(g->words, "what stands between two sections is none");
+        return TRI_WORDS_FAIL(g->words, "unexpected text between two sections");
     if (tri_words_is(g->words, "$nodes"))
         good = read_nodes(g);
     else if (tri_words_is(g->words, "$elements"))
@@ -258,7 +261,7 @@ struct view {
     int64_t room_points, room_values, room_corners;
 };
 
-/* The next character; false: it is another one. */
+/* Reads a character; fails if it is not `sign`. */
 static bool take_sign(struct view *v, char sign)
 {
     if (!tri_words_seek(v->words) || *v->words->at != sign)
@@ -267,7 +270,7 @@ static bool take_sign(struct view *v, char sign)
     return true;
 }
 
-/* Numbers between two signs, the first n of which are kept. Further ones are those of later times. */
+/* Reads numbers between `open` and `close`, and keeps the first n. The others belong to later time steps. */
 static bool take_list(struct view *v, char open, char close, double *to, int n)
 {
     struct tri_words *w = v->words;
@@ -288,7 +291,7 @@ static bool take_list(struct view *v, char open, char close, double *to, int n)
     }
 }
 
-/* The end of an element may be missing behind the last one. */
+/* Skips semicolons; after the last element there may be none. */
 static void pass_end(struct view *v)
 {
     while (tri_words_seek(v->words) && *v->words->at == ';')
@@ -324,7 +327,7 @@ static bool add_triangle(struct view *v)
     return true;
 }
 
-/* Nodes of an element by its name; 0: one that is not read. */
+/* Returns the number of nodes of an element name; 0: not supported. */
 static int nodes_of_view(const char *name, size_t length)
 {
     static const char kinds[] = "PLT";
@@ -332,7 +335,7 @@ static int nodes_of_view(const char *name, size_t length)
     return found ? 1 + (int)(found - kinds) : 0;
 }
 
-/* Points and lines count if there are no triangles: otherwise they lie at corners. */
+/* Reads an element. Points and lines are used only if there are no triangles, since otherwise they lie at corners. */
 static bool read_element(struct view *v)
 {
     struct tri_words *w = v->words;
@@ -343,7 +346,7 @@ static bool read_element(struct view *v)
     const size_t length = (size_t)(w->at - kind);
     const int n = nodes_of_view(kind, length);
     if (n == 0)
-        return TRI_WORDS_FAIL(w, "no scalar triangle (ST), line (SL) or point (SP)");
+        return TRI_WORDS_FAIL(w, "not a scalar triangle (ST), line (SL) or point (SP)");
     if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n))
         return false;
     pass_end(v);
@@ -358,7 +361,7 @@ static bool read_view_head(struct view *v)
 {
     struct tri_words *w = v->words;
     if (!tri_words_next(w) || !tri_words_is(w, "view"))
-        return TRI_WORDS_FAIL(w, "no .pos file: it does not begin with View");
+        return TRI_WORDS_FAIL(w, "not a .pos file: it does not begin with View");
     if (!take_sign(v, '"'))
         return false;
     const char *quote = memchr(w->at, '"', (size_t)(w->text.data + w->text.size - w->at));

@@ -1,8 +1,8 @@
-/* Reading VTK XML, unstructured grid (.vtu): as triangle/text/vtu.c writes it, and the same with arrays as text. One
- * piece, cells that are triangles and lines, z = 0.
+/* Reads VTK XML, unstructured grid (.vtu), as triangle/text/vtu.c writes it, and the same with arrays as text: one
+ * piece, cells that are triangles or lines, z = 0.
  *
- * The head is XML of a form that needs no more than its tags: they are gone through once, and the arrays of interest
- * noted. An array becomes doubles, whatever it is in the file: numbers of points up to 2^31 are exact. */
+ * Of the XML head only the tags are needed: they are scanned once, and the arrays of interest are recorded. All arrays
+ * are converted to doubles, which represent point numbers up to 2^31 exactly. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,8 +19,8 @@ enum which {
 };
 
 static const struct kind {
-    const char *section, *name; /* NULL: any */
-    int components;             /* 0: any */
+    const char *section, *name; /* NULL: any name */
+    int components;             /* 0: any number */
 } kinds[ARRAYS] = {
     {"PointData", "marker", 1},    {"PointData", "attributes", 0}, {"CellData", "marker", 1},
     {"CellData", "attributes", 0}, {"Points", NULL, 3},            {"Cells", "connectivity", 1},
@@ -39,7 +39,7 @@ static const struct type {
     {"Int8", 1, false, true},    {"UInt8", 1, false, false},
 };
 
-/* A piece of the file: a tag without its brackets, a value, the text of an array. */
+/* A range of the file: a tag without its brackets, a value, or the text of an array. */
 struct span {
     const char *at, *end;
 };
@@ -48,16 +48,16 @@ struct array {
     bool there, appended;
     const struct type *type;
     int64_t components;
-    uint64_t offset;  /* of appended data */
-    struct span text; /* of others */
+    uint64_t offset;  /* offset in the appended data */
+    struct span text; /* text of an array that is not appended */
 };
 
 struct reading {
     struct tri_reading to;
     struct tri_bytes file;
     bool is_vtk;
-    bool wide_sizes; /* of appended data: 8 bytes */
-    const char *data; /* where these begin; NULL: there are none */
+    bool wide_sizes; /* sizes of appended arrays have 8 bytes; false: 4 */
+    const char *data; /* start of the appended data; NULL: none */
     char section[16];
     int n_pieces;
     int64_t n_points, n_cells;
@@ -68,7 +68,7 @@ struct reading {
 
 /* --- tags */
 
-/* The next one; comments and the like are passed. */
+/* Finds the next tag; skips comments and declarations. */
 static bool next_tag(struct tri_bytes *file, struct span *tag)
 {
     while (tri_bytes_pass(file, "<")) {
@@ -91,7 +91,7 @@ static bool is_tag(struct span tag, const char *name)
     return m >= n && memcmp(tag.at, name, n) == 0 && (m == n || is_blank(tag.at[n]) || tag.at[n] == '/');
 }
 
-/* The value of name="value", or empty. */
+/* Returns the value of name="value", or an empty span. */
 static struct span value_of(struct span tag, const char *name)
 {
     const size_t n = strlen(name);
@@ -111,7 +111,7 @@ static bool is_value(struct span value, const char *text)
            memcmp(value.at, text, strlen(text)) == 0;
 }
 
-/* A count; -1: it is none. */
+/* Returns the value as a count; -1: it is not a count. */
 static int64_t count_of(struct span tag, const char *name, int64_t missing)
 {
     const struct span value = value_of(tag, name);
@@ -129,9 +129,9 @@ static bool take_file_tag(struct reading *r, struct span tag)
     if (!is_value(value_of(tag, "type"), "UnstructuredGrid"))
         return FAIL(r, "not an unstructured grid");
     if (is_value(value_of(tag, "byte_order"), "BigEndian"))
-        return FAIL(r, "big-endian: only little-endian data are read");
+        return FAIL(r, "the file is big-endian; only little-endian data are supported");
     if (value_of(tag, "compressor").at)
-        return FAIL(r, "its data are compressed: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are compressed; only raw appended data and text are supported (meshio: binary=False)");
     r->wide_sizes = is_value(value_of(tag, "header_type"), "UInt64");
     return true;
 }
@@ -141,11 +141,11 @@ static bool take_piece_tag(struct reading *r, struct span tag)
     r->n_points = count_of(tag, "NumberOfPoints", -1);
     r->n_cells = count_of(tag, "NumberOfCells", -1);
     if (r->n_pieces++ > 0)
-        return FAIL(r, "more than one piece: files of one are read");
+        return FAIL(r, "more than one piece is not supported");
     if (r->n_points < 0 || r->n_cells < 0)
         return FAIL(r, "the numbers of points and cells are missing");
     if (r->n_points > INT32_MAX || r->n_cells > INT32_MAX)
-        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "more points or cells than are read");
+        return tri_reading_fail(&r->to, TRI_TOO_LARGE, 0, "too many points or cells");
     return true;
 }
 
@@ -158,7 +158,7 @@ static const struct type *type_of(struct span tag)
     return NULL;
 }
 
-/* Which array it is; ARRAYS: none of interest. */
+/* Returns the array that the tag describes; ARRAYS: none of interest. */
 static int which_array(const struct reading *r, struct span tag)
 {
     int k = 0;
@@ -177,17 +177,17 @@ static bool take_array_tag(struct reading *r, struct span tag)
     if (tag.end[-1] != '/') { /* its text follows */
         array.text.at = r->file.at;
         if (!tri_bytes_pass(&r->file, "<"))
-            return FAIL(r, "the file ends in an array");
+            return FAIL(r, "the file ends within an array");
         array.text.end = --r->file.at;
     }
     if (k == ARRAYS)
         return true;
     if (!array.appended && !is_value(format, "ascii"))
-        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64; only raw appended data and text are supported (meshio: binary=False)");
     const int64_t offset = count_of(tag, "offset", 0);
     if (!array.type || offset < 0 || array.components < 1 || array.components > MOST_COMPONENTS ||
         (kinds[k].components > 0 && array.components != kinds[k].components) || (!array.appended && !array.text.at))
-        return FAIL(r, "an array has not the type and size that it should");
+        return FAIL(r, "an array has an unexpected type or size");
     array.offset = (uint64_t)offset;
     r->array[k] = array;
     return true;
@@ -196,14 +196,14 @@ static bool take_array_tag(struct reading *r, struct span tag)
 static bool take_data_tag(struct reading *r, struct span tag)
 {
     if (!is_value(value_of(tag, "encoding"), "raw"))
-        return FAIL(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
+        return FAIL(r, "its data are base64; only raw appended data and text are supported (meshio: binary=False)");
     if (!tri_bytes_pass(&r->file, "_"))
         return FAIL(r, "there are no data");
     r->data = r->file.at;
     return true;
 }
 
-/* Sections are few, and their names short. */
+/* Records the current section. */
 static void note_section(struct reading *r, struct span tag)
 {
     static const char *const sections[] = {"PointData", "CellData", "Points", "Cells"};
@@ -261,7 +261,7 @@ static double number_at(const struct type *type, const char *at)
     return -(double)(((~bits << unused) >> unused) + 1);
 }
 
-/* n numbers of appended data. False: they are not there. */
+/* Reads n numbers of appended data. Returns false if they are missing. */
 static bool take_appended(const struct reading *r, const struct array *a, uint64_t n, double *out)
 {
     const uint64_t head = r->wide_sizes ? 8 : 4;
@@ -278,7 +278,7 @@ static bool take_appended(const struct reading *r, const struct array *a, uint64
     return true;
 }
 
-/* The same of text. */
+/* The same for text. */
 static bool take_text(const struct array *a, uint64_t n, double *out)
 {
     const char *at = a->text.at;
@@ -303,8 +303,8 @@ static bool are_finite(const double *at, uint64_t n)
     return i == n;
 }
 
-/* The numbers of n rows, malloc'ed and the caller's even if they are not good. A file of so many bytes cannot hold more
- * numbers than these. */
+/* Reads the numbers of `rows` rows into an array from malloc, which belongs to the caller even after a failure. A file
+ * cannot hold more numbers than bytes. */
 static bool take_array(struct reading *r, enum which k, int64_t rows, double **out)
 {
     const struct array *a = &r->array[k];
@@ -316,7 +316,7 @@ static bool take_array(struct reading *r, enum which k, int64_t rows, double **o
         return tri_reading_no_memory(&r->to);
     if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
         return true;
-    return FAIL(r, "the array %s has not %" PRIu64 " finite numbers", name_of(k), n);
+    return FAIL(r, "the array %s does not have %" PRIu64 " finite numbers", name_of(k), n);
 }
 
 /* --- points */
@@ -336,7 +336,7 @@ static bool take_points(struct reading *r)
     return true;
 }
 
-/* Whole numbers of 32 bits. */
+/* Reads an array of 32-bit integers. */
 static bool take_markers(struct reading *r, enum which k, int64_t rows, int32_t **out)
 {
     double *values = NULL;
@@ -364,12 +364,12 @@ static bool take_point_data(struct reading *r)
     return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
 }
 
-/* --- cells: each array as doubles */
+/* --- cells: all arrays are converted to doubles */
 
 struct cells {
     double *type, *end, *node;
-    int64_t n_nodes;     /* in all */
-    int n_of_a_triangle; /* 3 or 6 */
+    int64_t n_nodes;     /* total number */
+    int n_of_a_triangle; /* nodes of each triangle: 3 or 6 */
 };
 
 static int nodes_of(double type)
@@ -386,9 +386,9 @@ static bool check_cells(struct reading *r, struct cells *c, int64_t *triangles)
         if (n == 0)
             return FAIL(r, "cell %" PRId64 " is of type %g: neither triangle nor line", i, c->type[i]);
         if (c->end[i] != end)
-            return FAIL(r, "cell %" PRId64 " has not %d points", i, n);
+            return FAIL(r, "cell %" PRId64 " does not have %d points", i, n);
         if (n > 2 && c->n_of_a_triangle != n && *triangles > 0)
-            return FAIL(r, "triangles of three nodes and of six in one mesh");
+            return FAIL(r, "the mesh has triangles of three nodes and of six nodes");
         c->n_of_a_triangle = n > 2 ? n : c->n_of_a_triangle;
         *triangles += n > 2;
     }
@@ -400,11 +400,11 @@ static bool check_nodes(struct reading *r, const struct cells *c)
 {
     for (int64_t i = 0; i < c->n_nodes; i++)
         if (!(c->node[i] >= 0 && c->node[i] < (double)r->n_points))
-            return FAIL(r, "a cell names point %g of %" PRId64, c->node[i], r->n_points);
+            return FAIL(r, "a cell refers to point %g of %" PRId64, c->node[i], r->n_points);
     return true;
 }
 
-/* VTK has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+/* VTK orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
 static void put_cells(struct reading *r, const struct cells *c)
 {
     static const int opposite[] = {2, 0, 1};
@@ -426,7 +426,7 @@ static void put_cells(struct reading *r, const struct cells *c)
     }
 }
 
-/* Of the rows of all cells those of triangles come first, in place. */
+/* Moves the rows of triangles to the front, in place. */
 static bool take_cell_attributes(struct reading *r, const struct cells *c)
 {
     const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;

@@ -86,7 +86,7 @@ bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading 
     qsort(tags->sorted, (size_t)tags->n, 2 * sizeof *tags->sorted, compare);
     for (int64_t i = 1; i < tags->n; i++)
         if (tags->sorted[2 * i] == tags->sorted[2 * i - 2])
-            return tri_reading_fail(reading, TRI_BAD_INPUT, 0, "%s %lld is there twice", what,
+            return tri_reading_fail(reading, TRI_BAD_INPUT, 0, "%s %lld occurs twice", what,
                                     (long long)tags->sorted[2 * i]);
     return true;
 }
@@ -95,7 +95,7 @@ int64_t tri_tags_place(const struct tri_tags *tags, int64_t tag)
 {
     if (tags->n == 0)
         return -1;
-    if (tags->in_a_row) /* no difference below overflows */
+    if (tags->in_a_row) /* the differences below cannot overflow */
         return tag >= tags->tag[0] && tag <= tags->tag[tags->n - 1] ? tag - tags->tag[0] : -1;
     const int64_t *found = bsearch(&tag, tags->sorted, (size_t)tags->n, 2 * sizeof *tags->sorted, compare);
     return found ? found[1] : -1;
@@ -130,7 +130,7 @@ enum tri_status tri_bytes_load(struct tri_bytes *bytes, const char *path, struct
 {
     struct tri_file_facts facts;
     *bytes = (struct tri_bytes){0};
-    const tri_file file = tri_file_open(path, TRI_OPEN_LOOK); /* a pipe that nobody writes would hang */
+    const tri_file file = tri_file_open(path, TRI_OPEN_LOOK); /* opening a pipe without a writer would block */
     if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
     enum tri_status status = TRI_OK;

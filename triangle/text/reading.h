@@ -1,5 +1,5 @@
-/* What readers of other programs' meshes share: where the mesh goes, and numbers by which a file knows its nodes or
- * elements, and their places in it. */
+/* Common parts of the readers of other programs' meshes: the structs that receive the mesh, and the tags by which a
+ * file identifies nodes or elements. */
 #ifndef TRIANGLE_TEXT_READING_H
 #define TRIANGLE_TEXT_READING_H
 
@@ -12,73 +12,75 @@
 #include "triangle/text/binary.h"
 
 struct tri_reading {
-    const char *path;
+    const char *path;              /* name of the file, for errors; borrowed */
     const struct tri_executor *executor;
-    struct tri_pslg *mesh;         /* empty to begin with; whoever calls frees them, also after a failure */
+    struct tri_pslg *mesh;         /* empty at first; the caller frees both, even after a failure */
     struct tri_elements *elements;
-    struct tri_error *error;
-    enum tri_status status;        /* TRI_OK until something fails */
+    struct tri_error *error;       /* receives the error */
+    enum tri_status status;        /* TRI_OK until an error occurs */
 };
 
-/* Functions that read return false once they have noted why they have failed. line: 0: none. */
+/* Functions that read return false after they have recorded an error. line == 0: no line. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
 #endif
 bool tri_reading_fail(struct tri_reading *reading, enum tri_status status, size_t line, const char *format, ...);
 bool tri_reading_no_memory(struct tri_reading *reading);
 
-/* Room for n triangles of so many nodes, and for segments. */
+/* Allocate room for n triangles with n_nodes nodes each, and for n segments. */
 bool tri_reading_triangles(struct tri_reading *reading, int64_t n, int n_nodes);
 bool tri_reading_segments(struct tri_reading *reading, int64_t n);
 
 struct tri_tags {
-    int64_t n;
-    int64_t *tag;    /* [n] by place; malloc'ed */
-    bool in_a_row;   /* each is one more than that before: no search */
-    int64_t *sorted; /* [n][2] else: tag and place, by tag */
+    int64_t n;       /* number of tags */
+    int64_t *tag;    /* [n] tags in file order; from malloc */
+    bool in_a_row;   /* tags are consecutive, so no search is needed */
+    int64_t *sorted; /* [n][2] otherwise: pairs of tag and position, sorted by tag */
 };
 
-/* Room for n of them, to be filled, then ordered. To be freed in any case. */
+/* Allocates room for n tags; the caller stores them and calls tri_tags_order. Free in any case. */
 bool tri_tags_begin(struct tri_tags *tags, int64_t n, struct tri_reading *reading);
 
-/* Those of nodes, and room for their places in the mesh. */
+/* The same for tags of nodes; also allocates the points of the mesh. */
 bool tri_tags_begin_nodes(struct tri_tags *tags, int64_t n, struct tri_reading *reading);
 
-/* TRI_BAD_INPUT: one, of `what`, occurs twice. O(n), or O(n log n) where they are not in a row. */
+/* Prepares the search by tag. TRI_BAD_INPUT: a tag of a `what` occurs twice. O(n) if tags are consecutive, otherwise
+ * O(n log n). */
 bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading *reading);
 
-/* The place of a tag; -1: there is none. O(1) or O(log n). */
+/* Returns the position of a tag; -1: there is no such tag. O(1) or O(log n). */
 int64_t tri_tags_place(const struct tri_tags *tags, int64_t tag);
 void tri_tags_free(struct tri_tags *tags);
 
-/* --- a file in memory as bytes that are taken one after the other, for formats that are binary
+/* --- a file in memory that is read sequentially, for binary formats
  *
- * Little-endian numbers, and lines between them. What is not there is not taken: everyone who takes asks before. */
+ * The bytes are little-endian numbers, with lines of text between them. Callers must check that bytes are left before
+ * they read numbers. */
 
 struct tri_bytes {
-    char *data;           /* malloc'ed */
-    const char *at, *end; /* what has not been taken */
+    char *data;           /* from malloc */
+    const char *at, *end; /* the bytes not read yet */
 };
 
-/* Reads a file whole; a pipe or device is refused. To be freed in any case. TRI_CANNOT_READ, TRI_NO_MEMORY. */
+/* Reads a whole file; rejects pipes and devices. Free in any case. TRI_CANNOT_READ, TRI_NO_MEMORY. */
 enum tri_status tri_bytes_load(struct tri_bytes *bytes, const char *path, struct tri_error *error);
 void tri_bytes_free(struct tri_bytes *bytes);
 
 static inline uint64_t tri_bytes_left(const struct tri_bytes *bytes) { return (uint64_t)(bytes->end - bytes->at); }
 
-/* Are there n items of that size? */
+/* Are at least n items of that size left? */
 static inline bool tri_bytes_has(const struct tri_bytes *bytes, uint64_t n, uint64_t size)
 {
     return n <= tri_bytes_left(bytes) / size;
 }
 
-/* The line that begins here, without its end, and moves behind it; false: there is none. */
+/* Reads a line and removes its line break; returns false if there is none. */
 bool tri_bytes_line(struct tri_bytes *bytes, const char **line, size_t *length);
 
-/* Moves behind the text, wherever it is next; false: it does not come. */
+/* Moves to the end of the next occurrence of the text; returns false if there is none. */
 bool tri_bytes_pass(struct tri_bytes *bytes, const char *text);
 
-/* --- numbers that are taken: they are there */
+/* --- numbers; the caller has checked that they are there */
 
 static inline int32_t tri_take_i32(struct tri_bytes *bytes)
 {

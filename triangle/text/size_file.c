@@ -13,7 +13,7 @@ bool tri_size_file_is_known(const char *path)
            tri_name_ends(path, ".pos") || tri_format_of(path);
 }
 
-/* Reads a text: by what it is if its suffix leaves that open. */
+/* Reads a text file; if the suffix is ambiguous, the content decides the format. */
 static enum tri_status read_text(struct tri_size_file *file, struct tri_words *w)
 {
     const char *path = w->to.path;
@@ -34,7 +34,7 @@ static enum tri_status read_text(struct tri_size_file *file, struct tri_words *w
     return w->to.status;
 }
 
-/* Of Gmsh's binary files the second line says so. */
+/* Is this one of Gmsh's binary files? Their second line shows it. */
 static bool is_binary_msh(const char *path)
 {
     static const char head[] = "$MeshFormat\n4.1 1";
@@ -47,7 +47,7 @@ static bool is_binary_msh(const char *path)
     return is;
 }
 
-/* With the .ele beside it, if there is one. */
+/* Reads the .node file, and the .ele file next to it. */
 static enum tri_status read_node(struct tri_reading *to)
 {
     const struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = to->executor};
@@ -74,7 +74,7 @@ static enum tri_status read_with(struct tri_size_file *file, struct tri_words *w
     return format->read(to->path, to->mesh, to->elements, to->executor, to->error);
 }
 
-/* The mesh, which is one, moves into the file; the first attribute of a point is its length. */
+/* Moves the mesh into the file; the first attribute of each point is its edge length. */
 static enum tri_status take_mesh(struct tri_size_file *file, struct tri_reading *to)
 {
     struct tri_pslg *mesh = to->mesh;
@@ -84,7 +84,7 @@ static enum tri_status take_mesh(struct tri_size_file *file, struct tri_reading 
         return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "there is no length at any point");
     for (int64_t i = 0; i < 3 * (int64_t)elements->n; i++)
         if (elements->corners[i] < 0 || elements->corners[i] >= n)
-            return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "a triangle names point %ld of %ld",
+            return tri_fail(to->error, TRI_BAD_INPUT, to->path, 0, "a triangle refers to point %ld of %ld",
                             (long)elements->corners[i], (long)n);
     for (int64_t i = 0; i < n; i++)
         mesh->attributes[i] = mesh->attributes[i * width];

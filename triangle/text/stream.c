@@ -9,13 +9,13 @@
 
 enum { MOST_COUNTS = 4 };
 
-/* A table whose first line waits for the number of its rows. */
+/* A table whose first line is written after its rows, because it holds their number. */
 struct table {
-    struct tri_output *output; /* NULL: not wanted */
+    struct tri_output *output; /* NULL: not requested */
     tri_write_rows_call *write;
-    uint64_t place;            /* of the first line */
-    size_t room;               /* kept for it */
-    int64_t counts[MOST_COUNTS]; /* of that line; the first is that of rows so far */
+    uint64_t place;            /* offset of the first line */
+    size_t room;               /* bytes reserved for the first line */
+    int64_t counts[MOST_COUNTS]; /* numbers on the first line; the first is the number of rows so far */
     int n_counts;
 };
 
@@ -23,14 +23,14 @@ enum { POINTS, TRIANGLES, SEGMENTS, TABLES };
 
 struct tri_text_stream {
     struct tri_text_options options;
-    struct tri_tile_grid rows; /* of the tile that is written */
-    bool known;                /* the counts are, from the beginning */
+    struct tri_tile_grid rows; /* the current tile */
+    bool known;                /* the counts are known from the beginning */
     struct table table[TABLES];
 };
 
 /* --- the tile as a grid */
 
-/* Item i is asked for. */
+/* Returns the tile for a request of item i, and evicts pages periodically. */
 static const struct tri_tile_grid *at_item(const void *user, int64_t i)
 {
     const struct tri_tile_grid *g = user;
@@ -79,7 +79,7 @@ double *tri_copy_columns(const struct tri_stream *stream)
     return columns;
 }
 
-/* With what holds for all tiles; begins anew if it has begun. TRI_NO_MEMORY. */
+/* Initialises the parts that are common to all tiles. May be called again to restart. TRI_NO_MEMORY. */
 static enum tri_status begin_tile_grid(struct tri_tile_grid *g, const struct tri_stream *stream, bool markers,
                                     struct tri_error *error)
 {
@@ -95,7 +95,7 @@ static enum tri_status begin_tile_grid(struct tri_tile_grid *g, const struct tri
 
 /* --- tables */
 
-/* Room for the first line, if there are about so many rows. */
+/* Reserves room for the first line, assuming about `rows` rows. */
 static void keep_room(struct table *table, double rows)
 {
     char line[TRI_COUNTS_ROOM];
@@ -114,7 +114,7 @@ static enum tri_status add_rows(const struct tri_text_stream *s, struct table *t
     return table->output ? table->write(table->output, &s->rows.grid, first, n, NULL, error) : TRI_OK;
 }
 
-/* Puts the first line where it belongs. */
+/* Writes the first line; if its length differs from the reserved room, moves the rows. */
 static enum tri_status conclude_table(struct table *table, struct tri_error *error)
 {
     char line[TRI_COUNTS_ROOM];
@@ -141,7 +141,7 @@ static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream
 
 /* --- the sink */
 
-/* What was written is void. */
+/* Discards everything written so far. */
 static enum tri_status begin_again(struct tri_text_stream *s, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -166,7 +166,7 @@ static enum tri_status begin_files(void *user, const struct tri_stream *stream, 
     if (status || stream->rank > 0)
         return status;
     if (o->poly)
-        status = tri_write_counts(o->poly, s->table[POINTS].counts, 4, error); /* no points */
+        status = tri_write_counts(o->poly, s->table[POINTS].counts, 4, error); /* the .poly file has no points */
     keep_room_for_all(s, stream);
     return status;
 }
@@ -223,22 +223,22 @@ void tri_text_stream_free(struct tri_text_stream *stream)
     free(stream);
 }
 
-/* --- tiles kept in files
+/* --- tiles stored in temporary files
  *
- * One file for each kind of array, to which tiles are appended, and which is mapped at the end.
+ * There is one file for each kind of array. Tiles are appended, and the files are mapped at the end.
  *
- * INVARIANT: no more is in memory of the files than the rows that have been asked for since pages were let go, which
- * happens whenever somebody asks for a row whose number is a multiple of TRI_GRID_ROUNDS: for writers go through all
- * rows of a kind, once and about in their order. Where they do not, or go through extras alone, they say when. */
+ * INVARIANT: only rows read since the last eviction are in memory. Pages are evicted when a row whose number is a
+ * multiple of TRI_GRID_ROUNDS is requested, because writers read all rows of a kind once, about in order. Writers that
+ * read in a different order, or only work arrays, trigger the eviction themselves. */
 
 enum sheet { POINT_PLACES, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS };
 
 struct tri_tile_store {
     const char *folder;
-    struct tri_mapped_file sheet[SHEETS]; /* kinds, then extras */
-    struct tri_storage storage; /* gives the extras */
-    struct tri_tile_grid all;   /* what has been taken, as one tile */
+    struct tri_mapped_file sheet[SHEETS]; /* array kinds, then work arrays */
+    struct tri_storage storage; /* allocates the work arrays */
+    struct tri_tile_grid all;   /* all stored tiles as one tile */
 };
 
 /* --- files */
@@ -254,7 +254,7 @@ static bool append_sheet(struct tri_tile_store *s, enum sheet kind, const void *
     return tri_mapped_file_append(&s->sheet[kind], s->folder, bytes, n);
 }
 
-/* --- room beside the arrays */
+/* --- work arrays */
 
 static void *give_extra(void *user, size_t bytes)
 {
@@ -342,7 +342,8 @@ enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *fo
     if (!s)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
     s->folder = folder;
-    s->storage = (struct tri_storage){.extra = give_extra, .extra_free = free_extra, .user = s, .let_go = let_go};
+    s->storage = (struct tri_storage){.extra = give_extra, .extra_free = free_extra, .user = s,
+                                      .let_go = let_go};
     for (int k = 0; k < SHEETS; k++)
         s->sheet[k].file = TRI_NO_FILE;
     *sink = (struct tri_sink){s, begin_store, keep_tile, NULL};

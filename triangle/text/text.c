@@ -1,6 +1,7 @@
-/* A text file in memory as a sequence of records: loading, indexing, and parsing tables by chunks.
+/* A text file in memory as a sequence of records: loading, indexing, and parsing of tables by chunks.
  *
- * The file is read, not mapped: reading survives that somebody truncates it meanwhile, and goes in parallel as well. */
+ * The file is read, not memory-mapped: reading is safe if another process truncates the file, and parallelises as
+ * well. */
 #include "triangle/text/text.h"
 
 #include <assert.h>
@@ -14,7 +15,7 @@
 
 enum { DEFAULT_CHUNK = 1 << 18 };
 
-static const size_t largest_pipe = 1000000000; /* what has no size may have no end either: /dev/zero */
+static const size_t largest_pipe = 1000000000; /* limit for inputs without a size, which may be endless: /dev/zero */
 
 #define J TRI_IS_JUNK
 #define S TRI_IS_START
@@ -72,7 +73,7 @@ void tri_fields_skip_junk(struct tri_fields *fields)
     fields->at = at;
 }
 
-/* Begin of the line behind the one that `at` lies in. */
+/* Returns the start of the line after the one that contains `at`. */
 static const char *next_line(const char *at, const char *end)
 {
     if (*at == '\n')
@@ -88,13 +89,13 @@ struct load {
     struct tri_text *text;
     tri_file file;
     size_t file_size;
-    int *errors; /* [n_chunks] error number of each chunk's read; -1: the file has become shorter */
+    int *errors; /* [n_chunks] errno of each chunk's read; -1: the file has become shorter */
 };
 
 static void read_chunk(void *context, size_t i)
 {
     struct load *const load = context;
-    if (tri_stop_is_asked(load->text->stop)) /* whoever ran the tasks will see it, too */
+    if (tri_stop_is_asked(load->text->stop)) /* the caller of the tasks checks this as well */
         return;
     const size_t begin = i * load->text->chunk_bytes;
     const size_t left = load->file_size - begin;
@@ -103,7 +104,7 @@ static void read_chunk(void *context, size_t i)
     load->errors[i] = got < 0 ? errno : (size_t)got < n ? -1 : 0;
 }
 
-/* A file whose size is known, in parallel. */
+/* Reads a file of known size in parallel. */
 static enum tri_status read_sized(struct load *load, const struct tri_executor *executor, struct tri_error *error)
 {
     struct tri_text *const text = load->text;
@@ -124,13 +125,13 @@ static enum tri_status read_sized(struct load *load, const struct tri_executor *
     return TRI_OK;
 }
 
-/* A pipe, or a file that does not say its size, to its end. */
+/* Reads a pipe, or a file that reports no size, to its end. */
 static enum tri_status read_stream(struct tri_text *text, tri_file file, struct tri_error *error)
 {
     enum { PIECE = 1 << 16 };
     int64_t room = 0;
     for (;;) {
-        if (!tri_grow_far(&text->data, &room, (int64_t)text->size + PIECE, 1)) /* a byte is for a final newline */
+        if (!tri_grow_far(&text->data, &room, (int64_t)text->size + PIECE, 1)) /* one byte is for a final newline */
             return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the file");
         if (tri_stop_is_asked(text->stop))
             return tri_fail_stopped(error);
@@ -142,7 +143,7 @@ static enum tri_status read_stream(struct tri_text *text, tri_file file, struct 
         if (got > 0)
             text->size += (size_t)got;
         if (text->size > largest_pipe)
-            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GB from what is no regular file");
+            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GB from a file that is not regular");
     }
 }
 
@@ -179,8 +180,8 @@ static enum tri_status read_file(struct tri_text *text, const struct tri_executo
 
 /* --- index */
 
-/* Begin of the first line that begins in chunk i, or NULL. Looks at the chunk's own bytes only, so that one endless
- * line does not make the index quadratic. */
+/* Returns the start of the first line that starts in chunk i, or NULL. Looks only at the bytes of the chunk, so that a
+ * single endless line does not make indexing quadratic. */
 static const char *first_line(const struct tri_text *text, size_t i)
 {
     const size_t begin = i * text->chunk_bytes;
@@ -188,11 +189,11 @@ static const char *first_line(const struct tri_text *text, size_t i)
         return text->data;
     const size_t left = text->size - begin;
     const size_t n = left < text->chunk_bytes ? left : text->chunk_bytes;
-    const char *const newline = memchr(text->data + begin - 1, '\n', n); /* of lines that begin in [begin, begin + n) */
+    const char *const newline = memchr(text->data + begin - 1, '\n', n); /* lines start in [begin, begin + n) */
     return newline ? newline + 1 : NULL;
 }
 
-/* Puts into chunk i its begin, and its own numbers of lines and records. */
+/* Sets the start of chunk i, and its own numbers of lines and records. */
 static void count_chunk(void *context, size_t i)
 {
     struct tri_text *const text = context;
@@ -212,8 +213,8 @@ static void count_chunk(void *context, size_t i)
     }
 }
 
-/* From numbers of lines and records in each chunk to numbers before it; chunks in which no line begins get the begin of
- * the next. */
+/* Converts the numbers of lines and records in each chunk to numbers before it. Chunks in which no line starts get the
+ * start of the next chunk. */
 static void accumulate(struct tri_text *text)
 {
     struct tri_text_chunk before = {.line = text->lines_before};
@@ -231,7 +232,7 @@ static void accumulate(struct tri_text *text)
             text->chunks[i].begin = text->chunks[i + 1].begin;
 }
 
-/* The number of the line that holds the byte at `at`. */
+/* Returns the number of the line that contains `at`. */
 static int64_t line_of(const char *begin, const char *at)
 {
     int64_t line = 1;
@@ -240,7 +241,7 @@ static int64_t line_of(const char *begin, const char *at)
     return line;
 }
 
-/* A number would end at a NUL, and be read wrong: UTF-16, or no text at all. */
+/* Rejects NUL bytes, at which numbers would end too early: the file is UTF-16, or not text at all. */
 static enum tri_status check_nul(const struct tri_text *text, struct tri_error *error)
 {
     for (size_t i = 0; i < text->n_chunks; i++)
@@ -252,7 +253,7 @@ static enum tri_status check_nul(const struct tri_text *text, struct tri_error *
     return TRI_OK;
 }
 
-/* Indexes data[size], which end in a newline, anew. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
+/* Builds the index of data[size], which ends in a newline. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
 static enum tri_status index_text(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
 {
     free(text->chunks);
@@ -314,19 +315,19 @@ size_t tri_cursor_remaining(const struct tri_cursor *cursor)
     return cursor->text->chunks[cursor->text->n_chunks].record - cursor->record;
 }
 
-/* What parsing the records of one chunk came to. */
+/* Result of parsing the records of one chunk. */
 struct outcome {
-    struct tri_cursor cursor; /* behind the last record parsed; its text is NULL where there was none */
-    const char *fault;        /* of that record, or NULL */
+    struct tri_cursor cursor; /* position after the last record parsed; its text is NULL if there was none */
+    const char *fault;        /* fault of that record, or NULL */
 };
 
 struct parse {
     const struct tri_table *table;
-    struct tri_cursor begin;  /* of the table */
+    struct tri_cursor begin;  /* start of the table */
     struct outcome *outcomes; /* [n_chunks] */
 };
 
-/* The records of the table that begin in chunk i. */
+/* Parses the records of the table that start in chunk i. */
 static void parse_chunk(void *context, size_t i)
 {
     struct parse *const parse = context;
@@ -352,7 +353,7 @@ static void parse_chunk(void *context, size_t i)
     parse->outcomes[i] = (struct outcome){cursor, fault};
 }
 
-/* The fault of the first faulty record; else the cursor goes behind the table. */
+/* Reports the fault of the first faulty record, or moves the cursor to the end of the table. */
 static enum tri_status conclude(const struct parse *parse, struct tri_cursor *cursor, struct tri_error *error)
 {
     const struct tri_text *text = parse->begin.text;
@@ -408,13 +409,13 @@ const char *tri_fields_point(struct tri_fields *fields, double xy[2])
 
 /* --- windows
  *
- * The stretch moves on when its last record has been read: what is left behind its last whole line comes to the front,
- * and the room is filled up from the file. */
+ * When the last record of the window has been read, the window moves on: the incomplete last line is moved to the
+ * front, and the buffer is filled from the file. */
 
-/* Fills the room. */
+/* Fills the buffer from the file. */
 static enum tri_status fill_room(struct tri_window *w, struct tri_error *error)
 {
-    while (!w->at_end && w->used + 1 < w->room) { /* a byte is kept for a final newline */
+    while (!w->at_end && w->used + 1 < w->room) { /* one byte is for a final newline */
         const int64_t got = tri_read_next(w->file, w->data + w->used, w->room - 1 - w->used);
         if (got < 0 && errno != EINTR)
             return tri_fail_system(error, TRI_CANNOT_READ, w->text.name, "cannot read", errno);
@@ -442,7 +443,7 @@ static enum tri_status grow_room(struct tri_window *w, struct tri_error *error)
     return TRI_OK;
 }
 
-/* To the next stretch; its text is empty at the end of the file. */
+/* Moves the window on; its text is empty at the end of the file. */
 static enum tri_status move_on(struct tri_window *w, struct tri_error *error)
 {
     size_t done = w->text.size;
@@ -489,7 +490,7 @@ void tri_window_free(struct tri_window *w)
     *w = (struct tri_window){.file = TRI_NO_FILE};
 }
 
-/* Until there is a record in the stretch. */
+/* Moves the window on until it contains a record. */
 static enum tri_status seek_record(struct tri_window *w, bool *found, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;

@@ -1,15 +1,14 @@
 /* A text file in memory as a sequence of records, and the fields of a record: the lexer of all input formats.
  *
- * A record is a line that holds, before any '#', one of the characters 0-9 + - . ; all other lines are blank or
- * comment. A field begins at such a character and ends at a blank, a '#' or the end of the line. What stands between
- * fields and cannot begin one (commas, words, brackets) is skipped; but the words nan, inf and infinity are remembered,
- * since skipping them would shift all later values by one column without a word.
+ * A record is a line that has, before any '#', one of the characters 0-9 + - . ; all other lines are blank or comments.
+ * A field starts at such a character and ends at a blank, a '#' or the end of the line. Text between fields (commas,
+ * words, brackets) is skipped. But the words nan, inf and infinity are recorded, since skipping them would silently
+ * shift all later values by one column.
  *
- * The text is cut into chunks of equal size; a line belongs to the chunk that its first byte lies in. Records and lines
- * of each chunk are counted once, when the file is loaded. So the number of records that remain is known before
- * anything is allocated for them, a table of n records is parsed chunk by chunk in any order, and every record knows
- * its line.
- * INVARIANT: data[size - 1] is '\n' (added where missing), so no scan needs to look for the end of the text. */
+ * The text is divided into chunks of equal size; a line belongs to the chunk of its first byte. Lines and records of
+ * each chunk are counted once, at loading. So the number of remaining records is known before memory is allocated for
+ * them, a table of n records can be parsed by chunks in any order, and the line number of every record is known.
+ * INVARIANT: data[size - 1] is '\n' (added if missing), so scans need not check for the end of the text. */
 #ifndef TRIANGLE_TEXT_TEXT_H
 #define TRIANGLE_TEXT_TEXT_H
 
@@ -24,26 +23,25 @@
 #include "triangle/text/decimal.h"
 
 struct tri_text_chunk {
-    size_t begin;  /* offset of the first line that begins here or later */
+    size_t begin;  /* offset of the first line that starts in this chunk or later */
     size_t line;   /* lines before `begin` */
     size_t record; /* records before `begin` */
-    bool has_nul;  /* there is a NUL among the chunk's bytes: no text */
+    bool has_nul;  /* the chunk contains a NUL byte, so the file is not text */
 };
 
 struct tri_text {
     const char *name; /* the path, for errors; borrowed */
     char *data;       /* [size] */
     size_t size;      /* bytes, > 0 */
-    const struct tri_stop *stop; /* asked whether to go on */
-    size_t chunk_bytes;
-    size_t n_chunks;
-    struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last is the end of the text */
-    size_t lines_before; /* of a text that is a stretch of a file */
+    const struct tri_stop *stop; /* polled while reading; NULL: never stop */
+    size_t chunk_bytes;          /* size of a chunk */
+    size_t n_chunks;             /* number of chunks */
+    struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last one is the end of the text */
+    size_t lines_before; /* lines of the file before this text, if it is a window */
 };
 
-/* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GB.
- * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY,
- * TRI_STOPPED. O(size). */
+/* Reads a whole file and indexes it. chunk_bytes: 0 for the default. A pipe is read to its end, up to 1 GB. Free *text
+ * in any case; `path` must live as long. TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_STOPPED. O(size). */
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
                               const struct tri_executor *executor, const struct tri_stop *stop,
                               struct tri_error *error);
@@ -53,15 +51,15 @@ void tri_text_free(struct tri_text *text);
 /* --- fields of one record */
 
 enum tri_field {
-    TRI_FIELD_MISSING, /* the record has no further field */
-    TRI_FIELD_BAD,     /* a field that is no number; for a real also: not finite */
+    TRI_FIELD_MISSING, /* the record has no more fields */
+    TRI_FIELD_BAD,     /* the field is not a number or, for a real, not finite */
     TRI_FIELD_GOOD
 };
 
 struct tri_fields {
-    const char *at;   /* begin of the next field, or the '#' or '\n' that ends the record */
+    const char *at;   /* start of the next field, or the '#' or '\n' that ends the record */
     const char *end;  /* end of the whole text */
-    bool not_finite;  /* nan or inf was skipped right before `at` */
+    bool not_finite;  /* nan or inf was skipped just before `at` */
 };
 
 enum tri_character { TRI_IS_BLANK, TRI_IS_START, TRI_IS_JUNK, TRI_IS_HASH, TRI_IS_NEWLINE };
@@ -73,10 +71,10 @@ static inline enum tri_character tri_kind_at(const char *at)
     return (enum tri_character)tri_character_kind[(unsigned char)*at];
 }
 
-/* The slow half of tri_fields_seek: at something that is neither blank nor the begin of a field. */
+/* The slow path of tri_fields_seek, for characters that are neither blank nor the start of a field. */
 void tri_fields_skip_junk(struct tri_fields *fields);
 
-/* From anywhere between fields to the next one, or to the end of the record. */
+/* Moves from between two fields to the next field, or to the end of the record. */
 static inline void tri_fields_seek(struct tri_fields *fields)
 {
     while (tri_kind_at(fields->at) == TRI_IS_BLANK)
@@ -85,7 +83,7 @@ static inline void tri_fields_seek(struct tri_fields *fields)
         tri_fields_skip_junk(fields);
 }
 
-/* Opens the line that begins at `line`; returns whether it is a record. */
+/* Opens the line at `line`; returns whether it is a record. */
 static inline bool tri_fields_open(struct tri_fields *fields, const char *line, const char *end)
 {
     *fields = (struct tri_fields){line, end, false};
@@ -93,7 +91,7 @@ static inline bool tri_fields_open(struct tri_fields *fields, const char *line, 
     return tri_kind_at(fields->at) == TRI_IS_START;
 }
 
-/* From inside a field to the next one. */
+/* Moves from inside a field to the next field. */
 static inline void tri_fields_skip(struct tri_fields *fields)
 {
     while (tri_kind_at(fields->at) == TRI_IS_START || tri_kind_at(fields->at) == TRI_IS_JUNK)
@@ -132,77 +130,77 @@ static inline enum tri_field tri_fields_integer(struct tri_fields *fields, int64
     return TRI_FIELD_GOOD;
 }
 
-/* A marker; beyond int32_t it wraps, as in Triangle. NULL, or what is wrong with the field: words to follow the line's
- * name. */
+/* Reads a marker; values beyond int32_t wrap, as in Triangle. Returns NULL, or the text of the fault, to follow the
+ * name of the record. */
 const char *tri_fields_marker(struct tri_fields *fields, int32_t *marker);
 
-/* A number, which is left out, and two coordinates. The same. */
+/* Skips a number and reads two coordinates. Returns NULL, or the text of the fault. */
 const char *tri_fields_point(struct tri_fields *fields, double xy[2]);
 
 /* --- records in order */
 
 struct tri_cursor {
     const struct tri_text *text;
-    const char *at; /* begin of the first line not yet read */
-    size_t line;    /* lines before `at`: the number of the line read last */
+    const char *at; /* start of the first line not read yet */
+    size_t line;    /* lines before `at`, which is the number of the last line read */
     size_t record;  /* records before `at` */
 };
 
 struct tri_cursor tri_cursor_begin(const struct tri_text *text);
 
-/* Moves past the next record and opens it; false: the text has no more. */
+/* Reads the next record and opens it. Returns false if there is none. */
 bool tri_cursor_next(struct tri_cursor *cursor, struct tri_fields *fields);
 
-/* Records not yet read. O(1). */
+/* Returns the number of records not read yet. O(1). */
 size_t tri_cursor_remaining(const struct tri_cursor *cursor);
 
-/* A run of n records of the same kind. */
+/* A sequence of n records of the same kind. */
 struct tri_table {
-    const char *noun; /* what a record describes, for errors: "vertex" */
+    const char *noun; /* kind of the records in errors: "vertex" */
     size_t n;
-    int64_t base;     /* number of the first, for errors */
-    /* Parses record i. Returns NULL, or what is wrong with it, to stand behind "vertex 4 ": a text that outlives the
-     * call. Records are parsed in no particular order, so row may write only what belongs to record i. */
+    int64_t base;     /* number of the first record in errors */
+    /* Parses record i. Returns NULL, or a text of static storage that describes the fault and follows "vertex 4 ".
+     * Records are parsed in any order, so row may write data of record i only. */
     const char *(*row)(void *user, size_t i, struct tri_fields *fields);
-    void *user;
+    void *user; /* passed to row */
 };
 
-/* Parses the next table->n records, which must remain, and moves past them. Of several faulty records the first is
- * reported, however many threads ran. Errors: TRI_BAD_INPUT, TRI_NO_MEMORY. */
+/* Parses the next table->n records, which must exist, and moves past them. If several records are faulty, the first one
+ * is reported, regardless of the number of threads. TRI_BAD_INPUT, TRI_NO_MEMORY. */
 enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_table *table,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* --- a text of any size, a stretch of lines in memory at a time: records in order
+/* --- a text of any size, read in order with only a window of lines in memory
  *
- * Each stretch is indexed and parsed as a text of its own, by as many threads as the executor has. */
+ * Each window is indexed and parsed as a separate text, by as many threads as the executor has. */
 
 struct tri_window {
-    struct tri_text text;     /* the stretch; its data are all of `data` up to the last whole line */
-    struct tri_cursor cursor;
+    struct tri_text text;     /* the window: all of `data` up to the last complete line */
+    struct tri_cursor cursor; /* the next record in the window */
     tri_file file;            /* TRI_NO_FILE: not open */
-    char *data;
+    char *data;               /* the buffer */
     size_t room, used;        /* bytes */
-    bool at_end;              /* nothing is left to be read */
+    bool at_end;              /* the end of the file has been reached */
     const struct tri_executor *executor;
 };
 
-/* Opens the file; path must live as long. bytes: of a stretch, > 0 (longer lines get more). *window is to be freed in
- * any case. TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_BAD_INPUT (a NUL), as of all functions here. */
+/* Opens the file; path must live as long as the window. bytes: size of the window, > 0 (longer lines enlarge it). Free
+ * *window in any case. Errors of all functions here: TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_BAD_INPUT (a NUL byte). */
 enum tri_status tri_window_open(struct tri_window *window, const char *path, size_t bytes,
                                 const struct tri_executor *executor, struct tri_error *error);
 void tri_window_free(struct tri_window *window);
 
-/* Opens the next record, and moves past it; *found false: there is none. */
+/* Reads the next record and opens it; *found is false if there is none. */
 enum tri_status tri_window_next(struct tri_window *window, struct tri_fields *fields, bool *found,
                                 struct tri_error *error);
 
-/* Looks at the next record without moving. */
+/* Opens the next record without moving past it. */
 enum tri_status tri_window_peek(struct tri_window *window, struct tri_fields *fields, bool *found,
                                 struct tri_error *error);
 
-/* Parses the next table->n records, stretch by stretch: table->row counts from the begin of each, and behind each
- * flush(user, n) takes its n rows, at most `most`. Fewer records: TRI_BAD_INPUT, told of the line before them, where
- * nouns are announced. */
+/* Parses the next table->n records, window by window. table->row counts from the start of each batch. After a batch of
+ * n rows, at most `most`, flush(user, n) is called. If there are fewer records, reports TRI_BAD_INPUT at the line
+ * before them, which announces `nouns`. */
 enum tri_status tri_window_table(struct tri_window *window, const struct tri_table *table, const char *nouns,
                                  size_t most,
                                  enum tri_status (*flush)(void *user, size_t n, struct tri_error *error),

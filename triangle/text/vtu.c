@@ -1,8 +1,8 @@
-/* VTK XML, unstructured grid (.vtu): an XML head that names arrays, and behind it their bytes.
+/* Writes VTK XML, unstructured grid (.vtu): an XML head that describes arrays, followed by their bytes.
  *
- * The data are appended raw: each array is its size in bytes (UInt64) and then the bytes; the head gives the place of
- * each. All sizes follow from the numbers of points and cells, so that the head is written first and the rest in any
- * pieces. Cells are the triangles and then the segments, as lines. (VTK User's Guide; "VTK XML formats",
+ * The data are appended raw: each array is its size in bytes (UInt64) and then the bytes; the head gives the offset of
+ * each. All sizes follow from the numbers of points and cells, so the head is written first, and the rest in pieces of
+ * any size. Cells are the triangles, followed by the segments as lines. (VTK User's Guide; "VTK XML formats",
  * docs.vtk.org.) */
 #include <assert.h>
 #include <inttypes.h>
@@ -14,20 +14,21 @@
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_QUADRATIC_TRIANGLE = 22 };
 enum { MOST_ARRAYS = 8, HEAD_BYTES = 4096 };
 
-/* A row for each point, or for each triangle and then each segment, whose rows are no longer. */
+/* An array has a row for each point, or for each triangle and then for each segment. Rows of segments are not
+ * longer. */
 struct array {
     const char *section, *type, *name;
     int32_t components;
-    int64_t n[2]; /* rows of either kind, */
+    int64_t n[2]; /* number of rows of each kind */
     size_t bytes[2];
     tri_row_call *row;
 };
 
 struct vtu {
     const struct tri_grid *grid;
-    bool wide; /* indices of 64 bits */
+    bool wide; /* 64-bit indices */
     int n_arrays;
-    struct array arrays[MOST_ARRAYS]; /* those of a section together */
+    struct array arrays[MOST_ARRAYS]; /* grouped by section */
 };
 
 /* --- rows of points */
@@ -57,7 +58,7 @@ static char *place_row(const void *user, int64_t i, char *at)
 
 /* --- rows of cells */
 
-/* Is cell i a segment? Then this is it. */
+/* Is cell i a segment? If so, reads it. */
 static bool get_segment(const struct vtu *v, int64_t i, struct tri_grid_edge *segment)
 {
     const bool is_segment = i >= v->grid->n_triangles;
@@ -85,7 +86,7 @@ static char *put_index(char *at, const struct vtu *v, int64_t index)
     return v->wide ? tri_put_i64(at, index) : tri_put_i32(at, (int32_t)index);
 }
 
-/* VTK has the nodes amid edges in the order of the edges from corner to corner. */
+/* VTK orders the midpoints of edges by edges: first to second corner, second to third, third to first. */
 static char *nodes_row(const void *user, int64_t i, char *at)
 {
     static const int order[6] = {0, 1, 2, 5, 3, 4};
@@ -100,7 +101,7 @@ static char *nodes_row(const void *user, int64_t i, char *at)
     return at;
 }
 
-/* Where the list of a cell's nodes ends. */
+/* Stores the end of the cell's nodes in the connectivity array. */
 static char *end_row(const void *user, int64_t i, char *at)
 {
     const struct vtu *v = user;

@@ -16,7 +16,7 @@ static bool begins_comment(const struct tri_words *w)
     return n > 0 && (size_t)(end_of(w) - w->at) >= n && memcmp(w->at, w->comment, n) == 0;
 }
 
-/* The text ends in a newline. */
+/* Skips the rest of the line. The text ends in a newline. */
 static void skip_line(struct tri_words *w)
 {
     const char *newline = memchr(w->at, '\n', (size_t)(end_of(w) - w->at));
@@ -58,7 +58,7 @@ bool tri_words_is(const struct tri_words *w, const char *text)
     return true;
 }
 
-/* Of the last word, for an error. */
+/* Reports an error that quotes the last word. */
 static bool fail_at_word(struct tri_words *w, const char *what, const char *wrong)
 {
     return TRI_WORDS_FAIL(w, "%s: \"%.*s\" is %s", what, (int)(w->length < 40 ? w->length : 40), w->word, wrong);
@@ -74,13 +74,14 @@ bool tri_words_real(struct tri_words *w, const char *what, bool finite, double *
     if (!take(w, what))
         return false;
     if (tri_scan_real(w->word, w->at, value) != w->at)
-        return fail_at_word(w, what, "no number");
+        return fail_at_word(w, what, "not a number");
     return !finite || isfinite(*value) || fail_at_word(w, what, "not finite");
 }
 
 bool tri_words_length(struct tri_words *w, double *value)
 {
-    return tri_words_real(w, "a length", false, value) && (!isnan(*value) || fail_at_word(w, "a length", "no number"));
+    return tri_words_real(w, "a length", false, value) &&
+           (!isnan(*value) || fail_at_word(w, "a length", "not a number"));
 }
 
 bool tri_words_whole(struct tri_words *w, const char *what, int64_t least, int64_t most, int64_t *value)
@@ -88,7 +89,7 @@ bool tri_words_whole(struct tri_words *w, const char *what, int64_t least, int64
     if (!take(w, what))
         return false;
     if (tri_scan_integer(w->word, w->at, value) != w->at)
-        return fail_at_word(w, what, "no whole number");
+        return fail_at_word(w, what, "not an integer");
     return (*value >= least && *value <= most) || fail_at_word(w, what, "out of range");
 }
 

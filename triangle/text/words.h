@@ -6,39 +6,39 @@
 #include "triangle/text/text.h"
 
 struct tri_words {
-    struct tri_reading to; /* the mesh, if it is one; the path, the error and the status */
-    struct tri_text text;
-    const char *at;        /* what has not been taken */
-    size_t line;           /* that `at` is in, from 1 */
-    const char *blanks;    /* characters between words, beside white space */
-    const char *comment;   /* begins one, to the end of the line; NULL: there are none */
-    const char *word;      /* the last one taken */
-    size_t length;         /* of it */
+    struct tri_reading to; /* receives the mesh, if any; path, error and status */
+    struct tri_text text;  /* the whole file */
+    const char *at;        /* the text not read yet */
+    size_t line;           /* line of `at`, from 1 */
+    const char *blanks;    /* additional characters that separate words, besides white space */
+    const char *comment;   /* starts a comment to the end of the line; NULL: no comments */
+    const char *word;      /* the last word read */
+    size_t length;         /* length of `word` */
 };
 
-/* Moves to the next word; false: there is none. */
+/* Moves to the next word. Returns false if there is none. */
 bool tri_words_seek(struct tri_words *words);
 
-/* Takes the next word; false: there is none. */
+/* Reads the next word. Returns false if there is none. */
 bool tri_words_next(struct tri_words *words);
 
-/* Is the last word this one, given in small letters, whatever its case? */
+/* Is the last word equal to `text`, which is in lower case? Ignores case. */
 bool tri_words_is(const struct tri_words *words, const char *text);
 
-/* The next word is a number; otherwise these fail, and name `what` it should have been. A real may be infinite or NaN,
- * unless `finite`; a length may be infinite. A whole number is from least to most. */
+/* Read a number. If the next word is not such a number, they fail with an error that names `what`. Real: may be
+ * infinite or NaN unless `finite`. Length: may be infinite. Whole: an integer from `least` to `most`. */
 bool tri_words_real(struct tri_words *words, const char *what, bool finite, double *value);
 bool tri_words_length(struct tri_words *words, double *value);
 bool tri_words_whole(struct tri_words *words, const char *what, int64_t least, int64_t most, int64_t *value);
 
-/* The next word says how many items follow, each of `bytes` at least: no more than the rest of the text holds, and no
- * more than INT32_MAX. */
+/* Reads a number of items. Fails if it exceeds INT32_MAX, or what the rest of the text can hold at `bytes` or more per
+ * item. */
 bool tri_words_count(struct tri_words *words, const char *what, int64_t bytes, int64_t *n);
 
-/* Leaves out the rest of this line, and n more. */
+/* Skips the rest of this line, and n more lines. */
 void tri_words_skip_lines(struct tri_words *words, int64_t n);
 
-/* Fails in this line. */
+/* Fails with an error at the current line. */
 #define TRI_WORDS_FAIL(words, ...) tri_reading_fail(&(words)->to, TRI_BAD_INPUT, (words)->line, __VA_ARGS__)
 
 #endif

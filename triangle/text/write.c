@@ -1,15 +1,14 @@
-/* Writing output files: tables.
+/* Writes tables to output files.
  *
- * Why a table is written as it is: rows are formatted in chunks, a wave of chunks at a time. When a wave is done the
- * lengths of its chunks are known, and so their places in the file; whoever formats a chunk of the next wave first
- * writes the chunk that its buffer holds. So the bytes do not depend on who comes first, nobody waits for the disk
- * alone, and what is written is still in a cache. (Linux lets one thread at a time write into a file: writers that
- * format between writes keep out of each other's way, and the fewer bytes a write has, the longer it takes for each:
- * hence the size of a chunk, of which rows fill a third to a half.) A device or a pipe has no places: each wave is
- * written in order.
+ * Rows are formatted in chunks, a wave of chunks at a time. When a wave is complete, the lengths of its chunks give
+ * their offsets in the file. Before a thread formats a chunk of the next wave, it writes the chunk in that buffer. So
+ * the output does not depend on the order of threads, writing and formatting overlap, and the data are still in a cache
+ * when they are written. (Linux lets one thread at a time write to a file. Formatting between writes keeps threads from
+ * contending. Small writes cost more per byte, hence the size of a chunk, of which rows fill a third to a half.) A
+ * device or pipe has no offsets: each wave is written in order.
  *
- * A table of few chunks takes a few milliseconds; threads that are woken for it go on spinning for longer than that
- * once it is done. So it is written chunk by chunk, without the executor. */
+ * A table of few chunks takes a few milliseconds, but threads woken for it spin for longer afterwards. So it is written
+ * chunk by chunk, without the executor. */
 #include "triangle/text/write.h"
 
 #include <assert.h>
@@ -22,8 +21,8 @@
 
 enum {
     CHUNK_BYTES = 1 << 18,
-    WORTH_THREADS = 16, /* chunks; a table of fewer is written by one thread */
-    WAVE_CHUNKS = 64    /* at a time, where there is an executor */
+    WORTH_THREADS = 16, /* a table of fewer chunks is written by one thread */
+    WAVE_CHUNKS = 64    /* chunks per wave, with an executor */
 };
 
 static char *put_bytes(char *at, const char *text, size_t length)
@@ -34,11 +33,11 @@ static char *put_bytes(char *at, const char *text, size_t length)
 
 /* --- tables */
 
-/* A chunk that is formatted and not yet written. */
+/* A chunk that has been formatted but not written yet. */
 struct chunk {
     size_t length;
     uint64_t place;
-    int result; /* of writing it */
+    int result; /* result of writing it */
 };
 
 struct table {
@@ -47,9 +46,9 @@ struct table {
     const void *user;
     size_t max_row_bytes, buffer_bytes;
     int64_t chunk_rows;
-    int64_t begin, end; /* rows from the wave that is formatted on */
-    size_t n_new;     /* chunks of that wave */
-    size_t n_waiting; /* chunks of the wave before, which are written */
+    int64_t begin, end; /* rows from the current wave on */
+    size_t n_new;     /* chunks of the current wave */
+    size_t n_waiting; /* chunks of the previous wave, being written */
     struct chunk chunks[WAVE_CHUNKS];
     char *buffers;    /* [WAVE_CHUNKS][buffer_bytes] */
 };
@@ -83,7 +82,7 @@ static void table_task(void *context, size_t i)
         format_chunk(table, i);
 }
 
-/* The first failure among the chunks that were written. */
+/* Returns the first error among the chunks written. */
 static enum tri_status conclude_wave(struct table *table, struct tri_error *error)
 {
     for (size_t i = 0; i < table->n_waiting; i++)
@@ -92,7 +91,7 @@ static enum tri_status conclude_wave(struct table *table, struct tri_error *erro
     return TRI_OK;
 }
 
-/* The chunks that were formatted get their places, or are written now, as long as that goes well. */
+/* Assigns offsets to the chunks just formatted. Without offsets, writes them now, until one fails. */
 static void place_wave(struct table *table)
 {
     int result = 0;
@@ -161,7 +160,7 @@ enum tri_status tri_write_counts(struct tri_output *output, const int64_t *count
     return tri_output_write(output, line, (size_t)(tri_put_counts(line, counts, n) - line), error);
 }
 
-/* A word with a line break in it must not become a record of the file. */
+/* Replaces line breaks in a word, so that the comment stays on one line. */
 static char *put_word(char *at, const char *word)
 {
     *at++ = ' ';
