@@ -191,8 +191,9 @@ static bool report_block(const struct par_phase_run *p, const struct par_task *t
     return true;
 }
 
-/* Adds the places of deleted vertices and triangles to the spare room. On ranks, vertices stay if all ranks hold them,
- * and places in borrowed parts of the mesh are not reused before these parts have been returned. False: no memory. */
+/* Adds the places of deleted vertices and triangles to the spare room. Not on ranks for vertices, because all ranks may
+ * hold them, nor for the triangles of border blocks, which must return the parts that they borrowed first. False: no
+ * memory. */
 static bool release_erased(const struct par_phase_run *p, const struct par_task *task)
 {
     struct par_run *run = p->run;

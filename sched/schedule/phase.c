@@ -18,6 +18,7 @@ enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle no longer exists 
 
 /* --- callbacks of the loop, called on the thread that runs the task. Each appends to a list of the task. If memory
  * runs out, `lost` is set, and par_collect reports the error. */
+
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;

@@ -7,26 +7,27 @@
 #include "sched/tiles/park.h"
 #include "triangle/refine/smooth.h"
 
-/* A phase: vertices dealt to its blocks. */
+/* A smoothing phase: vertices dealt to its blocks, each of which runs as a task. */
 struct smoothing {
-    const struct par_run *run;
-    struct tri_smooth *smooth;
-    int phase;
-    tri_vertex_id *vertex; /* [n] that are still to be smoothed in this pass, in order .. */
-    tri_vertex_id *dealt;  /* [n] .. and by block */
-    int32_t n;
-    struct par_deal deal;  /* of the phase, tile by tile a block */
+    const struct par_run *run; /* the run */
+    struct tri_smooth *smooth; /* the smoother, shared by all blocks */
+    int phase;                 /* 0 to 3 */
+    tri_vertex_id *vertex; /* [n] vertices that are still to be smoothed in this pass, in ascending order at first */
+    tri_vertex_id *dealt;  /* [n] the same, ordered by block */
+    int32_t n;             /* number of vertices left in this pass */
+    struct par_deal deal;  /* counts and places, with blocks of the phase as tiles */
     struct tri_smooth_count *count; /* [blocks] */
     enum tri_status *status; /* [blocks] */
-    int64_t moved;         /* vertices, in this pass */
+    int64_t moved;         /* vertices moved so far in this pass */
 };
 
-/* The block of the phase that vertex i of the list lies in. */
+/* Returns the block of the phase that vertex i of the list lies in. */
 static int32_t block_of(const struct smoothing *s, struct par_locator *locator, int32_t i)
 {
     return par_locate(locator, &s->run->cells, s->phase, s->run->mesh->xy[s->vertex[i]]);
 }
 
+/* A task: counts the vertices of one share by block. */
 static void count_share(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -37,6 +38,7 @@ static void count_share(void *context, size_t share)
         count[block_of(s, &locator, i)]++;
 }
 
+/* A task: writes the vertices of one share to their places in `dealt`. */
 static void deal_share(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -47,6 +49,8 @@ static void deal_share(void *context, size_t share)
         s->dealt[at[block_of(s, &locator, i)]++] = s->vertex[i];
 }
 
+/* A task: smooths the vertices of one block inside its fence. Moves the vertices that it could not treat to the front
+ * of its part of `dealt`. */
 static void smooth_block(void *context, size_t block)
 {
     const struct smoothing *s = context;
@@ -56,7 +60,8 @@ static void smooth_block(void *context, size_t block)
                                        NULL);
 }
 
-/* What blocks leave is the list of the next phase. */
+/* After a phase: gathers the vertices that the blocks left, which are the list of the next phase, and the counts.
+ * Returns the first error. */
 static enum tri_status gather(struct smoothing *s, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -71,6 +76,7 @@ static enum tri_status gather(struct smoothing *s, struct tri_error *error)
            : status ? tri_fail(error, status, NULL, 0, "out of memory for smoothing") : TRI_OK;
 }
 
+/* Deals the vertices to the blocks of the phase and runs the blocks. */
 static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error)
 {
     const struct tri_executor *executor = &s->run->asked.executor;
@@ -88,6 +94,7 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
     return status;
 }
 
+/* One pass: all movable vertices, in four phases; those that no block could treat follow in one sequential call. */
 static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
 {
     const struct tri_mesh *mesh = s->run->mesh;
@@ -105,6 +112,7 @@ static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
     return status;
 }
 
+/* All passes; ends early if a pass moves no vertex. */
 static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
@@ -127,6 +135,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     return status;
 }
 
+/* Numbers the mesh by its tiles, after making sure that there is memory for it. */
 static enum tri_status number(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
