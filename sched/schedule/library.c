@@ -43,7 +43,7 @@ struct call {
     struct tri_api_way way;       /* by which triangle/api/ calls the schedule */
 };
 
-/* Checks the settings and sets up the team and the options. If it succeeds, end_call must follow. */
+/* Checks the settings and sets up the team and the options; end_call ends the team. */
 static enum tri_status begin_call(struct call *call, const struct tri_settings *settings, struct tri_error *error)
 {
     enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
