@@ -441,7 +441,7 @@ static int32_t cell_at(const double *bounds, int32_t n, double q)
     return low;
 }
 
-/* Of the two blocks over a cell, the one of this parity. */
+/* Returns the one of the two blocks over a cell whose number has this parity. */
 static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity ? cell : cell + 1; }
 
 int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point q)
