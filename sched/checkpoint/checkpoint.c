@@ -1,5 +1,6 @@
-/* Files are those of the machine that wrote them: arrays as they lie in memory. A state goes to the disk past the
- * system's cache, where it can: two to five times as fast (measured), while somebody waits for the end of the run. */
+/* The checkpoint directory. Files hold arrays as they lie in memory, so they can be read only on the same kind of
+ * machine. If possible, a state is written to the disk without the system's cache, which is two to five times as fast
+ * (measured). That matters because the system may be waiting for the run to end. */
 #include "sched/checkpoint/checkpoint.h"
 
 #include <assert.h>
@@ -13,18 +14,19 @@
 #include "triangle/base/hash.h"
 #include "triangle/base/system.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x366863697274706b); /* a version, too */
+static const uint64_t MANIFEST = UINT64_C(0x366863697274706b); /* "kptrich6": file type and version */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
 
-/* --- files in the directory */
 
+/* Makes the path of a file in the directory, for messages. */
 static void path_of(char path[PAR_CHECKPOINT_PATH], const char *directory, const char *name)
 {
     snprintf(path, PAR_CHECKPOINT_PATH, "%s/%s", directory, name);
 }
 
+/* Fails with TRI_CANNOT_WRITE and the reason in errno. */
 static enum tri_status cannot_write(const char *directory, const char *name, struct tri_error *error)
 {
     char path[PAR_CHECKPOINT_PATH];
@@ -43,17 +45,20 @@ bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file 
 
 /* --- manifest */
 
+/* Returns the hash of a manifest: of all members after `hash`. */
 static uint64_t hash_of(const struct par_manifest *m)
 {
     return tri_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
 }
 
+/* Has a manifest the right version and hash, and plausible members? */
 static bool is_manifest(const struct par_manifest *m)
 {
     return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
            m->tiles_bytes >= 0 && m->kind >= PAR_SWEPT_STATE && m->kind <= PAR_RANKS_STATE;
 }
 
+/* Reads and checks the manifest. TRI_BAD_INPUT: there is none, or it is damaged. */
 static enum tri_status read_manifest(struct par_manifest *m, const struct par_checkpoint *c, struct tri_error *error)
 {
     const char *directory = c->directory;
@@ -67,6 +72,8 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
     return tri_fail(error, TRI_BAD_INPUT, directory, 0, "the checkpoint's manifest is damaged, or of another version");
 }
 
+/* Writes a new manifest, syncs it, and renames it over the old one, in this order. So there is always one complete
+ * manifest on the disk. If it succeeds, c->manifest is the new one, and the caller's callback is called. */
 static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manifest m, struct tri_error *error)
 {
     const tri_file file = tri_folder_create(c->folder, fresh_name);
@@ -83,15 +90,15 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
     return TRI_OK;
 }
 
-/* The same run's, without a state. */
+/* Returns a manifest of the same run, without a state. */
 static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_t kind)
 {
     return (struct par_manifest){.of = m->of, .run = m->run, .kind = kind, .made_directory = m->made_directory};
 }
 
-/* --- whose files they are */
+/* --- telling a run's files from other files */
 
-/* "piece-0-12" */
+/* Is this the name of a piece, such as "piece-0-12"? */
 static bool is_piece(const char *name)
 {
     int n = 0;
@@ -99,7 +106,8 @@ static bool is_piece(const char *name)
     return n > 0 && name[n] == 0;
 }
 
-/* A new manifest that has not got its name, or has been begun. */
+/* Is the file `manifest-new` a manifest that has not been renamed yet, or an empty file? The process may have died
+ * while it was writing one. */
 static bool is_fresh_manifest(tri_file folder)
 {
     struct par_manifest m;
@@ -112,8 +120,9 @@ static bool is_fresh_manifest(tri_file folder)
     return is;
 }
 
-/* Would a file of that name, in a directory without a manifest, be written over or removed, though no run has made it?
- * Whatever runs make comes after the first manifest, and goes before the last one. */
+/* In a directory without a manifest: is this a file that a run would overwrite or remove, although no run has made it?
+ * A run creates its files after its first manifest and removes them before its last one, so without a manifest they are
+ * not a run's. */
 static bool is_foreign(tri_file folder, const char *name)
 {
     if (strcmp(name, fresh_name) == 0)
@@ -122,12 +131,13 @@ static bool is_foreign(tri_file folder, const char *name)
            is_piece(name);
 }
 
-/* The first foreign name in a folder. */
+/* The first such file in the directory. */
 struct finding {
-    tri_file folder;
-    char name[PAR_CHECKPOINT_PATH]; /* empty: none */
+    tri_file folder;                /* the open directory */
+    char name[PAR_CHECKPOINT_PATH]; /* its name; empty: none found */
 };
 
+/* A callback of tri_folder_list: stores the first foreign name. Returns false to end the listing. */
 static bool find_foreign(void *user, const char *name)
 {
     struct finding *finding = user;
@@ -137,6 +147,7 @@ static bool find_foreign(void *user, const char *name)
     return !found;
 }
 
+/* Refuses a directory without a manifest that holds files with the names of a run's files. */
 static enum tri_status check_names(const struct par_checkpoint *c, struct tri_error *error)
 {
     struct finding finding = {.folder = c->folder};
@@ -156,13 +167,15 @@ bool par_checkpoint_is_there(const char *directory)
     return tri_path_allows(path, TRI_THERE);
 }
 
-/* One process at a time; where there are no locks, nobody is kept out. */
+/* Locks the directory, so that only one process uses it. On file systems without locks this always succeeds. */
 static bool lock_folder(struct par_checkpoint *c)
 {
     c->lock = tri_folder_file(c->folder, tiles_name, TRI_FOLDER_EXTEND);
     return c->lock != TRI_NO_FILE && tri_file_lock(c->lock) != TRI_LOCKED_BY_ANOTHER;
 }
 
+/* Checks without the lock that the directory can be used: for a new run, it holds no run and no foreign files; with
+ * resume, it holds a run of this program version. */
 static enum tri_status check_run(const struct par_checkpoint *c, bool resume, uint64_t of, struct tri_error *error)
 {
     struct par_manifest m;
@@ -174,7 +187,7 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
     return status;
 }
 
-/* `resume`: it is to be read before it is written. */
+/* Opens the directory. resume decides which error a missing directory is. */
 static enum tri_status open_folder(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
     c->folder = tri_folder_open(c->directory, true);
@@ -196,7 +209,8 @@ enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct t
     return status;
 }
 
-/* The lock, and then, of a run that goes on, what no other process changes any more. */
+/* Takes the lock. With resume, then reads the manifest again, since another process may have changed it before the lock
+ * was held. */
 static enum tri_status lock_and_read(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {
     if (lock_folder(c))
@@ -206,6 +220,8 @@ static enum tri_status lock_and_read(struct par_checkpoint *c, bool resume, stru
     return cannot_write(c->directory, tiles_name, error);
 }
 
+/* The manifest of a new run is written before the lock is taken, because the lock is on the file `tiles`, and every
+ * file of a run must be created after its manifest. */
 enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error)
 {
@@ -248,6 +264,7 @@ tri_file par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *direct
     return file;
 }
 
+/* A callback of tri_folder_list: deletes the file if it is a piece. */
 static bool remove_piece(void *user, const char *name)
 {
     const struct par_checkpoint *c = user;
@@ -256,11 +273,12 @@ static bool remove_piece(void *user, const char *name)
     return true;
 }
 
-/* The manifest says of all the others that they are a run's: it goes last, and names no state as soon as that goes. */
+/* Deletes all files of the run. The manifest marks the others as the run's, so it is deleted last. Before that it is
+ * replaced by one without a state, because the state is deleted before it. */
 static void remove_all(struct par_checkpoint *c)
 {
     (void)write_manifest(c, manifest_of_none(&c->manifest, c->manifest.kind), NULL);
-    (void)tri_folder_list(c->folder, remove_piece, c); /* of however many ranks there have been */
+    (void)tri_folder_list(c->folder, remove_piece, c); /* of all ranks, however many there were */
     (void)tri_folder_drop(c->folder, state_name[0]);
     (void)tri_folder_drop(c->folder, state_name[1]);
     (void)tri_folder_drop(c->folder, tiles_name);
@@ -276,12 +294,12 @@ void par_checkpoint_close(struct par_checkpoint *c, bool remove)
         remove_all(c);
     (void)tri_file_close(c->lock);
     (void)tri_file_close(c->folder);
-    if (remove && made_directory) /* on Windows files that are open stay in it until they are closed */
+    if (remove && made_directory) /* on Windows, open files stay in the directory until they are closed */
         (void)tri_folder_remove(c->directory);
     c->lock = c->folder = c->spool.file = TRI_NO_FILE;
 }
 
-/* --- what it is of */
+/* --- binding the checkpoint to a run */
 
 enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, struct tri_error *error)
 {
@@ -304,13 +322,15 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
     return tri_file_cut(c->spool.file, 0) ? TRI_OK : cannot_write(c->directory, tiles_name, error);
 }
 
-/* --- a state's file */
+/* --- state files */
 
+/* Are all bytes 0? n >= 1. Compares the bytes with themselves, shifted by one. */
 static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcmp(bytes, bytes + 1, n - 1) == 0; }
 
-/* Writes what waits, which ends at f->place. Room that blocks have not used yet, most of a mesh while its first phase
- * runs, is zero, and stays a hole. The last of it, which is no whole number of blocks, goes by way of the cache, and so
- * does all where the file system knows no other. */
+/* Writes the n bytes in the buffer; they end at position f->place. A full buffer of zeros is skipped and leaves a hole
+ * in the file, because unused room of blocks, most of a mesh during its first phase, is zero. Full buffers bypass the
+ * system's cache if possible. The last, partial buffer goes through the cache, since direct writing needs whole
+ * blocks. */
 static bool write_waiting(struct par_state_file *f, size_t n)
 {
     const uint64_t place = (uint64_t)f->place - n;
@@ -325,6 +345,7 @@ static bool write_waiting(struct par_state_file *f, size_t n)
     return done;
 }
 
+/* Appends bytes to the buffer, and writes it each time that it is full. */
 static void put_bytes(struct par_state_file *f, const char *at, size_t n)
 {
     while (n > 0 && !f->failed) {
@@ -350,7 +371,8 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
     f->place += (int64_t)n;
 }
 
-/* The file of a state, with all of it, on the disk. */
+/* Writes a complete state file, syncs it, and gives it its name. *to: position, hash and times at the end. On errors
+ * the file is closed, and an old file of that name is kept. */
 static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
                                    par_state_walk *walk, void *user, struct tri_error *error)
 {
@@ -377,6 +399,8 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     return status || done ? status : cannot_write(c->directory, name, error);
 }
 
+/* The order matters for the invariant in checkpoint.h: first state and tiles are synced to the disk, then the manifest
+ * that names them replaces the old one. */
 enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t n_ranks,
                                      int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error)
 {
@@ -400,17 +424,19 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
     return status;
 }
 
+/* Fails with TRI_BAD_INPUT and the name of the state file. */
 static enum tri_status damaged(const struct par_checkpoint *c, struct tri_error *error)
 {
     return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged",
                     state_name[c->manifest.which]);
 }
 
-/* Is all of it what has been written? */
+/* Reads the whole state file and compares its hash with that in the manifest. */
 static enum tri_status check(const struct par_checkpoint *c, tri_file file, struct tri_error *error)
 {
     const int64_t all = c->manifest.state_bytes;
-    const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop together, after a step */
+    const struct tri_stop *stop = par_checkpoint_has_ranks(c) ? NULL : c->stop; /* ranks stop only together, after a
+                                                                                   step */
     char *bytes = malloc(PAR_STATE_WRITE);
     uint64_t hash = 0;
     bool sound = true, stopped = false;

@@ -21,9 +21,9 @@
  * that the state would hold.
  *
  * The last state must begin before the limit by twice the time that it will take. That time is estimated from the
- * previous state, in proportion to the numbers of triangles. Early states measure the disk, until one takes long enough to be a
- * measurement. A resumed run measures halfway to the limit, because a large state right at the beginning could use up
- * all its time. */
+ * previous state, in proportion to the numbers of triangles. Early states measure the disk, until one takes long enough
+ * to be a measurement. A resumed run measures halfway to the limit, because a large state right at the beginning could
+ * use up all its time. */
 bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, double triangles);
 
 /* Is it time for a state, because of the interval between states or because of the time limit? */

@@ -45,7 +45,7 @@ int32_t par_deal_add_up(struct par_deal *deal)
 
 /* The workers that process tiles. */
 struct hands {
-    void (*work)(const void *context, size_t tile, uint64_t *room);
+    void (*work)(const void *context, size_t tile, uint64_t *room); /* called for each tile */
     const void *context; /* passed to work */
     size_t n_tiles;      /* number of tiles */
     uint64_t *room;         /* [workers][each] scratch memory */
@@ -73,7 +73,7 @@ static int32_t largest_tile(const struct par_deal *deal)
 }
 
 void par_deal_work(const struct par_deal *deal, const struct tri_executor *executor, uint64_t *room,
-                   void (*work)(const void *context, size_t tile, uint64_t *room), const void *context) /* called for each tile */
+                   void (*work)(const void *context, size_t tile, uint64_t *room), const void *context)
 {
     const size_t n_tiles = (size_t)deal->n_tiles, largest = (size_t)largest_tile(deal);
     const size_t most = (size_t)deal->n / largest;
