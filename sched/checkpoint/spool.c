@@ -80,11 +80,13 @@ static bool pack_tile(char *to, const struct tri_tile *tile, int32_t n_attribute
     return fits;
 }
 
+/* Fails with TRI_NO_MEMORY. */
 static enum tri_status no_memory(const struct par_spool *spool, struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
 }
 
+/* Fails with TRI_CANNOT_WRITE and the reason in errno. */
 static enum tri_status fail_writing(const struct par_spool *spool, struct tri_error *error)
 {
     return tri_fail_system(error, TRI_CANNOT_WRITE, spool->path, "cannot write", errno);
@@ -162,6 +164,7 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
     return status;
 }
 
+/* Fails with TRI_BAD_INPUT and the position of the damaged tile. */
 static enum tri_status fail_damaged(const struct par_spool *spool, int64_t place, struct tri_error *error)
 {
     return tri_fail(error, TRI_BAD_INPUT, spool->path, 0, "damaged at byte %lld", (long long)place);

@@ -49,7 +49,7 @@ enum par_next {
 };
 
 struct par_position {
-    enum par_next next;
+    enum par_next next;  /* the next step */
     int level;           /* level of the current schedule or call; 0: the whole mesh. States are written on level 0
                             only */
     int round, phase;    /* of the current schedule, from 0; phase PAR_PHASES: the round is complete */

@@ -24,7 +24,7 @@
 enum { PAR_PHASES = 4 };
 
 struct par_partition {
-    int32_t n_columns, n_rows; /* of blocks: odd, at least 3 */
+    int32_t n_columns, n_rows; /* numbers of columns and rows of blocks: odd, at least 3 */
     double *x;       /* [n_columns] boundaries of the columns of cells, ascending; the first and last are those of the
                         bounding box */
     double *y;       /* [n_columns][n_rows] boundaries of the rows of cells, ascending, for each column of blocks */
@@ -62,11 +62,12 @@ static inline int32_t par_cells(const struct par_partition *p) { return (p->n_co
 /* Would coarser blocks be worth another round of phases? */
 static inline bool par_can_coarsen(const struct par_partition *p) { return par_cells(p) >= 16; }
 
-/* Tiles are the blocks of odd column and odd row, phase 0: counted column by column, rows upwards. */
+/* Tiles are the blocks of phase 0, those of odd column and odd row. They are numbered column by column, rows upwards.
+ * These functions return the number of tile columns, and of tile rows. */
 static inline int32_t par_tile_columns(const struct par_partition *p) { return p->n_columns / 2; }
 static inline int32_t par_tile_rows(const struct par_partition *p) { return p->n_rows / 2; }
 
-/* The tile of a block of phase 0, which is column * n_rows + row. */
+/* Returns the tile of a block of phase 0; block: column * n_rows + row. */
 static inline int32_t par_tile_of_block(const struct par_partition *p, int32_t block)
 {
     return block / p->n_rows / 2 * par_tile_rows(p) + block % p->n_rows / 2;
@@ -97,12 +98,13 @@ int32_t par_block_at(const struct par_partition *partition, int phase, struct tr
 /* Caches the last block that was found, for many look-ups in the same phase: O(1) if q lies in the same block as the
  * previous one. Initialise it with PAR_LOST, whose box is empty. */
 struct par_locator {
-    struct tri_fence fence;
-    int32_t block;
+    struct tri_fence fence; /* box of the block found last */
+    int32_t block;          /* this block; TRI_NONE: none yet */
 };
 
 static const struct par_locator PAR_LOST = {{1, 1, 0, 0}, TRI_NONE};
 
+/* Returns the block of `phase` that holds q. A locator must be used for one phase and one partition only. */
 static inline int32_t par_locate(struct par_locator *locator, const struct par_partition *partition, int phase,
                                  struct tri_point q)
 {

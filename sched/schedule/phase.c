@@ -58,6 +58,7 @@ static int32_t owner_now(const struct par_phase_run *p, struct par_locator *loca
     if (block != TRI_NONE && p->is_done[block])
         return TRI_NONE;
     if (p->share)
+        /* on ranks each rank runs its own blocks */
         return block == TRI_NONE || p->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
@@ -171,9 +172,11 @@ static bool deal_all(struct dealing *d)
     d->key = run->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
     if (!d->kept || (run->key.n > 0 && !d->key))
         return false;
+    /* from here on each share knows where its entries go */
     tri_execute(&run->asked.executor, d->deal.shares, deal_share, d);
     if (!make_tasks(d))
         return false;
+    /* nothing can fail any more: swap the lists */
     d->p->given = run->worklist;
     d->p->given_key = run->key;
     run->worklist = (struct par_ids){d->kept, n_kept, n_kept};
@@ -327,8 +330,10 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->hooks.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->run->mesh);
+    /* what it asked for before the pause has been fetched */
     task->asked.n = 0;
     task->status = TRI_OK;
+    /* the refiner keeps the queue of the block across pauses */
     if (!task->refiner)
         task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &p->run->bounds, &task->hooks,
                                        &task->report, &task->error);
@@ -406,6 +411,7 @@ static void run_tasks(struct par_phase_run *p)
     struct par_report *report = p->run->report;
     double shared[PAR_SHARINGS]; /* blocks are not equal shares: undo below what run_timed adds */
     memcpy(shared, report->seconds_shared, sizeof shared);
+    /* tasks compare this with the address on their own thread */
     p->caller = &here;
     tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
@@ -428,6 +434,7 @@ struct queued {
     int32_t expected, task; /* sorting key; index of the task */
 };
 
+/* Larger keys first; equal ones in canonical order. */
 static int by_expected(const void *left, const void *right)
 {
     const struct queued *a = left, *b = right;
@@ -445,6 +452,7 @@ static bool order_tasks(struct par_phase_run *p)
     p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
     if (queue && p->order) {
         for (int32_t i = 0; i < p->n_tasks; i++) {
+            /* a linear congruential generator; the estimates are the keys unless the order is random */
             draw = draw * 1664525u + 1013904223u;
             queue[i] = (struct queued){p->run->asked.options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
         }
@@ -496,10 +504,13 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     reserve_room(p);
     p->run->report->seconds_room += tri_seconds() - reserving;
     do {
+        /* all tasks have stopped here, so the arrays may move */
         status = give_room(p, error);
         if (status)
             break;
         run_tasks(p);
+        /* A task that is still ready was stopped or, after a halt, has not begun. Tasks that have begun run to their
+         * end in spite of a halt, so the loop goes on while some of them wait. */
         status = is_any(p, PAR_READY) && !p->halt ? tri_fail_stopped(error) : fetch_more(p, error);
     } while (!status && is_any(p, PAR_FULL));
     free(p->mark);
@@ -545,7 +556,7 @@ static void put_back(struct par_phase_run *p)
 }
 
 /* Runs the phase, or its remaining blocks after a halt, and then collects the results of its tasks. Results are
- * collected in case of an error, too, since the room of all tasks must return to the spare room. */
+ * collected after errors, too, so that the room of all tasks returns to the spare room. */
 static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = begin_tasks(p, error);
@@ -575,6 +586,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);
+    /* blocks that ended before a halt do not run again */
     p.is_done = calloc((size_t)par_blocks(p.partition), sizeof *p.is_done);
     for (int32_t i = 0; p.is_done && i < run->place.done.n; i++)
         p.is_done[run->place.done.item[i]] = true;
@@ -585,6 +597,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
+    /* the phase is complete, or has failed: the list of blocks that are done is for an unfinished phase only */
     if (status != TRI_STOPPED) {
         run->place.done.n = 0;
         run->share_done = 0;

@@ -41,7 +41,7 @@ void par_forget_deferred(struct par_report *report);
 void par_add_points(struct tri_refine_report *sum, const struct tri_refine_report *add);
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
-/* How ranks share the blocks of a phase (sched/ranks/ranks.h). */
+/* How several ranks share the blocks of a phase (sched/ranks/ranks.h). */
 struct par_share {
     const bool *is_mine;   /* [blocks] this rank refines the block */
     const bool *is_border; /* [blocks] other ranks hold a part of the block; across the border a link is TRI_BEYOND */
@@ -55,7 +55,7 @@ struct par_share {
 /* The caller's request. Constant during the run. */
 struct par_asked {
     const struct tri_quality *quality; /* the caller's bounds */
-    const struct par_options *options;
+    const struct par_options *options; /* the caller's options */
     struct tri_executor executor;      /* runs tasks on the number of threads that the options request */
     int32_t n_kept;                    /* number of vertices before refinement; they keep their ids */
 };
@@ -70,8 +70,8 @@ struct par_remain {
 /* A run: the request, the current position, and the work. Only the calling thread changes it; tasks read it while a
  * phase runs, and update only `reached`. */
 struct par_run {
-    const struct par_asked asked;
-    struct par_position place;
+    const struct par_asked asked; /* the caller's request */
+    struct par_position place;    /* the current position */
     struct tri_mesh *mesh;      /* the caller's */
     struct par_report *report;  /* the caller's */
     struct tri_quality bounds;  /* bounds of the current schedule */
@@ -82,7 +82,7 @@ struct par_run {
     struct par_room spare;      /* unused ranges of the mesh's arrays */
     struct par_partition cells; /* of the last schedule of the whole mesh; the mesh is numbered by their tiles. x NULL:
                                    no schedule yet */
-    struct par_remain remain;
+    struct par_remain remain;   /* counts of bad triangles of a mesh that is handed out during the run */
     int64_t gone;               /* number of triangles that have been handed out and removed from the mesh */
     int32_t n_schedules;        /* number of schedules begun so far, including the current one */
     double radius;              /* largest circumradius in the worklist when it was last filled, in the mesh's internal
@@ -112,7 +112,7 @@ static inline struct tri_refine_hooks par_hooks(const struct par_run *run)
 
 /* Which blocks of a phase run, and when they must not start. */
 struct par_turn {
-    const struct par_partition *partition;
+    const struct par_partition *partition; /* the blocks */
     int32_t only;                /* run only blocks of this column; TRI_NONE: of all columns */
     struct par_share *share;     /* NULL: this process runs all blocks and holds every triangle that they read */
     const struct tri_stop *halt; /* checked before each block begins: if it says yes, the block does not begin; NULL:
@@ -154,7 +154,7 @@ enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *step
 
 /* The current schedule. The steps in memory and on ranks get it as `self`. */
 struct par_schedule {
-    struct par_run *run;
+    struct par_run *run;            /* the run */
     struct par_partition partition; /* of the current round */
     bool is_whole;                  /* true: it refines the requested mesh (level 0); false: a coarser mesh that
                                        prepares it */

@@ -56,7 +56,7 @@ struct par_phase_run {
     double *work;       /* [given.n] estimated number of triangles that each will become */
     tri_triangle_id *worklist; /* [given.n] the entries dealt to blocks, block by block */
     struct par_task *tasks;    /* [n_tasks] one for each block with work, in canonical order */
-    int32_t n_tasks;
+    int32_t n_tasks;           /* number of tasks */
     int32_t *order;     /* [n_tasks] indices of the tasks, in the order in which they start */
     int64_t expected;   /* estimated number of triangles that all tasks will make */
     _Atomic(int64_t) done; /* the part of `expected` whose tasks have ended; updated by all threads */

@@ -11,6 +11,7 @@
 #include "triangle/geometry/shape.h"
 #include "triangle/size/estimate.h"
 
+/* Returns the sine of an angle in degrees, 0 to 180, from the portable cosine. */
 static double sine(double degrees)
 {
     double cosine = tri_cos_degrees(degrees);
@@ -114,6 +115,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
     struct tri_quality coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
+    /* too long: a quarter of the cell, whose square is a sixteenth */
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16};
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
@@ -125,6 +127,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)run->worklist.n);
     assert(long_ones.n <= run->worklist.n);
     struct tri_refine_hooks hooks = par_hooks(run);
+    /* refine only triangles that are too long, including new ones */
     hooks.urgent = is_too_long;
     hooks.urgent_user = &test;
     hooks.worklist = long_ones.item;

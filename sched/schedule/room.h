@@ -23,8 +23,8 @@ struct par_range {
 
 /* Ranges of one kind. */
 struct par_ranges {
-    struct par_range *item;
-    int32_t n, capacity;
+    struct par_range *item; /* the ranges, in no particular order */
+    int32_t n, capacity;    /* number of ranges; allocated ranges */
     int32_t dealt; /* of spare room: number of ranges that blocks hold and will return. The list always has capacity for
                       them, so returning cannot fail */
 };
@@ -37,7 +37,7 @@ int64_t par_ranges_unused(const struct par_ranges *ranges);
 
 /* The room of one block, or the spare room that no block holds. */
 struct par_room {
-    struct par_ranges ranges[PAR_KINDS];
+    struct par_ranges ranges[PAR_KINDS]; /* ranges of each kind */
     int32_t current[PAR_KINDS]; /* of a block: index of the range in use */
     double on_segments;         /* of a block: share of its points that were inserted on segments, 0 to 1, as known at
                                    its last pause */

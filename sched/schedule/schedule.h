@@ -80,12 +80,12 @@ struct par_options {
     unsigned shuffle;        /* for tests: not 0: blocks start in an order drawn from this seed */
     void (*went)(void *user, int from, int to); /* for tests: called at each step from one enum par_next to another;
                                                    NULL: not called */
-    void *went_user;
+    void *went_user;         /* passed to went */
     int32_t tight_room;      /* for tests: not 0: blocks get room for this many triangles at a time, and therefore pause
                                 often */
     void (*progress)(void *user, const struct par_place *place); /* called on the calling thread only; NULL: not
                                                                     called */
-    void *progress_user;
+    void *progress_user; /* passed to progress */
 };
 
 enum { PAR_SHARINGS = 7 }; /* one entry for each power of two of shares up to TRI_MOST_SHARES */
@@ -99,14 +99,15 @@ enum par_way { /* where the mesh was kept during the run */
 struct par_block_report {
     int32_t schedule; /* number of the schedule, from 0, in the order in which schedules began. A pre-refinement that is
                          itself a schedule has a lower number than the schedule that it prepares */
-    int32_t round, phase, block;
-    int64_t worklist, inserted, deferred;
-    double seconds;
+    int32_t round, phase, block; /* round and phase, from 0; the block, as column * n_rows + row */
+    int64_t worklist, inserted, deferred; /* entries of its worklist; points inserted; triangles deferred by the
+                                             fence */
+    double seconds; /* wall time of the block */
 };
 
 struct par_report {
-    struct tri_refine_report total;
-    int threads;
+    struct tri_refine_report total; /* counts of all blocks and calls */
+    int threads;                  /* number of threads used */
     int rounds;                   /* rounds of four phases, on all levels */
     int levels;                   /* number of meshes that phases refined: the requested one, its pre-refinement, and so
                                      on; 0: no schedule */
@@ -122,7 +123,7 @@ struct par_report {
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* triangles deferred by fences, over all phases; bad triangles that were left for
                                      sequential calls */
-    enum par_way way;
+    enum par_way way;             /* where the mesh was kept */
     int64_t most_live;            /* largest number of triangles in the mesh at any time, including unused room of
                                      blocks */
     int64_t remain[TRI_EXCUSES];  /* triangles that still violate the bounds, by reason */
@@ -130,6 +131,8 @@ struct par_report {
     int64_t parked;               /* largest number of bytes in `scratch` files at any time; 0: the mesh stayed in
                                      memory */
     int64_t pauses;               /* number of times that a block paused for lack of room */
+    /* wall time of: the coarse mesh; estimates and cells; room; collecting results and closing gaps; sequential calls;
+     * the whole call */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* finding bad triangles and the block of each */
     double seconds_deal;         /* dealing bad triangles to blocks */
@@ -140,7 +143,7 @@ struct par_report {
     double phase_seconds[4];      /* seconds_refine by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] one entry for each block that ran, in canonical order; owned by the
                                         report */
-    int32_t n_blocks, block_capacity;
+    int32_t n_blocks, block_capacity; /* number of entries; allocated entries */
 };
 
 /* The default options: everything 0 or NULL. */

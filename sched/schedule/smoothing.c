@@ -102,6 +102,7 @@ static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
     struct tri_smooth_count last = {0};
     s->n = 0;
     s->moved = 0;
+    /* in ascending order, which depends on the mesh alone, since it has been numbered */
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (tri_is_movable(mesh, v))
             s->vertex[s->n++] = v;

@@ -9,6 +9,7 @@
 #ifdef _OPENMP
 #include <omp.h>
 
+/* The number of threads if the caller did not request one; and whether to test that the system allows that many. */
 static int default_threads(void) { return omp_in_parallel() ? 1 : omp_get_max_threads(); }
 static bool must_try(int threads, bool wary) { return wary || threads > omp_get_num_procs(); }
 

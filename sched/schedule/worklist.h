@@ -8,7 +8,7 @@
 
 /* A list of ids of one kind: triangles, vertices or subsegments, depending on the list. */
 struct par_ids {
-    int32_t *item;
+    int32_t *item; /* [n] the ids */
     int32_t n, capacity;
 };
 
@@ -66,7 +66,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
  * its place in the tile's list (par_order_by_tile). If such a list has not been made, the key is the triangle's place
  * in the whole worklist. So keys do not depend on which other blocks ran at the same time. */
 struct par_keys {
-    uint64_t *item;
+    uint64_t *item; /* [n] ascending; item[i] is the key of worklist entry i */
     int32_t n, capacity;
 };
 
