@@ -228,7 +228,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     *c = par_checkpoint_closed(directory);
     if (strlen(directory) > PAR_CHECKPOINT_PATH - 32)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
-    /* a directory that exists already is not removed at the end */
+    /* A directory that exists already is not removed at the end. */
     bool made = !resume && tri_folder_make(directory);
     if (!resume && !made && errno != EEXIST)
         return tri_fail_system(error, TRI_CANNOT_WRITE, directory, "cannot be made", errno);
@@ -386,9 +386,9 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     }
     if (!to->failed)
         to->direct = tri_file_direct(to->file);
-    /* collect and write the state through par_carry */
+    /* Collect and write the state through par_carry. */
     enum tri_status status = walk(to, user, error);
-    /* write the rest of the buffer; cutting sets the length if the state ends with a hole */
+    /* Write the rest of the buffer; cutting sets the length if the state ends with a hole. */
     bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
                 tri_file_cut(to->file, (uint64_t)to->place);
     const double began = tri_seconds();
@@ -409,12 +409,12 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
 {
     struct par_manifest m = c->manifest;
     struct par_state_file to;
-    /* the name that the current manifest does not use */
+    /* Use the file name that the current manifest does not refer to. */
     m.which = par_checkpoint_next(c);
     enum tri_status status = write_state(c, state_name[m.which], &to, walk, user, error);
     if (status)
         return status;
-    /* the tiles that the state refers to must be on the disk, too */
+    /* The tiles that the state refers to must be on the disk, too. */
     if (!tri_file_sync(c->spool.file))
         return cannot_write(c->directory, tiles_name, error);
     m.kind = kind;

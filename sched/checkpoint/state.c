@@ -104,7 +104,7 @@ static void carry_items(struct cargo *cargo, struct par_state_file *f, void *arr
 {
     int32_t wanted = *n;
     void *items;
-    /* when reading, this replaces the number by that in the file */
+    /* When reading, this replaces the number by that in the file. */
     CARRY(f, wanted);
     cargo->memory = cargo->memory && tri_grow(array, capacity, wanted, item);
     *n = cargo->memory ? wanted : 0;
@@ -302,7 +302,7 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
         run->mesh->stop = NULL;
         status = load(c, run, NULL, error);
     }
-    /* a state of a whole mesh, or a sweep that was given up: the mesh must not be swept again */
+    /* A state of a whole mesh, or a sweep that was given up: the mesh must not be swept again. */
     if (is_whole && run->place.next == PAR_BOUNDS)
         run->place.next = PAR_BOUNDS_WHOLE;
     return status;
@@ -313,7 +313,7 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
 enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error)
 {
-    /* the receiver of the tiles has failed: save the state before reporting it */
+    /* The receiver of the tiles has failed: save the state before reporting it. */
     const bool failed = tiles && c->spool.failed, due = par_state_is_due(c, tri_seconds(), live_triangles(run));
     run->mesh->stop = NULL;
     if (!tri_stop_is_asked(c->stop) && !surely && !failed && !due)

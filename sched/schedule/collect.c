@@ -102,7 +102,7 @@ static bool gather_left(struct leftovers *left)
     left->before = malloc((n + 1) * sizeof *left->before);
     if (!left->seen || !left->before)
         return false;
-    /* first remove duplicates, then compute where each list begins, then copy */
+    /* First remove duplicates, then compute where each list begins, then copy. */
     tri_execute(&p->run->asked.executor, n, drop_repeated, left);
     left->before[0] = 0;
     for (size_t i = 0; i < n; i++) {
@@ -134,7 +134,7 @@ bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t
         return false;
     }
     assert(run->key.n == 0 || run->key.n == list->n);
-    /* merge; an entry that both lists have is taken from the old one, and skipped in the new one */
+    /* Merge the lists. If both have an entry, it is taken from the old list and skipped in the new one. */
     for (int32_t i = 0, k = 0; i < list->n || k < n; at++) {
         bool old = k == n || (i < list->n && key_of(run, i) <= key[k]);
         items[at] = old ? list->item[i] : item[k];
@@ -214,13 +214,13 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
     bool memory = take_back(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
-        /* the first failure in canonical order counts, so errors do not depend on timing */
+        /* The first failure in canonical order counts, so errors do not depend on timing. */
         if (!status && has_failed(task)) {
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
         par_add_up(&p->run->report->total, &task->report);
-        /* a task that was stopped or has not begun is not reported */
+        /* A task that was stopped or has not begun is not reported. */
         memory = memory && (task->progress == PAR_READY || report_block(p, task));
         par_room_return(&task->view.room, &p->run->spare);
         memory = release_erased(p, task) && memory;

@@ -27,7 +27,7 @@ int32_t par_add_up_counts(int32_t *at, size_t shares, int32_t n_tiles, int32_t *
     for (int32_t tile = 0; tile < n_tiles; tile++) {
         start[tile] = sum;
         for (size_t share = 0; share < shares; share++) {
-            /* replace the count by the place of the share's first item of this tile */
+            /* Replace the count by the place of the share's first item of this tile. */
             int32_t *here = &at[share * (size_t)n_tiles + (size_t)tile], count = *here;
             *here = sum;
             sum += count;
@@ -77,7 +77,7 @@ void par_deal_work(const struct par_deal *deal, const struct tri_executor *execu
                    void (*work)(const void *context, size_t tile, uint64_t *room), const void *context)
 {
     const size_t n_tiles = (size_t)deal->n_tiles, largest = (size_t)largest_tile(deal);
-    /* workers for which the scratch memory suffices */
+    /* The scratch memory suffices for this many workers. */
     const size_t most = (size_t)deal->n / largest;
     struct hands hands = {work, context, n_tiles, room, 2 * largest, 0};
     tri_execute(executor, most < n_tiles ? most : n_tiles, take_tiles, &hands);

@@ -83,7 +83,7 @@ static void make_keys(const struct sample *item, int32_t n, bool along_x, uint64
         low = at < low ? at : low;
         high = at > high ? at : high;
     }
-    /* use halves, because the width itself may overflow */
+    /* Use halves, because the width itself may overflow. */
     const double scale = UINT32_MAX / (high / 2 - low / 2), finite = scale < HUGE_VAL ? scale : 0;
     for (int32_t i = 0; i < n; i++)
         key[i] = (uint64_t)(((along_x ? item[i].q.x : item[i].q.y) / 2 - low / 2) * finite) << 32 | (uint32_t)i;
@@ -102,14 +102,14 @@ static void sort_along(struct sample *item, int64_t n, bool along_x, struct samp
         return;
     }
     make_keys(item, (int32_t)n, along_x, key);
-    /* sort by the upper half of the keys; the lower half then says which sample goes where */
+    /* Sort by the upper half of the keys; the lower half then says which sample goes where. */
     tri_radix_sort(key, key + n, (int32_t)n, 32, 64, NULL);
     for (int64_t i = 0; i < n; i++)
         sorted[i] = item[key[i] & UINT32_MAX];
     for (int64_t i = 0, end; i < n; i = end) {
         for (end = i + 1; end < n && key[end] >> 32 == key[i] >> 32;)
             end++;
-        /* samples with equal upper halves: compare exactly */
+        /* Samples with equal upper halves: compare exactly. */
         if (end - i > 1)
             qsort(sorted + i, (size_t)(end - i), sizeof *sorted, compare);
     }
@@ -161,7 +161,7 @@ static void sort_by_x(struct samples *s, struct sample *scratch, const struct tr
     tri_execute(executor, (size_t)r.runs, sort_run, &r);
     for (; r.runs > 1; r.runs /= 2) {
         tri_execute(executor, (size_t)r.runs / 2, merge_runs, &r);
-        /* each round of merging swaps the two arrays */
+        /* Each round of merging swaps the two arrays. */
         struct sample *merged = r.to;
         r.to = r.from;
         r.from = merged;
@@ -181,7 +181,7 @@ static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
     cut[0] = 0;
     for (int64_t i = 0; i < s->n && k < n; i++) {
         sum += s->item[i].work;
-        /* one sample may end several shares, some of which are then empty */
+        /* One sample may end several shares, some of which are then empty. */
         while (k < n && sum >= total * k / n)
             cut[k++] = i + 1;
     }
@@ -235,8 +235,8 @@ static void cut_rows(void *context, size_t k)
     const size_t before = k > 0 ? k - 1 : 0, after = k + 1 < (size_t)c->p->n_columns ? k + 1 : k;
     const size_t rows = (size_t)c->p->n_rows;
     const int64_t first = c->column[before], middle = c->column[k], end = c->column[after], n = end - first;
-    /* column k writes to places first + middle .. middle + end - 1 of the scratch memory; the next column begins
-     * there */
+    /* Column k writes to places first + middle .. middle + end - 1 of the scratch memory; the next column begins
+     * there. */
     struct samples inside = {c->scratch + (k > 0 ? first + middle : 0), n, n};
     merge(c->s->item + first, middle - first, c->s->item + middle, end - middle, by_y, inside.item);
     cut_shares(&inside, c->p->n_rows - 1, c->cut + k * rows);
@@ -359,7 +359,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
         find_box(p, mesh, executor);
         choose_numbers(p, cell_triangles, p->high.x - p->low.x, p->high.y - p->low.y);
     }
-    /* each sample stands for about this much work */
+    /* Each sample stands for about this much work. */
     double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
     bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
     if (done && choose_for_work(p, cell_triangles))

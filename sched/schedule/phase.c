@@ -57,8 +57,7 @@ static int32_t owner_now(const struct par_phase_run *p, struct par_locator *loca
     int32_t block = par_locate_owner(locator, p->partition, p->phase, p->run->mesh, t);
     if (block != TRI_NONE && p->is_done[block])
         return TRI_NONE;
-    if (p->share)
-        /* on ranks each rank runs its own blocks */
+    if (p->share) /* on ranks, each rank runs its own blocks */
         return block == TRI_NONE || p->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
@@ -172,11 +171,11 @@ static bool deal_all(struct dealing *d)
     d->key = run->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
     if (!d->kept || (run->key.n > 0 && !d->key))
         return false;
-    /* from here on each share knows where its entries go */
+    /* The counts have become places, so each share can write its entries independently of the others. */
     tri_execute(&run->asked.executor, d->deal.shares, deal_share, d);
     if (!make_tasks(d))
         return false;
-    /* nothing can fail any more: swap the lists */
+    /* Nothing can fail any more: swap the lists. */
     d->p->given = run->worklist;
     d->p->given_key = run->key;
     run->worklist = (struct par_ids){d->kept, n_kept, n_kept};
@@ -330,10 +329,10 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->hooks.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->run->mesh);
-    /* what it asked for before the pause has been fetched */
+    /* The triangles that it asked for before the pause have been fetched. */
     task->asked.n = 0;
     task->status = TRI_OK;
-    /* the refiner keeps the queue of the block across pauses */
+    /* The refiner keeps the queue of the block across pauses. */
     if (!task->refiner)
         task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &p->run->bounds, &task->hooks,
                                        &task->report, &task->error);
@@ -411,7 +410,7 @@ static void run_tasks(struct par_phase_run *p)
     struct par_report *report = p->run->report;
     double shared[PAR_SHARINGS]; /* blocks are not equal shares: undo below what run_timed adds */
     memcpy(shared, report->seconds_shared, sizeof shared);
-    /* tasks compare this with the address on their own thread */
+    /* Tasks compare this with the address on their own thread. */
     p->caller = &here;
     tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
@@ -452,7 +451,7 @@ static bool order_tasks(struct par_phase_run *p)
     p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
     if (queue && p->order) {
         for (int32_t i = 0; i < p->n_tasks; i++) {
-            /* a linear congruential generator; the estimates are the keys unless the order is random */
+            /* Draw the next random number, for tests. Otherwise the key is the estimate. */
             draw = draw * 1664525u + 1013904223u;
             queue[i] = (struct queued){p->run->asked.options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
         }
@@ -504,7 +503,7 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     reserve_room(p);
     p->run->report->seconds_room += tri_seconds() - reserving;
     do {
-        /* all tasks have stopped here, so the arrays may move */
+        /* All tasks have stopped here, so the arrays may move. */
         status = give_room(p, error);
         if (status)
             break;
@@ -586,7 +585,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);
-    /* blocks that ended before a halt do not run again */
+    /* Blocks that ended before a halt do not run again. */
     p.is_done = calloc((size_t)par_blocks(p.partition), sizeof *p.is_done);
     for (int32_t i = 0; p.is_done && i < run->place.done.n; i++)
         p.is_done[run->place.done.item[i]] = true;
@@ -597,7 +596,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
-    /* the phase is complete, or has failed: the list of blocks that are done is for an unfinished phase only */
+    /* The list of ended blocks is needed only if the phase is continued after a halt. */
     if (status != TRI_STOPPED) {
         run->place.done.n = 0;
         run->share_done = 0;

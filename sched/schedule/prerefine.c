@@ -115,7 +115,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
     struct tri_quality coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
-    /* too long: a quarter of the cell, whose square is a sixteenth */
+    /* An edge is too long if it is longer than a quarter of the cell; 1/16 is the square of this share. */
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16};
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
@@ -127,7 +127,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)run->worklist.n);
     assert(long_ones.n <= run->worklist.n);
     struct tri_refine_hooks hooks = par_hooks(run);
-    /* refine only triangles that are too long, including new ones */
+    /* Refine only triangles that are too long, including new ones. */
     hooks.urgent = is_too_long;
     hooks.urgent_user = &test;
     hooks.worklist = long_ones.item;

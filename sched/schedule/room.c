@@ -86,14 +86,14 @@ enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, int32_t po
     assert(mesh == &view->mesh);
     for (enum par_kind kind = PAR_VERTICES; points > 1 && kind < PAR_KINDS; kind++)
         end_range(view, kind);
-    /* several points: is there room for all of them, in any of the block's ranges? */
+    /* Several points: is there room for all of them, in any of the block's ranges? */
     view->points = points > 1 && !has_room(&view->room, points) ? points : 0;
     if (view->points > 0)
         return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         const struct counts counts = counts_of(mesh, kind);
         assert(*counts.used <= *counts.capacity);
-        /* one point: move on to the first range that has room for it */
+        /* One point: move on to the first range that has room for it. */
         while (*counts.capacity - *counts.used < one_insertion[kind]) {
             end_range(view, kind);
             if (view->room.current[kind] + 1 >= view->room.ranges[kind].n)
@@ -170,7 +170,7 @@ static enum tri_status extend_kind(struct par_room *room, struct par_room *spare
     }
     if (need <= 0)
         return TRI_OK;
-    /* spare ranges do not suffice: take the rest from the end of the array, which grows */
+    /* Spare ranges do not suffice: take the rest from the end of the array, which grows. */
     need = need < PAR_LEAST_RANGE ? PAR_LEAST_RANGE : need;
     if (!reserve_deal(to, from))
         return no_memory(error);
@@ -238,7 +238,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
         struct par_ranges *from = &room->ranges[kind], *to = &spare->ranges[kind];
         for (int32_t i = 0; i < from->n; i++) {
             to->dealt--;
-            /* deal_range has reserved space for this range */
+            /* reserve_deal has reserved space for this range. */
             if (from->item[i].next < from->item[i].end)
                 to->item[to->n++] = from->item[i];
         }
@@ -250,7 +250,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 bool par_room_release(struct par_room *spare, enum par_kind kind, int32_t id)
 {
     struct par_ranges *ranges = &spare->ranges[kind];
-    /* deleted items often follow each other: extend the last range */
+    /* Deleted items often follow each other: extend the last range. */
     if (ranges->n > 0 && ranges->item[ranges->n - 1].end == id && ranges->item[ranges->n - 1].next < id) {
         ranges->item[ranges->n - 1].end++;
         return true;
@@ -329,7 +329,7 @@ static int32_t move_items(struct par_ranges *gaps, int32_t count, struct tri_mes
     struct par_range *into = gaps->item;
     if (gaps->n > 0)
         qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
-    /* from the last gap downwards: move the items between this gap and the one above it, or the end */
+    /* From the last gap downwards: move the items between this gap and the one above it, or the end. */
     for (int32_t gap = gaps->n, end = count; end > kept; end = gaps->item[gap].next) {
         gap--;
         assert(gaps->item[gap].end <= end);

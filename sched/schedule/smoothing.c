@@ -102,7 +102,8 @@ static enum tri_status smooth_pass(struct smoothing *s, struct tri_error *error)
     struct tri_smooth_count last = {0};
     s->n = 0;
     s->moved = 0;
-    /* in ascending order, which depends on the mesh alone, since it has been numbered */
+    /* List the movable vertices in ascending order. The mesh has been numbered, so this order depends on the mesh
+     * alone. */
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (tri_is_movable(mesh, v))
             s->vertex[s->n++] = v;

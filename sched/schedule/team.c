@@ -165,7 +165,7 @@ static void close_job(struct par_crew *crew)
 {
     tri_monitor_enter(crew->gate);
     crew->job = NULL;
-    /* from here on no thread can join */
+    /* From here on no thread can join. */
     const int joined = crew->joined;
     tri_monitor_leave(crew->gate);
     tri_monitor_enter(crew->door);
@@ -201,7 +201,7 @@ void par_team_end(struct par_team *team)
     tri_monitor_enter(crew->gate);
     tri_monitor_enter(crew->end);
     crew->is_over = true;
-    /* with OpenMP, the region's first thread waits at `end`; all others wait at `gate` */
+    /* With OpenMP, the region's first thread waits at `end`; all others wait at `gate`. */
     tri_monitor_wake(crew->end);
     tri_monitor_leave(crew->end);
     tri_monitor_wake(crew->gate);

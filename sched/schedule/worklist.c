@@ -105,7 +105,7 @@ static int32_t add_old(const struct finding *f, struct tri_range range, tri_tria
     int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
     for (int32_t i = begin; i < end; i++)
         all += tri[f->worklist->item[i]].life == 0;
-    /* merge from the end: write index at never passes read index n */
+    /* Merge from the end, so that no entry is overwritten before it has been moved. */
     for (int32_t i = end - 1, at = all; i >= begin; i--) {
         tri_triangle_id old = f->worklist->item[i];
         assert(i == begin || f->worklist->item[i - 1] < old); /* ascending, without duplicates */
@@ -307,7 +307,7 @@ static int32_t order(struct ordering *o, const struct tri_executor *executor)
     if (!make_lists(o))
         return TRI_NONE;
     tri_execute(executor, o->deal.shares, find_tiles, o);
-    /* counts become places; n: entries that stay */
+    /* Counts become places; n: entries that stay. */
     int32_t n = par_deal_add_up(&o->deal);
     tri_execute(executor, o->deal.shares, deal_share, o);
     par_deal_work(&o->deal, executor, o->room, sort_tile, o);
