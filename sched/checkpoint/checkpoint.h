@@ -31,47 +31,47 @@ enum par_state_kind {
 
 /* The contents of the file `manifest`. */
 struct par_manifest {
-    uint64_t word, hash;   /* file type and version; hash of all members from `of` on */
-    uint64_t of;           /* identifies the program, as passed to par_checkpoint_open */
-    uint64_t run;          /* identifies the run: a hash of the input mesh, bounds and options */
-    int64_t kind;          /* enum par_state_kind */
-    int64_t which;         /* number of the valid state file: 0 or 1 */
-    int64_t state_bytes;   /* length of the state file; 0: there is no state yet, and a resumed run starts again from
-                              the input */
-    uint64_t state_hash; /* hash of the state file */
-    int64_t tiles_bytes;   /* length of the valid beginning of `tiles` */
-    int64_t triangles;     /* triangles in the mesh so far, including those handed out */
-    int64_t n_ranks;       /* number of ranks, for a state of ranks; otherwise 0 */
+    uint64_t word, hash;    /* file type and version; hash of all members from `of` on */
+    uint64_t of;            /* identifies the program, as passed to par_checkpoint_open */
+    uint64_t run;           /* identifies the run: a hash of the input mesh, bounds and options */
+    int64_t kind;           /* enum par_state_kind */
+    int64_t which;          /* number of the valid state file: 0 or 1 */
+    int64_t state_bytes;    /* length of the state file; 0: there is no state yet, and a resumed run starts again from
+                               the input */
+    uint64_t state_hash;    /* hash of the state file */
+    int64_t tiles_bytes;    /* length of the valid beginning of `tiles` */
+    int64_t triangles;      /* triangles in the mesh so far, including those handed out */
+    int64_t n_ranks;        /* number of ranks, for a state of ranks; otherwise 0 */
     int64_t made_directory; /* 1: the run created the directory, and removes it at the end; 0: it existed before */
 };
 
 /* An open checkpoint directory and the schedule by which states are written. Used by the calling thread of a run;
  * blocks read it to decide whether a halt is due. */
 struct par_checkpoint {
-    double seconds;              /* least time between two states, in seconds; 0: a state after each step. Set it after
-                                    opening */
-    const char *directory;       /* its path; borrowed */
+    double seconds;               /* least time between two states, in seconds; 0: a state after each step. Set it after
+                                     opening */
+    const char *directory;        /* its path; borrowed */
     struct par_manifest manifest; /* the manifest as it is on the disk */
-    tri_file folder;             /* the open directory; TRI_NO_FILE: not open */
-    tri_file lock;               /* the open file `tiles`, which carries the lock on the directory; TRI_NO_FILE: this
-                                    process does not hold the lock */
-    int saved;                   /* number of states that this process has written */
-    double last;                 /* time of the last state, or of the beginning of the run, by tri_seconds() */
-    double cost, writing;        /* seconds that the last state took; the part of them spent on writing to the disk */
-    double size;                 /* number of triangles in the last state */
-    double limit;                /* time at which the run will be stopped, by tri_seconds(); 0: unknown. Set it after
-                                    opening */
-    double looked;               /* time at which ranks last checked whether a state is due */
-    struct par_spool spool;      /* the tiles of a sweep */
+    tri_file folder;              /* the open directory; TRI_NO_FILE: not open */
+    tri_file lock;                /* the open file `tiles`, which carries the lock on the directory; TRI_NO_FILE: this
+                                     process does not hold the lock */
+    int saved;                    /* number of states that this process has written */
+    double last;                  /* time of the last state, or of the beginning of the run, by tri_seconds() */
+    double cost, writing;         /* seconds that the last state took; the part of them spent on writing to the disk */
+    double size;                  /* number of triangles in the last state */
+    double limit;                 /* time at which the run will be stopped, by tri_seconds(); 0: unknown. Set it after
+                                     opening */
+    double looked;                /* time at which ranks last checked whether a state is due */
+    struct par_spool spool;       /* the tiles of a sweep */
     char tiles_path[PAR_CHECKPOINT_PATH]; /* path of the file `tiles`, for messages */
-    struct tri_sink sink;        /* the sink of a sweep, which appends to the spool */
-    const struct tri_stop *stop; /* asks for the end of the run; checked only between steps. NULL: the run cannot be
-                                    stopped */
+    struct tri_sink sink;         /* the sink of a sweep, which appends to the spool */
+    const struct tri_stop *stop;  /* asks for the end of the run; checked only between steps. NULL: the run cannot be
+                                     stopped */
     void (*told)(void *user, int64_t triangles); /* called when a new manifest is on the disk, with the number of
                                                     triangles in the state; 0: there is no state. NULL: not called */
-    void *told_user;             /* passed to told */
-    void (*time_up)(void);       /* called when the last state before the limit has been written; from then on `stop`
-                                    says yes. NULL: not called */
+    void *told_user;              /* passed to told */
+    void (*time_up)(void);        /* called when the last state before the limit has been written; from then on `stop`
+                                     says yes. NULL: not called */
 };
 
 /* Returns a checkpoint that is not open. */
@@ -133,11 +133,11 @@ struct par_state_file {
     tri_file file;   /* the open file */
     tri_file direct; /* the same file, opened to bypass the system's cache; TRI_NO_FILE: not available */
     bool reads;      /* true: reading; false: writing */
-    bool failed;   /* reading or writing failed; later calls of par_carry do nothing, so the walk need not check it */
-    int64_t place; /* position in the file, in bytes */
-    uint64_t hash; /* hash of the bytes written so far */
-    double writing; /* seconds spent on writing, without hashing */
-    char *waiting; /* buffer of PAR_STATE_WRITE bytes that collects bytes to write; NULL when reading */
+    bool failed;     /* reading or writing failed; later calls of par_carry do nothing, so the walk need not check it */
+    int64_t place;   /* position in the file, in bytes */
+    uint64_t hash;   /* hash of the bytes written so far */
+    double writing;  /* seconds spent on writing, without hashing */
+    char *waiting;   /* buffer of PAR_STATE_WRITE bytes that collects bytes to write; NULL when reading */
 };
 
 /* Writes the next n bytes to the file, or reads them from it. */

@@ -13,10 +13,10 @@ static const uint64_t TILE = UINT64_C(0x32656c6974697274); /* "tritile2": file t
 
 /* The head of a tile in the file. Its arrays follow. */
 struct head {
-    uint64_t word;   /* TILE */
-    uint64_t hash;   /* hash of the members below and of the arrays */
-    int64_t bytes;   /* bytes of the arrays, each padded to a multiple of eight */
-    struct tri_tile tile; /* numbers of the tile; its pointers are NULL */
+    uint64_t word;              /* TILE */
+    uint64_t hash;              /* hash of the members below and of the arrays */
+    int64_t bytes;              /* bytes of the arrays, each padded to a multiple of eight */
+    struct tri_tile tile;       /* numbers of the tile; its pointers are NULL */
     int32_t n_attributes, none; /* attributes of a vertex; padding, 0 */
 };
 

@@ -15,17 +15,17 @@
 
 /* Used by the calling thread of a run. */
 struct par_spool {
-    tri_file file;          /* open for reading and writing; TRI_NO_FILE: not open */
-    const char *path;       /* path of the file for messages; borrowed */
+    tri_file file;             /* open for reading and writing; TRI_NO_FILE: not open */
+    const char *path;          /* path of the file for messages; borrowed */
     const struct tri_sink *to; /* the sink that receives the tiles */
-    int64_t length;         /* bytes of complete tiles in the file */
-    int64_t sent;           /* the part of these bytes that the system has been asked to write to the disk */
-    bool again;             /* `begin` hands out the tiles in the file again; the first tile appended afterwards is
-                               already in the file and is skipped */
-    enum tri_status failed; /* not TRI_OK: `to` has failed and receives no more tiles; tiles are still appended to the
-                               file */
-    struct tri_error failure; /* details of that failure */
-    int32_t n_attributes;     /* attributes of a vertex */
+    int64_t length;            /* bytes of complete tiles in the file */
+    int64_t sent;              /* the part of these bytes that the system has been asked to write to the disk */
+    bool again;                /* `begin` hands out the tiles in the file again; the first tile appended afterwards is
+                                  already in the file and is skipped */
+    enum tri_status failed;    /* not TRI_OK: `to` has failed and receives no more tiles; tiles are still appended to
+                                  the file */
+    struct tri_error failure;  /* details of that failure */
+    int32_t n_attributes;      /* attributes of a vertex */
 };
 
 /* Returns the spool as a sink. The spool must outlive it. The sink's functions return TRI_CANNOT_WRITE or

@@ -50,10 +50,10 @@ void par_forget_deferred(struct par_report *report) { report->total.gated = repo
 /* Merging the triangles that the tasks have left. */
 struct leftovers {
     const struct par_phase_run *p; /* the phase */
-    _Atomic(uint64_t) *seen; /* [n_triangles / 64 + 1] one bit for each triangle that has been met */
-    int32_t *before;         /* [n_tasks + 1] number of triangles that all tasks before this one have left */
-    int32_t *item;           /* [before[n_tasks]] */
-    uint64_t *key;           /* [before[n_tasks]] */
+    _Atomic(uint64_t) *seen;       /* [n_triangles / 64 + 1] one bit for each triangle that has been met */
+    int32_t *before;               /* [n_tasks + 1] number of triangles that all tasks before this one have left */
+    int32_t *item;                 /* [before[n_tasks]] the triangles that all tasks have left, in canonical order */
+    uint64_t *key;                 /* [before[n_tasks]] their keys */
 };
 
 /* Marks a triangle, and returns whether it was unmarked. Safe to call from several threads. */

@@ -49,9 +49,9 @@ struct hands {
     void (*work)(const void *context, size_t tile, uint64_t *room); /* called for each tile */
     const void *context; /* passed to work */
     size_t n_tiles;      /* number of tiles */
-    uint64_t *room;         /* [workers][each] scratch memory */
-    size_t each;            /* items of scratch memory for one worker: two for each item of the largest tile */
-    atomic_size_t next;     /* next tile that no worker has begun */
+    uint64_t *room;      /* [workers][each] scratch memory */
+    size_t each;         /* items of scratch memory for one worker: two for each item of the largest tile */
+    atomic_size_t next;  /* next tile that no worker has begun */
 };
 
 /* A worker: fetches the next tile and processes it, until no tile is left. */

@@ -9,12 +9,11 @@
 #include "triangle/base/executor.h"
 
 struct par_deal {
-    int32_t *at;         /* [shares][n_tiles] counts; after par_deal_add_up: where the share's next item of the tile
-                            goes */
-    int32_t *start;      /* [n_tiles + 1] where the items of each tile begin; set by par_deal_add_up */
-    size_t shares;       /* number of shares */
-    int32_t n_tiles;     /* number of tiles */
-    int32_t n;           /* number of items, including those that belong to no tile */
+    int32_t *at;     /* [shares][n_tiles] counts; after par_deal_add_up: where the share's next item of the tile goes */
+    int32_t *start;  /* [n_tiles + 1] where the items of each tile begin; set by par_deal_add_up */
+    size_t shares;   /* number of shares */
+    int32_t n_tiles; /* number of tiles */
+    int32_t n;       /* number of items, including those that belong to no tile */
 };
 
 /* Prepares a deal of n items to n_tiles tiles, with all counts 0. False: no memory. Call par_deal_free in either

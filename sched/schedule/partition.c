@@ -212,10 +212,10 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
 struct cutting {
     struct par_partition *p; /* the result */
     struct samples *s;       /* all samples, ordered by column */
-    const int64_t *column;  /* [n_columns] the first sample of each column of cells; the last entry is the number of
-                               samples */
-    struct sample *scratch; /* [2 * s->n] scratch memory */
-    int64_t *cut;           /* [n_columns][n_rows] the first sample of each row, for each column of blocks */
+    const int64_t *column;   /* [n_columns] the first sample of each column of cells; the last entry is the number of
+                                samples */
+    struct sample *scratch;  /* [2 * s->n] scratch memory */
+    int64_t *cut;            /* [n_columns][n_rows] the first sample of each row, for each column of blocks */
 };
 
 /* A task: sorts the samples of one column of cells along y. */

@@ -24,12 +24,13 @@
 enum { PAR_PHASES = 4 };
 
 struct par_partition {
-    int32_t n_columns, n_rows; /* numbers of columns and rows of blocks: odd, at least 3 */
-    double *x;       /* [n_columns] boundaries of the columns of cells, ascending; the first and last are those of the
-                        bounding box */
-    double *y;       /* [n_columns][n_rows] boundaries of the rows of cells, ascending, for each column of blocks */
+    int32_t n_columns, n_rows;  /* numbers of columns and rows of blocks: odd, at least 3 */
+    double *x;                  /* [n_columns] boundaries of the columns of cells, ascending; the first and last are
+                                   those of the bounding box */
+    double *y;                  /* [n_columns][n_rows] boundaries of the rows of cells, ascending, for each column of
+                                   blocks */
     struct tri_point low, high; /* bounding box of the mesh */
-    double estimate; /* estimated number of final triangles of the mesh */
+    double estimate;            /* estimated number of final triangles of the mesh */
 };
 
 /* The default number of final triangles in a cell, for a mesh that is estimated to end with `triangles` triangles. */

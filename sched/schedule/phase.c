@@ -92,9 +92,9 @@ static int32_t expect(int phase, double work)
 struct dealing {
     struct par_phase_run *p; /* the phase */
     struct par_deal deal;    /* counts and places, for shares and bins */
-    double *work;  /* [shares][bins] work of the entries, in the layout of the counts */
-    int32_t *kept; /* [entries of bin 0] the entries that stay in the worklist */
-    uint64_t *key; /* their keys; NULL if the worklist has no keys */
+    double *work;            /* [shares][bins] work of the entries, in the layout of the counts */
+    int32_t *kept;           /* [entries of bin 0] the entries that stay in the worklist */
+    uint64_t *key;           /* their keys; NULL if the worklist has no keys */
 };
 
 /* Returns a share's row of `work`, one item for each bin. */
@@ -375,8 +375,8 @@ void par_tell(const struct par_run *run, int phase) { tell_place(run, phase, 0, 
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
 /* Called on the thread that ran the task, when the task has ended. Adds the task to the progress of all threads; if
- * this is the calling thread, also reports the progress. The number of triangles is a lower bound, so it never
- * decreases. */
+ * this is the calling thread, also reports the progress. The number of triangles counts only what has certainly been
+ * made, so it never decreases. */
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
@@ -469,8 +469,7 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
 {
     struct par_report *report = p->run->report;
     double began = tri_seconds();
-    tri_execute(&p->run->asked.executor, TRI_MOST_SHARES, assign_share, p); /* many shares, because each entry takes a
-                                                                               while */
+    tri_execute(&p->run->asked.executor, TRI_MOST_SHARES, assign_share, p); /* many shares: each entry is expensive */
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)

@@ -43,8 +43,8 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
 
 /* How several ranks share the blocks of a phase (sched/ranks/ranks.h). */
 struct par_share {
-    const bool *is_mine;   /* [blocks] this rank refines the block */
-    const bool *is_border; /* [blocks] other ranks hold a part of the block; across the border a link is TRI_BEYOND */
+    const bool *is_mine;    /* [blocks] this rank refines the block */
+    const bool *is_border;  /* [blocks] other ranks hold a part of the block; across the border a link is TRI_BEYOND */
     struct par_ids changed; /* triangles made by border blocks; may contain duplicates */
     /* Fetches from other ranks the triangles around these vertices, for which blocks wait. Called on the calling thread
      * while no block runs. */
@@ -56,14 +56,14 @@ struct par_share {
 struct par_asked {
     const struct tri_quality *quality; /* the caller's bounds */
     const struct par_options *options; /* the caller's options */
-    struct tri_executor executor;      /* runs tasks on the number of threads that the options request */
-    int32_t n_kept;                    /* number of vertices before refinement; they keep their ids */
+    struct tri_executor executor; /* runs tasks on the number of threads that the options request */
+    int32_t n_kept;               /* number of vertices before refinement; they keep their ids */
 };
 
 /* Counts of bad triangles, made when their tiles are handed out (sched/tiles/sweep.h). */
 struct par_remain {
-    bool is_on;             /* false: bad triangles are not counted, and the other members stay empty */
-    struct par_ids listed;  /* triangles given up so far and not counted yet */
+    bool is_on;            /* false: bad triangles are not counted, and the other members stay empty */
+    struct par_ids listed; /* triangles given up so far and not counted yet */
     int64_t counted[TRI_EXCUSES + 1]; /* by reason, in the layout of tri_count_bad_among */
 };
 
@@ -72,27 +72,27 @@ struct par_remain {
 struct par_run {
     const struct par_asked asked; /* the caller's request */
     struct par_position place;    /* the current position */
-    struct tri_mesh *mesh;      /* the caller's */
-    struct par_report *report;  /* the caller's */
-    struct tri_quality bounds;  /* bounds of the current schedule */
-    struct par_ids worklist;    /* triangles that may be bad, in canonical order; some entries may name triangles that
-                                   no longer exist */
-    struct par_keys key;        /* [worklist.n] ascending; n == 0: no block has deferred a triangle yet, so the
-                                   positions in the worklist are the keys */
-    struct par_room spare;      /* unused ranges of the mesh's arrays */
-    struct par_partition cells; /* of the last schedule of the whole mesh; the mesh is numbered by their tiles. x NULL:
-                                   no schedule yet */
-    struct par_remain remain;   /* counts of bad triangles of a mesh that is handed out during the run */
-    int64_t gone;               /* number of triangles that have been handed out and removed from the mesh */
-    int32_t n_schedules;        /* number of schedules begun so far, including the current one */
-    double radius;              /* largest circumradius in the worklist when it was last filled, in the mesh's internal
-                                   unit */
-    double share_done;          /* approximate share of the current phase done by blocks that ended before a halt, 0 to
-                                   1 */
-    _Atomic(int64_t) reached;   /* number of triangles while a phase runs, updated as blocks end */
-    struct par_park *park;      /* files that bound the memory of the mesh; NULL: there is no bound */
-    struct par_ranks *ranks;    /* not NULL: each rank holds its part of the mesh (sched/ranks/ranks.h); NULL: this
-                                   process holds all of it */
+    struct tri_mesh *mesh;        /* the caller's mesh */
+    struct par_report *report;    /* the caller's report */
+    struct tri_quality bounds;    /* bounds of the current schedule */
+    struct par_ids worklist;      /* triangles that may be bad, in canonical order; some entries may name triangles that
+                                     no longer exist */
+    struct par_keys key;          /* [worklist.n] ascending; n == 0: no block has deferred a triangle yet, so the
+                                     positions in the worklist are the keys */
+    struct par_room spare;        /* unused ranges of the mesh's arrays */
+    struct par_partition cells;   /* of the last schedule of the whole mesh; the mesh is numbered by their tiles. x
+                                     NULL: no schedule yet */
+    struct par_remain remain;     /* counts of bad triangles of a mesh that is handed out during the run */
+    int64_t gone;                 /* number of triangles that have been handed out and removed from the mesh */
+    int32_t n_schedules;          /* number of schedules begun so far, including the current one */
+    double radius;                /* largest circumradius in the worklist when it was last filled, in the mesh's
+                                     internal unit */
+    double share_done;            /* approximate share of the current phase done by blocks that ended before a halt, 0
+                                     to 1 */
+    _Atomic(int64_t) reached;     /* number of triangles while a phase runs, updated as blocks end */
+    struct par_park *park;        /* files that bound the memory of the mesh; NULL: there is no bound */
+    struct par_ranks *ranks;      /* not NULL: each rank holds its part of the mesh (sched/ranks/ranks.h); NULL: this
+                                     process holds all of it */
 };
 
 /* Moves the run to its next step (next.h), and reports the step to the test hook. */
@@ -154,11 +154,10 @@ enum tri_status par_run_rounds(struct par_run *run, const struct par_steps *step
 
 /* The current schedule. The steps in memory and on ranks get it as `self`. */
 struct par_schedule {
-    struct par_run *run;            /* the run */
+    struct par_run *run; /* the run */
     struct par_partition partition; /* of the current round */
-    bool is_whole;                  /* true: it refines the requested mesh (level 0); false: a coarser mesh that
-                                       prepares it */
-    int64_t left;                   /* entries of the worklist after the last round, summed over all ranks */
+    bool is_whole;       /* true: it refines the requested mesh (level 0); false: a coarser mesh that prepares it */
+    int64_t left;        /* entries of the worklist after the last round, summed over all ranks */
 };
 
 /* Moves run->place to the next round, whose blocks are four times as large. Returns false if no work is left or if the

@@ -25,8 +25,8 @@ struct par_range {
 struct par_ranges {
     struct par_range *item; /* the ranges, in no particular order */
     int32_t n, capacity;    /* number of ranges; allocated ranges */
-    int32_t dealt; /* of spare room: number of ranges that blocks hold and will return. The list always has capacity for
-                      them, so returning cannot fail */
+    int32_t dealt;          /* of spare room: number of ranges that blocks hold and will return. The list always has
+                               capacity for them, so returning cannot fail */
 };
 
 /* Makes the list large enough for `need` ranges in total; amortised O(1) a range. False: no memory. */
@@ -48,7 +48,7 @@ struct par_view {
     struct tri_mesh mesh; /* borrowed pointers to the shared arrays. While the block runs, counts and capacities are the
                              bounds of the room's current ranges */
     struct par_room room; /* the ranges of the block */
-    int32_t points; /* number of points for which there was no room the last time; 0: there was enough */
+    int32_t points;       /* number of points for which there was no room the last time; 0: there was enough */
 };
 
 /* Called when the block begins or continues. Copies the pointers to the shared arrays, which may have moved while the

@@ -97,50 +97,51 @@ enum par_way { /* where the mesh was kept during the run */
 };
 
 struct par_block_report {
-    int32_t schedule; /* number of the schedule, from 0, in the order in which schedules began. A pre-refinement that is
-                         itself a schedule has a lower number than the schedule that it prepares */
+    int32_t schedule;            /* number of the schedule, from 0, in the order in which schedules began. A
+                                    pre-refinement that is itself a schedule has a lower number than the schedule that
+                                    it prepares */
     int32_t round, phase, block; /* round and phase, from 0; the block, as column * n_rows + row */
     int64_t worklist, inserted, deferred; /* entries of its worklist; points inserted; triangles deferred by the
                                              fence */
-    double seconds; /* wall time of the block */
+    double seconds;              /* wall time of the block */
 };
 
 struct par_report {
     struct tri_refine_report total; /* counts of all blocks and calls */
-    int threads;                  /* number of threads used */
-    int rounds;                   /* rounds of four phases, on all levels */
-    int levels;                   /* number of meshes that phases refined: the requested one, its pre-refinement, and so
-                                     on; 0: no schedule */
-    int32_t schedule;             /* the first schedule of the whole mesh: its number in struct par_block_report */
-    int32_t columns, rows;        /* of blocks in the first round. These and the members below, up to prerefined,
-                                     describe the first schedule of the whole mesh; there are two if sizes and angles
-                                     have one each */
+    int threads;                 /* number of threads used */
+    int rounds;                  /* rounds of four phases, on all levels */
+    int levels;                  /* number of meshes that phases refined: the requested one, its pre-refinement, and so
+                                    on; 0: no schedule */
+    int32_t schedule;            /* the first schedule of the whole mesh: its number in struct par_block_report */
+    int32_t columns, rows;       /* of blocks in the first round. These and the members below, up to prerefined,
+                                    describe the first schedule of the whole mesh; there are two if sizes and angles
+                                    have one each */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; empty if the call was sequential.
                                        Owned by the report */
     double radius_lemma7, radius_theory; /* upper bounds on the circumradius after pre-refinement: the paper's and the
                                             tight one; 0 if there is no bound on areas or angles */
-    double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
-    int64_t prerefined;           /* triangles when the first phase began */
-    int64_t deferred, left_over;  /* triangles deferred by fences, over all phases; bad triangles that were left for
-                                     sequential calls */
-    enum par_way way;             /* where the mesh was kept */
-    int64_t most_live;            /* largest number of triangles in the mesh at any time, including unused room of
-                                     blocks */
-    int64_t remain[TRI_EXCUSES];  /* triangles that still violate the bounds, by reason */
-    bool remain_known;            /* `remain` has been counted, which needs a mesh that was handed out */
-    int64_t parked;               /* largest number of bytes in `scratch` files at any time; 0: the mesh stayed in
-                                     memory */
-    int64_t pauses;               /* number of times that a block paused for lack of room */
+    double radius_measured;      /* largest circumradius of a bad triangle when the first phase began */
+    int64_t prerefined;          /* triangles when the first phase began */
+    int64_t deferred, left_over; /* triangles deferred by fences, over all phases; bad triangles that were left for
+                                    sequential calls */
+    enum par_way way;            /* where the mesh was kept */
+    int64_t most_live;           /* largest number of triangles in the mesh at any time, including unused room of
+                                    blocks */
+    int64_t remain[TRI_EXCUSES]; /* triangles that still violate the bounds, by reason */
+    bool remain_known;           /* `remain` has been counted, which needs a mesh that was handed out */
+    int64_t parked;              /* largest number of bytes in `scratch` files at any time; 0: the mesh stayed in
+                                    memory */
+    int64_t pauses;              /* number of times that a block paused for lack of room */
     /* wall time of: the coarse mesh; estimates and cells; room; collecting results and closing gaps; sequential calls;
      * the whole call */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
-    double seconds_find;          /* finding bad triangles and the block of each */
+    double seconds_find;         /* finding bad triangles and the block of each */
     double seconds_deal;         /* dealing bad triangles to blocks */
-    double seconds_number;        /* numbering the mesh (par_number); nearly all of it in equal shares */
+    double seconds_number;       /* numbering the mesh (par_number); nearly all of it in equal shares */
     double seconds_shared[PAR_SHARINGS]; /* of all seconds except those of number and refine: entry k is the time spent
                                             in 2^k to 2^(k + 1) - 1 equal shares */
-    double seconds_refine;        /* wall time of the parallel parts of all phases */
-    double phase_seconds[4];      /* seconds_refine by phase, over all rounds */
+    double seconds_refine;       /* wall time of the parallel parts of all phases */
+    double phase_seconds[4];     /* seconds_refine by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] one entry for each block that ran, in canonical order; owned by the
                                         report */
     int32_t n_blocks, block_capacity; /* number of entries; allocated entries */

@@ -12,13 +12,14 @@ struct smoothing {
     const struct par_run *run; /* the run */
     struct tri_smooth *smooth; /* the smoother, shared by all blocks */
     int phase;                 /* 0 to 3 */
-    tri_vertex_id *vertex; /* [n] vertices that are still to be smoothed in this pass, in ascending order at first */
-    tri_vertex_id *dealt;  /* [n] the same, ordered by block */
-    int32_t n;             /* number of vertices left in this pass */
-    struct par_deal deal;  /* counts and places, with blocks of the phase as tiles */
-    struct tri_smooth_count *count; /* [blocks] */
-    enum tri_status *status; /* [blocks] */
-    int64_t moved;         /* vertices moved so far in this pass */
+    tri_vertex_id *vertex;     /* [n] vertices that are still to be smoothed in this pass, in ascending order at
+                                  first */
+    tri_vertex_id *dealt;      /* [n] the same, ordered by block */
+    int32_t n;                 /* number of vertices left in this pass */
+    struct par_deal deal;      /* counts and places, with blocks of the phase as tiles */
+    struct tri_smooth_count *count; /* [blocks] how many vertices each block moved and left */
+    enum tri_status *status;   /* [blocks] result of each block */
+    int64_t moved;             /* vertices moved so far in this pass */
 };
 
 /* Returns the block of the phase that vertex i of the list lies in. */

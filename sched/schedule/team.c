@@ -17,7 +17,7 @@
  * it. */
 struct job {
     void (*task)(void *context, size_t index); /* called for each index */
-    void *context;                             /* passed to task */
+    void *context;      /* passed to task */
     size_t n;           /* number of tasks */
     atomic_size_t next; /* index of the next task that no thread has begun; >= n: none is left */
 };

@@ -72,12 +72,12 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *tri
 
 /* Filling the worklist: the common data of its tasks. */
 struct finding {
-    struct tri_mesh *mesh; /* the mesh */
+    struct tri_mesh *mesh;      /* the mesh */
     const struct tri_quality *bounds; /* which triangles are bad */
     const struct par_ids *worklist; /* the old worklist, if it is known to be complete for old triangles; NULL: judge
                                        all triangles */
-    tri_triangle_id *found;       /* [n_triangles] bad triangles; each share writes from the index of its first triangle
-                                     on, which leaves gaps */
+    tri_triangle_id *found;     /* [n_triangles] bad triangles; each share writes from the index of its first triangle
+                                   on, which leaves gaps */
     int32_t n[TRI_MOST_SHARES]; /* number of bad triangles of each share */
     double radius2[TRI_MOST_SHARES]; /* square of the largest circumradius of each share */
 };
@@ -188,16 +188,16 @@ struct ordering {
     const struct tri_mesh *mesh; /* the mesh */
     const struct par_partition *tiles; /* the cells, whose blocks of phase 0 are the tiles */
     const struct par_ids *worklist;
-    int32_t first, end; /* tiles (blocks of phase 0) whose triangles stay in the list */
-    struct par_deal deal; /* counts and places, for shares and tiles */
+    int32_t first, end;          /* tiles (blocks of phase 0) whose triangles stay in the list */
+    struct par_deal deal;        /* counts and places, for shares and tiles */
     union {
-        int32_t *tile_of;     /* [worklist.n] tile - first of each entry; TRI_NONE: it leaves the list */
-        int32_t *item;        /* after the deal: sorted indices inside each tile, then the triangles at them */
+        int32_t *tile_of;        /* [worklist.n] tile - first of each entry; TRI_NONE: it leaves the list */
+        int32_t *item;           /* after the deal: sorted indices inside each tile, then the triangles at them */
     };
-    int32_t *dealt;           /* [worklist.n] triangles, tile by tile, unsorted */
-    struct tri_point *centre; /* [worklist.n] centres of these triangles */
-    uint64_t *key;            /* [worklist.n] */
-    uint64_t *room;           /* [2 * worklist.n] scratch memory for sorting */
+    int32_t *dealt;              /* [worklist.n] triangles, tile by tile, unsorted */
+    struct tri_point *centre;    /* [worklist.n] centres of these triangles */
+    uint64_t *key;               /* [worklist.n] the keys of the result */
+    uint64_t *room;              /* [2 * worklist.n] scratch memory for sorting */
 };
 
 /* Returns the home vertex of a triangle, which decides on its tile (see par_order_by_tile). */
