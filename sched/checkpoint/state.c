@@ -138,7 +138,7 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
     }
 }
 
-/* How many more items are needed? */
+/* How many items are missing? */
 static int32_t more(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
 
 /* The counts of the mesh. When reading, its arrays grow to hold them. */

@@ -15,7 +15,7 @@ struct smoothing {
     tri_vertex_id *vertex;     /* [n] vertices that are still to be smoothed in this pass, in ascending order at
                                   first */
     tri_vertex_id *dealt;      /* [n] the same, ordered by block */
-    int32_t n;                 /* number of vertices left in this pass */
+    int32_t n;                 /* count of vertices left in this pass */
     struct par_deal deal;      /* counts and places, with blocks of the phase as tiles */
     struct tri_smooth_count *count; /* [blocks] how many vertices each block moved and left */
     enum tri_status *status;   /* [blocks] result of each block */

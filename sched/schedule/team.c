@@ -1,6 +1,6 @@
 /* A team of threads that run tasks and sleep in between.
  *
- * A job is open while its caller works on it. A thread that wakes up in time joins the job. When no task is left to
+ * A job is open while its caller is busy with it. A thread that wakes up in time joins the job. When no task is left to
  * begin, the caller closes the job and waits for the threads that have joined, but not for threads that are still
  * asleep. So a job that is too short for several threads costs no more than the call that wakes them. */
 #include <limits.h>
@@ -41,12 +41,12 @@ struct par_crew {
     struct tri_thread *thread[]; /* [n_started] the threads */
 };
 
-static _Thread_local bool works; /* this thread is in work(), on a task of some team */
+static _Thread_local bool works; /* this thread is running tasks of some team */
 
 bool par_team_works(void) { return works; }
 
 /* Runs tasks of the job until none is left to begin. Called by the caller and by all threads that have joined. Calls
- * may be nested, so the old value of `works` is restored. */
+ * may be nested, so the old value of the flag is restored. */
 static void work(struct job *job)
 {
     const bool before = works;
@@ -72,7 +72,7 @@ static struct job *join(struct par_crew *crew, uint64_t *last)
     return job;
 }
 
-/* Leaves the job. The thread does not access the job afterwards; the last thread to leave wakes the caller. */
+/* Leaves the job. The thread does not access the job afterwards; the last one wakes the caller. */
 static void leave(struct par_crew *crew)
 {
     tri_monitor_enter(crew->door);
@@ -165,7 +165,7 @@ static void close_job(struct par_crew *crew)
 {
     tri_monitor_enter(crew->gate);
     crew->job = NULL;
-    /* From here on no thread can join. */
+    /* From here on no other thread joins. */
     const int joined = crew->joined;
     tri_monitor_leave(crew->gate);
     tri_monitor_enter(crew->door);
@@ -175,8 +175,8 @@ static void close_job(struct par_crew *crew)
     tri_monitor_leave(crew->door);
 }
 
-/* The run function of the executor: opens the job, works on it, and closes it. Starts the helper threads at the first
- * call that needs them. Without helper threads, the calling thread runs all tasks. */
+/* The run function of the executor: opens the job, runs tasks, and closes the job. Starts the helper threads at the
+ * first call that needs them. Without helper threads, the calling thread runs all tasks. */
 static void run_on_team(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     struct par_team *team = self;
