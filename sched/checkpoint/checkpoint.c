@@ -216,7 +216,7 @@ static enum tri_status lock_and_read(struct par_checkpoint *c, bool resume, stru
     if (lock_folder(c))
         return resume ? read_manifest(&c->manifest, c, error) : TRI_OK;
     if (c->lock != TRI_NO_FILE)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is in use by another process");
     return cannot_write(c->directory, tiles_name, error);
 }
 
@@ -372,8 +372,8 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
     f->place += (int64_t)n;
 }
 
-/* Writes a complete state file, syncs it, and gives it its name. *to: position, hash and times at the end. On errors
- * the file is closed, and an old file of that name is kept. */
+/* Writes a complete state file, syncs it, and gives it its name. *to: position, hash and times at the end. After an
+ * error the file may be incomplete, but no manifest refers to it. */
 static enum tri_status write_state(const struct par_checkpoint *c, const char *name, struct par_state_file *to,
                                    par_state_walk *walk, void *user, struct tri_error *error)
 {

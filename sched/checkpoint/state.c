@@ -292,12 +292,12 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
     c->last = tri_seconds();
     if (par_checkpoint_has_ranks(c)) /* checked first, since ranks compute a different hash for the same run */
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                        "is the checkpoint of several tasks, and this mesh is to be made as a whole");
+                        "is the checkpoint of several tasks, but this run keeps the mesh as a whole");
     enum tri_status status = par_checkpoint_take(c, par_state_run(run), error);
     const bool is_whole = c->manifest.kind == PAR_WHOLE_STATE;
     if (!status && par_checkpoint_has_state(c) && !is_whole && !run->asked.options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                        "is the checkpoint of a sweep, and this mesh is to be made as a whole");
+                        "is the checkpoint of a sweep, but this run keeps the mesh as a whole");
     if (!status && par_checkpoint_has_state(c) && is_whole) {
         run->mesh->stop = NULL;
         status = load(c, run, NULL, error);

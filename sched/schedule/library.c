@@ -91,7 +91,7 @@ enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tr
 {
     struct call call;
     if (memory < 0 || !sink || !sink->take)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes, and a bound on memory >= 0");
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink with a take function, and memory >= 0");
     enum tri_status status = begin_call(&call, settings, error);
     if (status)
         return status;
@@ -108,7 +108,7 @@ enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_fi
     struct call call;
     enum tri_status status = begin_call(&call, settings, error);
     if (!status && !(sink && sink->take))
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink with a take function");
     if (!status) {
         call.how.carrier = carrier;
         call.how.sink = sink;

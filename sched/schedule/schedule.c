@@ -252,7 +252,7 @@ static enum tri_status try_to_sweep(struct par_run *run, const struct par_partit
 static enum tri_status fail_without_scratch(const struct par_run *run, double triangles, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
+                    "the mesh needs about %s of memory, and the bound is %s: set a scratch directory for it",
                     tri_size_text(par_whole_bytes_each() * triangles).text,
                     tri_size_text((double)run->asked.options->memory).text);
 }
@@ -649,7 +649,7 @@ static enum tri_status check_ranks(const struct par_run *run, enum tri_status st
     if (!carrier)
         return status;
     return par_expect_same(carrier, status ? 0 : par_state_run(run),
-                           "the ranks do not begin with the same figure and settings", status, error);
+                           "the ranks were given different inputs or settings", status, error);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *quality,
