@@ -117,7 +117,7 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
                                 .n_vertices = tile->n_vertices, .n_triangles = tile->n_triangles,
                                 .n_segments = tile->n_segments};
     if (!pack_tile(arrays, tile, spool->n_attributes))
-        status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile refers to a vertex more than 2^32 numbers back");
+        status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile refers to a vertex over 2^32 numbers back");
     h->hash = hash_of(h, arrays);
     if (!status && !tri_write_at(spool->file, h, sizeof *h + n, (uint64_t)spool->length))
         status = fail_writing(spool, error);
