@@ -6,9 +6,7 @@
  *     manifest     which state is valid, the lengths of the files, their hashes, and which run they belong to
  *
  * INVARIANT: if the process dies at any moment and there is a manifest, it describes a state and a beginning of `tiles`
- * that are complete on the disk. To ensure this, a state is written to a new file, which then gets the one of the two
- * names that the manifest does not use. After tiles and state have been synced to the disk, a new manifest replaces the
- * old one.
+ * that are complete on the disk. par_checkpoint_write ensures this.
  *
  * OWNERSHIP: the directory may hold other files. The manifest is created before any of the files above and removed
  * after them. If there is a manifest, files with these names belong to a run. If there are such files without a
@@ -148,7 +146,12 @@ void par_carry(struct par_state_file *file, void *bytes, size_t n);
 typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, struct tri_error *error);
 
 /* Writes a state and makes it the valid one. Afterwards it and all tiles so far are on the disk. On TRI_CANNOT_WRITE or
- * an error of the walk, the previous state stays valid. */
+ * an error of the walk, the previous state stays valid, since everything happens in this order:
+ *
+ *   1. write and sync a new file without a name; give it the one of the two names that the manifest does not use
+ *   2. sync `tiles`
+ *   3. write and sync a new manifest, `manifest-new`
+ *   4. rename it to `manifest`, and sync the directory */
 enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t n_ranks,
                                      int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error);
 

@@ -1,9 +1,11 @@
 /* A spool keeps the tiles of a sweep in a file, in the order in which they are handed out, and passes each tile on to
  * another sink. After the process has died, the receiver can be given all tiles again.
  *
- * The file is only appended to. A tile is stored as a head, which contains a hash of the whole tile, followed by its
- * arrays. Corners take 32 bits, because they are counted back from the last vertex of the tile; this allows distances
- * up to 2^32 vertices. A triangle takes about 26 bytes. */
+ *     | head | arrays of tile 1, each padded to 8 bytes | head | arrays of tile 2 | ...
+ *
+ * The file is only appended to. The head of a tile contains a hash of the whole tile. Corners take 32 bits, because
+ * they are counted back from the last vertex of the tile; this allows distances up to 2^32 vertices. A triangle takes
+ * about 26 bytes. */
 #ifndef SCHED_CHECKPOINT_SPOOL_H
 #define SCHED_CHECKPOINT_SPOOL_H
 

@@ -192,7 +192,8 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
     CARRY_LIST(cargo, f, run->remain.listed);
 }
 
-/* A par_state_walk: the whole state, in the order of the file. */
+/* A par_state_walk: the whole state. The file holds, in this order: position, report, worklist with keys, blocks that
+ * are done, spare room, counts and arrays of the mesh, and then either the data of a sweep or the cells. */
 static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
 {
     struct cargo *cargo = user;

@@ -20,10 +20,10 @@
 /* Would a state written now be the last one before the time limit? now: tri_seconds(); triangles: number of triangles
  * that the state would hold.
  *
- * The last state must begin before the limit by twice the time that it will take. That time is estimated from the
- * previous state, in proportion to the numbers of triangles. Early states measure the disk, until one takes long enough
- * to be a measurement. A resumed run measures halfway to the limit, because a large state right at the beginning could
- * use up all its time. */
+ * The last state begins at the latest when the remaining time is twice the time that writing it takes. That time is
+ * estimated from the previous state, in proportion to the numbers of triangles. Early states measure the disk, until
+ * one takes long enough to be a measurement. A resumed run measures halfway to the limit, because a large state right
+ * at the beginning could use up all its time. */
 bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, double triangles);
 
 /* Is it time for a state, because of the interval between states or because of the time limit? */
@@ -46,10 +46,12 @@ uint64_t par_state_run(const struct par_run *run);
 enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_run *run, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error);
 
-/* Runs a phase to its end, for a column of a sweep or, if tiles is NULL, for the whole mesh. States are written on the
- * way between blocks: when one is due, unless states would take more than a tenth of the time, and when the end is
- * requested (then TRI_STOPPED). With by_block, ids depend on which blocks run at once, so states are written only
- * between phases. Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or the result of the phase. */
+/* Runs a phase to its end, for a column of a sweep or, if tiles is NULL, for the whole mesh. On the way, states are
+ * written between blocks. A state is written if it is due and states take at most a tenth of the time, or if the end is
+ * requested; the function then returns TRI_STOPPED. With by_block, ids depend on which blocks run at once, so states
+ * are written only between phases. Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or the result of the phase.
+ *
+ * Called on the calling thread. The blocks run as tasks; while a state is written, no block runs. */
 enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_run *run, struct par_turn turn,
                                 struct par_tiles *tiles, struct tri_error *error);
 

@@ -49,8 +49,8 @@ static bool add_sample(void *user, struct tri_point q, double work)
     return true;
 }
 
-/* The last criterion of both orders, so that only identical samples compare equal: qsort is not stable everywhere, and
- * the rounding of sums depends on the order. */
+/* Both orders end with this comparison, so that only identical samples compare equal. Otherwise the result could differ
+ * between machines, because qsort is not stable everywhere and the rounding of sums depends on the order. */
 static int by_work(const struct sample *a, const struct sample *b) { return (a->work > b->work) - (a->work < b->work); }
 
 /* Order by x, then y, then work. */

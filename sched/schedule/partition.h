@@ -8,8 +8,7 @@
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
  * Rows are cut in the same way, for each block column from the work inside it. The phase of a block follows from the
- * parity of its column and row: phase 0 has odd columns and odd rows. Both phases of odd columns precede those of even
- * columns.
+ * parity of its column and row. Phase 0 has odd columns and rows; phases of odd columns precede those of even ones.
  *
  * INVARIANT (docs/theory.md, cells and phases). Blocks of one phase are disjoint half-open boxes and tile the plane.
  * Blocks of the next phase cover the seams of the previous one. The partition depends only on the mesh and the

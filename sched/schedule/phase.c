@@ -1,6 +1,14 @@
-/* Runs a phase. The calling thread deals the worklist to blocks (assign_share, deal_worklists), gives each block room
- * (deal_room), and runs the blocks as tasks (run_tasks). Blocks that pause get more room, and run again, until all have
- * ended. Finally collect.c collects the results. */
+/* Runs a phase.
+ *
+ *   1. assign_share   finds the block of each worklist entry, and its estimated work; in parallel
+ *   2. deal_worklists deals the entries to blocks by a counting sort, and makes a task for each block with entries
+ *   3. deal_room      gives ranges of the shared arrays to the tasks; sequential, in canonical order
+ *   4. run_tasks      runs the tasks on all threads; a task ends, pauses for lack of room, or is stopped
+ *   5. repeat 3 and 4 until no task waits
+ *   6. par_collect    (collect.c) returns unused room, and merges the deferred triangles into the worklist
+ *
+ * Steps 1, 2, 3 and 6 depend only on the mesh and the worklist, and the blocks of step 4 change disjoint parts of the
+ * mesh. So the result does not depend on the number of threads. */
 #include "sched/schedule/phase.h"
 
 #include <assert.h>
@@ -243,9 +251,9 @@ static void reserve_room(struct par_phase_run *p)
     par_room_reserve(&p->run->spare, p->run->mesh, p->expected);
 }
 
-/* Returns how many triangles a paused task must have room for, for par_room_extend. If only room for subsegments has
- * run out, as happens along a coast line, more triangles would stay unused. In this case the number of unused triangles
- * is returned, and the task gets only the subsegments that belong to them. */
+/* Returns for how many triangles a paused task must have room; the result is passed to par_room_extend. If only room
+ * for subsegments has run out, as happens along a coast line, more triangles would stay unused. In this case the number
+ * of unused triangles is returned, and the task gets only the subsegments that belong to them. */
 static int32_t refill(struct par_task *task, const struct tri_quality *quality)
 {
     const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;

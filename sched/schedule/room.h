@@ -5,6 +5,9 @@
  * block has no other range, it pauses. When all other blocks have paused or ended, the arrays grow, and the block
  * continues.
  *
+ *     array    | in use             | block 1 | block 4 | block 1 | spare |                  |
+ *                                  next      end                        count            capacity
+ *
  * Only the calling thread deals out ranges. It does so between phases and during pauses, in canonical order, so the ids
  * that a block uses do not depend on which thread runs it or when. Unused room of a block goes to the blocks of the
  * next phase. At the end the unused places are either filled with the last items of the arrays (par_room_close), or
@@ -14,8 +17,7 @@
 
 #include "triangle/mesh/mesh.h"
 
-enum par_kind { PAR_VERTICES, PAR_TRIANGLES, PAR_SUBS, PAR_KINDS }; /* the kinds of items; each kind has ranges of its
-                                                                       own */
+enum par_kind { PAR_VERTICES, PAR_TRIANGLES, PAR_SUBS, PAR_KINDS }; /* each kind has its own ranges */
 
 struct par_range {
     int32_t next, end; /* unused indices: next .. end - 1 */
