@@ -232,12 +232,15 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     bool made = !resume && tri_folder_make(directory);
     if (!resume && !made && errno != EEXIST)
         return tri_fail_system(error, TRI_CANNOT_WRITE, directory, "cannot be made", errno);
+    /* All files are opened relative to the open directory, so other processes cannot divert later calls by changing its
+     * path. */
     enum tri_status status = open_folder(c, resume, error);
     status = status ? status : check_run(c, resume, of, error);
     if (!status && !resume)
         status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
     status = status ? status : lock_and_read(c, resume, error);
     path_of(c->tiles_path, directory, tiles_name);
+    /* The spool goes on after the tiles that the manifest counts. */
     c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
     if (status)
         par_checkpoint_close(c, false);
@@ -258,6 +261,7 @@ tri_file par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *direct
     const tri_file folder = tri_folder_open(directory, true);
     if (folder == TRI_NO_FILE)
         return TRI_NO_FILE;
+    /* A fresh piece gets its name only in par_checkpoint_end_piece, so an unfinished one is never read. */
     const tri_file file = fresh ? tri_folder_create(folder, name) : tri_folder_file(folder, name, TRI_FOLDER_READ);
     const int fault = errno;
     (void)tri_file_close(folder);
@@ -307,6 +311,7 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, stru
     if (par_checkpoint_has_state(c) && run != c->manifest.run)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of another run: of another input, or with other switches");
+    /* The hash is written with the next manifest. */
     c->manifest.run = run;
     assert(c->lock != TRI_NO_FILE);
     if (!tri_file_cut(c->spool.file, (uint64_t)c->spool.length))
@@ -319,6 +324,7 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
     enum tri_status status = write_manifest(c, manifest_of_none(&c->manifest, kind), error);
     if (status)
         return status;
+    /* The new manifest counts no tiles, so they can be cut off now. */
     c->spool.length = c->spool.sent = 0;
     return tri_file_cut(c->spool.file, 0) ? TRI_OK : cannot_write(c->directory, tiles_name, error);
 }
@@ -445,6 +451,7 @@ static enum tri_status check(const struct par_checkpoint *c, tri_file file, stru
     char *bytes = malloc(PAR_STATE_WRITE);
     uint64_t hash = 0;
     bool sound = true, stopped = false;
+    /* Read in pieces of the size in which the state was written, because the hash is computed piece by piece. */
     for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
         sound = tri_read_again(file, bytes, n, (uint64_t)place);
@@ -469,6 +476,7 @@ enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_wa
         return damaged(c, error);
     enum tri_status status = check(c, from.file, error);
     status = status ? status : walk(&from, user, error);
+    /* The hash was right, so a wrong length means that the walk expects another format. */
     if (!status && (from.failed || from.place != c->manifest.state_bytes))
         status = damaged(c, error);
     (void)tri_file_close(from.file);

@@ -112,6 +112,7 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
         return no_memory(spool, error);
     char *arrays = (char *)(h + 1);
     *h = (struct head){.word = TILE, .bytes = (int64_t)n, .n_attributes = spool->n_attributes};
+    /* Copy the numbers only: pointers have no meaning in a file. */
     h->tile = (struct tri_tile){.column = tile->column, .row = tile->row, .first_vertex = tile->first_vertex,
                                 .first_triangle = tile->first_triangle, .first_segment = tile->first_segment,
                                 .n_vertices = tile->n_vertices, .n_triangles = tile->n_triangles,
@@ -122,6 +123,7 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
     if (!status && !tri_write_at(spool->file, h, sizeof *h + n, (uint64_t)spool->length))
         status = fail_writing(spool, error);
     spool->length += status ? 0 : (int64_t)(sizeof *h + n);
+    /* spool->length now includes the tile, unless writing has failed. */
     send_off(spool);
     free(h);
     return status;
@@ -157,6 +159,7 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
         array[k].at = number[k] = unpacked(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
         memory = memory && number[k];
     }
+    /* The arrays of numbers have been unpacked; the others are used where they lie. */
     par_tile_point_at(&tile, array);
     enum tri_status status = memory ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(number[PAR_TILE_CORNERS]);
@@ -175,6 +178,7 @@ static enum tri_status fail_damaged(const struct par_spool *spool, int64_t place
 static enum tri_status read_tile(const struct par_spool *spool, int64_t place, struct head *h, char **arrays,
                                  struct tri_error *error)
 {
+    /* Check the head before its lengths are used. */
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
     if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, (uint64_t)place) || h->word != TILE || h->bytes < 0 ||

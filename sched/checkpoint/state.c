@@ -125,6 +125,7 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
     CARRY(f, as.high);
     CARRY(f, as.estimate);
     const size_t n_x = (size_t)as.n_columns, n_y = n_x * (size_t)as.n_rows;
+    /* Allocate arrays for the cells in the file. */
     if (f->reads && n_x > 0) {
         par_partition_free(p);
         as.x = malloc(n_x * sizeof *p->x);
@@ -184,6 +185,7 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
     CARRY(f, tiles->n_vertices);
     CARRY(f, tiles->n_triangles);
     CARRY(f, tiles->n_segments);
+    /* All triangles that were handed out have left the mesh. */
     run->gone = tiles->n_triangles;
     cargo->memory = cargo->memory && par_tiles_reserve(tiles);
     if (cargo->memory)
@@ -299,6 +301,7 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
     if (!status && par_checkpoint_has_state(c) && !is_whole && !run->asked.options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of a sweep, but this run keeps the mesh as a whole");
+    /* While the state is read, only par_checkpoint_read checks for a requested end, before it changes anything. */
     if (!status && par_checkpoint_has_state(c) && is_whole) {
         run->mesh->stop = NULL;
         status = load(c, run, NULL, error);
@@ -353,6 +356,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, s
         status = par_phase(run, &turn, error);
         if (status != TRI_STOPPED)
             break;
+        /* A halt: no block is running now, and place.done lists the blocks that have ended. */
         status = save(c, run, tiles, error);
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);

@@ -84,6 +84,7 @@ static void gather_own(void *context, size_t index)
     const struct leftovers *left = context;
     const struct par_phase_run *p = left->p;
     const struct par_ids *own = &p->tasks[index].left;
+    /* Keys depend on the block alone, not on the thread that ran it. */
     const uint64_t key = par_key_of(p->partition, p->run->place.round, p->phase, p->tasks[index].block);
     for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
         left->item[at] = own->item[k];
@@ -222,6 +223,7 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
         par_add_up(&p->run->report->total, &task->report);
         /* A task that was stopped or has not begun is not reported. */
         memory = memory && (task->progress == PAR_READY || report_block(p, task));
+        /* This cannot fail, and happens after errors, too: no range is lost. */
         par_room_return(&task->view.room, &p->run->spare);
         memory = release_erased(p, task) && memory;
         free(task->erased.item);

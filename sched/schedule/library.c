@@ -114,5 +114,6 @@ enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_fi
         call.how.sink = sink;
         status = end_call(&call, tri_api_mesh_stream(figure, &call.settings, &call.way, error));
     }
+    /* All ranks get the same status, also if only one of them failed. */
     return par_agree(carrier, status, error);
 }

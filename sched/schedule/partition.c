@@ -308,6 +308,7 @@ static void find_box(struct par_partition *p, const struct tri_mesh *mesh, const
 static void choose_numbers(struct par_partition *p, double cell_triangles, double width, double height)
 {
     double cells = p->estimate / cell_triangles;
+    /* At least two by two cells; far more than a million would cost more than they are worth. */
     cells = cells < 4 ? 4 : cells > 1e6 ? 1e6 : cells;
     double columns = height > 0 ? sqrt(cells * (width / height)) : width > 0 ? cells : 1;
     columns = columns < 2 ? 2 : columns > cells / 2 ? cells / 2 : columns;
@@ -331,6 +332,7 @@ static bool choose_for_work(struct par_partition *p, double cell_triangles)
 {
     int32_t columns = p->n_columns, rows = p->n_rows;
     double width = p->high.x - p->low.x, height = p->high.y - p->low.y, middle = middle_half(p->x, columns);
+    /* The height is measured in the middle column. */
     double beside = middle_half(p->y + (size_t)(columns / 2) * (size_t)rows, rows);
     if (PAR_SKEW * middle * height < beside * width)
         choose_numbers(p, cell_triangles, PAR_SKEW * middle, beside);
@@ -362,6 +364,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     /* Each sample stands for about this much work. */
     double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
     bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
+    /* The first cut shows where the work lies; if it is very elongated, cut again. */
     if (done && choose_for_work(p, cell_triangles))
         done = cut_anew(p, &s, executor);
     free(s.item);
@@ -484,6 +487,7 @@ int32_t par_locate_owner(struct par_locator *locator, const struct par_partition
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     assert(tri_is_live(&mesh->tri[t]));
+    /* Find the block of the first corner; it owns the triangle if its fence holds the other two as well. */
     int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
     bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
     return owns ? block : TRI_NONE;

@@ -117,6 +117,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
     double least = smallest_cell(partition);
     /* An edge is too long if it is longer than a quarter of the cell; 1/16 is the square of this share. */
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16};
+    /* At most one point for 400 final triangles. */
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
     double began = tri_seconds();
@@ -137,6 +138,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
         status = tri_refine_with(run->mesh, &coarse, &hooks, &report, error);
         par_add_points(&run->report->total, &report);
         refined = tri_seconds();
+        /* Only triangles made since the worklist was filled need to be judged. */
         status = status ? status : par_fill_worklist(run, quality, true, error);
     }
     free(long_ones.item);

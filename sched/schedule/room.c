@@ -222,6 +222,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles)
 {
     enum tri_status status = TRI_OK;
+    /* If memory is bounded, growing ahead of need would waste it. */
     if (shared->bound || shared->storage)
         return;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
@@ -400,6 +401,8 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const
 
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
 {
+    /* Triangles and subsegments first: moving them updates links only. Moving vertices then updates the corners of
+     * both. */
     shared->n_triangles = move_items(&spare->ranges[PAR_TRIANGLES], shared->n_triangles, shared, move_triangle);
     shared->n_subs = move_items(&spare->ranges[PAR_SUBS], shared->n_subs, shared, move_sub);
     close_vertices(&spare->ranges[PAR_VERTICES], shared, executor);

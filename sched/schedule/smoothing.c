@@ -124,6 +124,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     struct smoothing s = {.run = run, .vertex = tri_mesh_extra(mesh, list), .dealt = tri_mesh_extra(mesh, list),
                           .count = malloc(blocks * sizeof *s.count), .status = malloc(blocks * sizeof *s.status),
                           .moved = 1};
+    /* The two lists are as large as the mesh, so they are kept with it, in memory or in files. */
     enum tri_status status = s.vertex && s.dealt && s.count && s.status
                                  ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
@@ -153,6 +154,8 @@ enum tri_status par_smooth(struct par_run *run, struct tri_error *error)
         return TRI_OK;
     if (!run->cells.x)
         return tri_smooth_all(run->mesh, run->asked.quality, error);
+    /* With by_block, the mesh has not been numbered yet, but the order of smoothing depends on its numbers. Afterwards
+     * it is numbered by the new positions. */
     enum tri_status status = run->asked.options->by_block ? number(run, error) : TRI_OK;
     status = status ? status : smooth_by_blocks(run, error);
     return status ? status : number(run, error);

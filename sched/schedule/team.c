@@ -133,6 +133,7 @@ static struct par_crew *start_crew(int size)
     crew->gate = tri_monitor_new();
     crew->door = tri_monitor_new();
     crew->end = tri_monitor_new();
+    /* Without all three monitors, no thread is started. */
     const bool ready = crew->gate && crew->door && crew->end;
 #ifdef _OPENMP
     if (ready && (crew->thread[0] = tri_thread_start(open_region, crew)))
@@ -181,6 +182,7 @@ static void run_on_team(void *self, size_t n_tasks, void (*task)(void *context, 
 {
     struct par_team *team = self;
     struct job job = {task, context, n_tasks, 0};
+    /* The first job starts the threads; if the system refuses all, the next job tries again. */
     if (team->threads > 1 && !team->crew)
         team->crew = start_crew(team->threads - 1);
     if (team->crew)
@@ -206,6 +208,7 @@ void par_team_end(struct par_team *team)
     tri_monitor_leave(crew->end);
     tri_monitor_wake(crew->gate);
     tri_monitor_leave(crew->gate);
+    /* Threads leave their loops when they see is_over. */
     for (int i = 0; i < crew->n_started; i++)
         tri_thread_join(crew->thread[i]);
     free_crew(crew);

@@ -164,6 +164,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
     double largest2 = 0;
     if (!f.found)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    /* Each share writes to its own part of f.found; then the gaps between the parts are closed. */
     tri_execute(executor, tri_shares(n), fill_share, &f);
     for (size_t share = 0; share < tri_shares(n); share++)
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
@@ -280,6 +281,7 @@ static void sort_tile(const void *context, size_t index, uint64_t *room)
     const uint64_t key = par_key_of(o->tiles, PAR_NO_ROUND, 0, o->first + (int32_t)index);
     for (int32_t i = 0; i < n; i++)
         item[i] = i;
+    /* Sort indices into the tile along the curve, then replace them by triangles. */
     tri_hilbert_order_coarse(o->centre + begin, item, n, room);
     order_equals(o->mesh, o->centre + begin, dealt, item, n);
     for (int32_t i = 0; i < n; i++) {
@@ -325,6 +327,7 @@ bool par_order_by_tile(struct par_ids *worklist, struct par_keys *key, const str
     free(o.centre);
     free(o.room);
     par_deal_free(&o.deal);
+    /* Out of memory: the worklist stays as it was. */
     if (n == TRI_NONE) {
         free(o.item);
         free(o.key);
