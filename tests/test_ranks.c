@@ -531,11 +531,11 @@ static void test_ranks_that_are_called_otherwise_are_refused(void **state)
         const char *text; /* NULL: it is the call of the others */
     } one[] = {
         {1, 1e-5, true, NULL},
-        {1, 2e-5, true, "the ranks do not begin with the same figure and settings"},
-        {1, 0.4, true, "the ranks do not begin with the same figure and settings"}, /* too small to be shared */
-        {2, 1e-5, true, "the ranks do not begin with the same figure and settings"},
+        {1, 2e-5, true, "the ranks were given different inputs or settings"},
+        {1, 0.4, true, "the ranks were given different inputs or settings"}, /* too small to be shared */
+        {2, 1e-5, true, "the ranks were given different inputs or settings"},
         {1, -1, true, "settings: max_area is -1"},
-        {1, 1e-5, false, "a stream needs a sink that takes"},
+        {1, 1e-5, false, "a stream needs a sink with a take function"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof one / sizeof *one; i++) {

@@ -1,17 +1,16 @@
-/* The state of a run in a directory, so that the run can go on after the process has died.
+/* The checkpoint directory of a run. A run whose process has died can be resumed from it.
  *
  *     tiles        all tiles that a sweep has handed out (spool.h); only appended to
- *     state-0, state-1   what is in memory between two steps (state.h); the newer one counts
- *     piece-0-P, piece-1-P   of a state of ranks what rank P has (sched/ranks/keep.c)
- *     manifest     which of them, how long each is, their hashes, and of what run they are
+ *     state-0, state-1   the contents of memory between two steps (state.h); the manifest names the valid one
+ *     piece-0-P, piece-1-P   the part of such a state that rank P holds (sched/ranks/keep.c)
+ *     manifest     which state is valid, the lengths of the files, their hashes, and which run they belong to
  *
- * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
- * that are whole on the disk. For a state is written into a new file, which then gets the name that the manifest does
- * not name; tiles and state are synced, and then a new manifest takes the name of the old one.
+ * INVARIANT: if the process dies at any moment and there is a manifest, it describes a state and a beginning of `tiles`
+ * that are complete on the disk. par_checkpoint_write ensures this.
  *
- * WHOSE FILES: the directory may hold other files. A manifest is made before any of the files above, and removed after
- * them: with one, files of these names are a run's; where there are some without one they are somebody else's, and the
- * directory is refused. */
+ * OWNERSHIP: the directory may hold other files. The manifest is created before any of the files above and removed
+ * after them. If there is a manifest, files with these names belong to a run. If there are such files without a
+ * manifest, they belong to somebody else, and the directory is refused. */
 #ifndef SCHED_CHECKPOINT_CHECKPOINT_H
 #define SCHED_CHECKPOINT_CHECKPOINT_H
 
@@ -21,131 +20,154 @@
 enum { PAR_CHECKPOINT_PATH = 4096 };
 
 enum par_state_kind {
-    PAR_SWEPT_STATE, /* a sweep, amid a column or between two; what is finished is in the tiles */
-    PAR_WHOLE_STATE, /* the mesh as a whole; it is swept no more */
-    PAR_RANKS_STATE  /* how far ranks are (sched/ranks/keep.c); what each has is in pieces beside it */
+    PAR_SWEPT_STATE, /* a sweep, in the middle of a column or between two columns; finished tiles are in the file
+                        `tiles` */
+    PAR_WHOLE_STATE, /* the whole mesh; it will not be swept */
+    PAR_RANKS_STATE  /* the common position of several ranks (sched/ranks/keep.c); the data of each rank is in its piece
+                        files */
 };
 
+/* The contents of the file `manifest`. */
 struct par_manifest {
-    uint64_t word, hash;   /* the second of all that follows */
-    uint64_t of;           /* the program, as par_checkpoint_open was told */
-    uint64_t run;          /* the mesh and the bounds */
-    int64_t kind;          /* enum par_state_kind */
-    int64_t which;         /* the state's file: 0 or 1 */
-    int64_t state_bytes;   /* 0: there is no state yet: whoever goes on starts over */
-    uint64_t state_hash;
-    int64_t tiles_bytes;
-    int64_t triangles;     /* so far */
-    int64_t n_ranks;       /* of a state of ranks */
-    int64_t made_directory; /* by the run: it goes with it */
+    uint64_t word, hash;    /* file type and version; hash of all members from `of` on */
+    uint64_t of;            /* identifies the program, as passed to par_checkpoint_open */
+    uint64_t run;           /* identifies the run: a hash of the input mesh, bounds and options */
+    int64_t kind;           /* enum par_state_kind */
+    int64_t which;          /* number of the valid state file: 0 or 1 */
+    int64_t state_bytes;    /* length of the state file; 0: there is no state yet, and a resumed run starts again from
+                               the input */
+    uint64_t state_hash;    /* hash of the state file */
+    int64_t tiles_bytes;    /* length of the valid beginning of `tiles` */
+    int64_t triangles;      /* triangles in the mesh so far, including those handed out */
+    int64_t n_ranks;        /* number of ranks, for a state of ranks; otherwise 0 */
+    int64_t made_directory; /* 1: the run created the directory, and removes it at the end; 0: it existed before */
 };
 
+/* An open checkpoint directory and the schedule by which states are written. Used by the calling thread of a run;
+ * blocks read it to decide whether a halt is due. */
 struct par_checkpoint {
-    double seconds;              /* between two states at least; 0: one after each step. To be set after opening */
-    const char *directory;       /* borrowed */
-    struct par_manifest manifest; /* as it is on the disk */
-    tri_file folder;             /* the directory, open; TRI_NO_FILE: it is not */
-    tri_file lock;               /* the tiles, open, with the directory's lock; TRI_NO_FILE: this process has it not */
-    int saved;                   /* states written by this process */
-    double last;                 /* when the last was, or when the run began */
-    double cost, writing;        /* seconds that it took; those until what was written of it was on the disk */
-    double size;                 /* triangles in it */
-    double limit;                /* when the run will be stopped, by tri_seconds(); 0: not known. To be set likewise */
-    double looked;               /* when the last border was */
-    struct par_spool spool;
-    char tiles_path[PAR_CHECKPOINT_PATH];
-    struct tri_sink sink;        /* of a sweep: the spool */
-    const struct tri_stop *stop; /* asked between steps alone */
-    void (*told)(void *user, int64_t triangles); /* called with what is kept from then on; 0: nothing. NULL: nobody */
-    void *told_user;
-    void (*time_up)(void);       /* called when the last state before the limit is kept: `stop` says yes from then on */
+    double seconds;               /* least time between two states, in seconds; 0: a state after each step. Set it after
+                                     opening */
+    const char *directory;        /* its path; borrowed */
+    struct par_manifest manifest; /* the manifest as it is on the disk */
+    tri_file folder;              /* the open directory; TRI_NO_FILE: not open */
+    tri_file lock;                /* the open file `tiles`, which carries the lock on the directory; TRI_NO_FILE: this
+                                     process does not hold the lock */
+    int saved;                    /* number of states that this process has written */
+    double last;                  /* time of the last state, or of the beginning of the run, by tri_seconds() */
+    double cost, writing;         /* seconds that the last state took; the part of them spent on writing to the disk */
+    double size;                  /* number of triangles in the last state */
+    double limit;                 /* time at which the run will be stopped, by tri_seconds(); 0: unknown. Set it after
+                                     opening */
+    double looked;                /* time at which ranks last checked whether a state is due */
+    struct par_spool spool;       /* the tiles of a sweep */
+    char tiles_path[PAR_CHECKPOINT_PATH]; /* path of the file `tiles`, for messages */
+    struct tri_sink sink;         /* the sink of a sweep, which appends to the spool */
+    const struct tri_stop *stop;  /* asks for the end of the run; checked only between steps. NULL: the run cannot be
+                                     stopped */
+    void (*told)(void *user, int64_t triangles); /* called when a new manifest is on the disk, with the number of
+                                                    triangles in the state; 0: there is no state. NULL: not called */
+    void *told_user;              /* passed to told */
+    void (*time_up)(void);        /* called when the last state before the limit has been written; from then on `stop`
+                                     says yes. NULL: not called */
 };
 
-/* One that is not open. */
+/* Returns a checkpoint that is not open. */
 static inline struct par_checkpoint par_checkpoint_closed(const char *directory)
 {
     return (struct par_checkpoint){.directory = directory, .folder = TRI_NO_FILE, .lock = TRI_NO_FILE,
                                    .spool = {.file = TRI_NO_FILE}};
 }
 
-/* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
- * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or files
- * that are named as a run's are, or, resume, there is none, it is another program's, or damaged; another process works
- * on it; it belongs to another user. Then nothing in it has changed. TRI_CANNOT_WRITE. */
+/* Opens a checkpoint directory, creates it if necessary, and locks it. resume: false for a new run, true to continue
+ * the run in the directory. of: a hash of everything besides the run itself that must be the same when a run is
+ * resumed.
+ *
+ * TRI_BAD_INPUT: without resume, the directory holds a run or files with the names of a run's files; with resume, it
+ * holds no run, one of another program, or a damaged one; another process uses it; or it belongs to another user.
+ * Nothing in it has changed then. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error);
 
-/* Could a run of this `of` go on from the directory, as far as can be told without its lock? Errors as when it is
- * opened for that. */
+/* Checks without the lock whether a run with this `of` could be resumed from the directory. Errors as
+ * par_checkpoint_open with resume. */
 enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error);
 
-/* Is there a run in the directory? */
+/* Does the directory hold a run? */
 bool par_checkpoint_is_there(const char *directory);
 
-/* Is there a state, from which a run can go on? */
+/* Is there a state from which the run can be resumed? */
 static inline bool par_checkpoint_has_state(const struct par_checkpoint *c) { return c->manifest.state_bytes > 0; }
 
-/* Is that one of a sweep? */
+/* Is there a state, and does it belong to a sweep? */
 static inline bool par_checkpoint_has_sweep(const struct par_checkpoint *c)
 {
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_SWEPT_STATE;
 }
 
-/* Is that one of ranks? */
+/* Is there a state, and does it belong to several ranks? */
 static inline bool par_checkpoint_has_ranks(const struct par_checkpoint *c)
 {
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_RANKS_STATE;
 }
 
-/* Frees what it holds; with `remove`, which wants an open one, also the run's files, and the directory if the run has
- * made it and nothing else is in it. */
+/* Closes the checkpoint and releases the lock. With `remove`, which requires an open checkpoint, also deletes the run's
+ * files, and the directory if the run created it and it is empty. */
 void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 
-/* --- for who writes states */
+/* --- reading and writing states */
 
-/* It is to be of this run: a hash over all that the run's mesh depends on. Takes back tiles behind those of the last
- * state. TRI_BAD_INPUT: the state is another run's. TRI_CANNOT_WRITE. */
+/* Binds the checkpoint to this run. run: a hash of everything on which the run's mesh depends. Cuts off tiles that were
+ * appended after the last state. TRI_BAD_INPUT: the state belongs to another run. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_take(struct par_checkpoint *checkpoint, uint64_t run, struct tri_error *error);
 
-/* What has been done so far is worth nothing; states to come are of this kind. TRI_CANNOT_WRITE. */
+/* Discards the state and the tiles; later states are of this kind. Called if a sweep is given up. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_forget(struct par_checkpoint *checkpoint, enum par_state_kind kind,
                                       struct tri_error *error);
 
-/* A state's file on its way: the same walk writes it and reads it. */
+/* A state file that is being written or read. The same walk function does both, so that the two cannot differ in
+ * format. */
 struct par_state_file {
-    tri_file file;
-    tri_file direct; /* the same, past the system's cache; TRI_NO_FILE: there is no such way */
-    bool reads;
-    bool failed;   /* it could not be written or read; whoever walks need not ask */
-    int64_t place;
-    uint64_t hash; /* of what has been written */
-    double writing; /* seconds that it took to write, hashing left out */
-    char *waiting; /* what is on its way to be */
+    tri_file file;   /* the open file */
+    tri_file direct; /* the same file, opened to bypass the system's cache; TRI_NO_FILE: not available */
+    bool reads;      /* true: reading; false: writing */
+    bool failed;     /* reading or writing failed; later calls of par_carry do nothing, so the walk need not check it */
+    int64_t place;   /* position in the file, in bytes */
+    uint64_t hash;   /* hash of the bytes written so far */
+    double writing;  /* seconds spent on writing, without hashing */
+    char *waiting;   /* buffer of PAR_STATE_WRITE bytes that collects bytes to write; NULL when reading */
 };
 
-/* The next bytes of it. */
+/* Writes the next n bytes to the file, or reads them from it. */
 void par_carry(struct par_state_file *file, void *bytes, size_t n);
 
-/* Carries all of a state. file->failed may be set: then nothing more is carried. */
+/* Writes or reads a whole state by calls of par_carry. If one of them fails, file->failed is set and the others do
+ * nothing. */
 typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, struct tri_error *error);
 
-/* The state is on disk afterwards, and the tiles so far. TRI_CANNOT_WRITE, or what the walk says: then the last state
- * counts. */
+/* Writes a state and makes it the valid one. Afterwards it and all tiles so far are on the disk. On TRI_CANNOT_WRITE or
+ * an error of the walk, the previous state stays valid, since everything happens in this order:
+ *
+ *   1. write and sync a new file without a name; give it the one of the two names that the manifest does not use
+ *   2. sync `tiles`
+ *   3. write and sync a new manifest, `manifest-new`
+ *   4. rename it to `manifest`, and sync the directory */
 enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t n_ranks,
                                      int64_t triangles, par_state_walk *walk, void *user, struct tri_error *error);
 
-/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, TRI_STOPPED: somebody asks for the end, before
- * anything has been read; or what the walk says. */
+/* Checks the hash of the whole state file, then reads it. TRI_BAD_INPUT: it is damaged. TRI_STOPPED: the end was
+ * requested before any of it was read. Otherwise the result of the walk. */
 enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par_state_walk *walk, void *user,
                                     struct tri_error *error);
 
-/* Of a state of ranks: which of the two is to be written next, and a rank's piece of one: its path, for messages, and
- * the file, to read, or a new one to write; TRI_NO_FILE: errno says why. */
+/* For states of ranks. par_checkpoint_next returns which of the two states is to be written next. par_checkpoint_piece
+ * opens the piece of one rank, to read it, or, with fresh, to write a new one; path receives its path for messages.
+ * TRI_NO_FILE: it cannot be opened, and errno has the reason. */
 int64_t par_checkpoint_next(const struct par_checkpoint *checkpoint);
 tri_file par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank,
                               bool fresh);
 
-/* The new one is complete: it is on the disk, and has its name. */
+/* Completes a new piece file: syncs it to the disk and gives it its name. False: errno has the reason. */
 bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file);
 
 #endif

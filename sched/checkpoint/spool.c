@@ -1,4 +1,5 @@
-/* Heads and arrays are those of the machine: a file is for the machine that wrote it, and says so by its first word. */
+/* Tiles in a file. Heads and arrays are stored as they lie in memory, so a file can be read only on the same kind of
+ * machine; its first word shows whether it fits. */
 #include "sched/checkpoint/spool.h"
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
@@ -8,21 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint64_t TILE = UINT64_C(0x32656c6974697274); /* a version as well */
+static const uint64_t TILE = UINT64_C(0x32656c6974697274); /* "tritile2": file type and version */
 
+/* The head of a tile in the file. Its arrays follow. */
 struct head {
-    uint64_t word;
-    uint64_t hash;   /* of what follows, and of the arrays */
-    int64_t bytes;   /* of the arrays, each from a multiple of eight on */
-    struct tri_tile tile; /* its pointers NULL */
-    int32_t n_attributes, none;
+    uint64_t word;              /* TILE */
+    uint64_t hash;              /* hash of the members below and of the arrays */
+    int64_t bytes;              /* bytes of the arrays, each padded to a multiple of eight */
+    struct tri_tile tile;       /* numbers of the tile; its pointers are NULL */
+    int32_t n_attributes, none; /* attributes of a vertex; padding, 0 */
 };
 
 /* --- arrays of a tile, packed */
 
+/* Does array k hold numbers of vertices? */
 static bool is_of_numbers(int k) { return k == PAR_TILE_CORNERS || k == PAR_TILE_ENDS; }
 
-/* As they are packed: numbers of vertices take half the bytes. */
+/* Lists the arrays of a tile as they are packed: numbers of vertices take half the bytes. */
 static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct par_array array[PAR_TILE_ARRAYS])
 {
     par_tile_arrays(tile, n_attributes, array);
@@ -30,6 +33,7 @@ static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct 
     array[PAR_TILE_ENDS].bytes /= 2;
 }
 
+/* Returns the size of a tile's packed arrays, with padding. */
 static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
 {
     struct par_array array[PAR_TILE_ARRAYS];
@@ -40,13 +44,14 @@ static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
     return sum;
 }
 
+/* Returns the hash of a head, after its member `hash`, and of the arrays. */
 static uint64_t hash_of(const struct head *h, const char *arrays)
 {
     uint64_t hash = tri_hash(0, &h->bytes, sizeof *h - offsetof(struct head, bytes));
     return tri_hash(hash, arrays, (size_t)h->bytes);
 }
 
-/* Vertices below `end`, counted back from there. False: one is too far. */
+/* Packs numbers of vertices as 32-bit distances back from `end`. False: a vertex is too far away. */
 static bool pack_numbers(char *to, const int64_t *number, size_t n, int64_t end)
 {
     bool fits = true;
@@ -59,7 +64,7 @@ static bool pack_numbers(char *to, const int64_t *number, size_t n, int64_t end)
     return fits;
 }
 
-/* False: a tile reaches back too far. `to` is zero before. */
+/* Packs a tile's arrays. `to` must be zero, because padding is not written. False: a vertex is too far away. */
 static bool pack_tile(char *to, const struct tri_tile *tile, int32_t n_attributes)
 {
     struct par_array array[PAR_TILE_ARRAYS];
@@ -75,18 +80,20 @@ static bool pack_tile(char *to, const struct tri_tile *tile, int32_t n_attribute
     return fits;
 }
 
+/* Fails with TRI_NO_MEMORY. */
 static enum tri_status no_memory(const struct par_spool *spool, struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
 }
 
+/* Fails with TRI_CANNOT_WRITE and the reason in errno. */
 static enum tri_status fail_writing(const struct par_spool *spool, struct tri_error *error)
 {
     return tri_fail_system(error, TRI_CANNOT_WRITE, spool->path, "cannot write", errno);
 }
 
-/* The system begins to write what has come lately: whoever waits for a state that is to be kept waits for little of it.
- * A hint, which may be ignored. */
+/* Asks the system to begin writing recent tiles to the disk, so that syncing them, when a state is written, takes
+ * little time. Only a hint, which the system may ignore. */
 static void send_off(struct par_spool *spool)
 {
     if (spool->length - spool->sent < PAR_SPOOL_SHIP)
@@ -95,6 +102,7 @@ static void send_off(struct par_spool *spool)
     spool->sent = spool->length;
 }
 
+/* Appends a tile to the file. On errors spool->length stays, so a partly written tile does not count. */
 static enum tri_status append_tile(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
 {
     const size_t n = bytes_of(tile, spool->n_attributes);
@@ -104,23 +112,26 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
         return no_memory(spool, error);
     char *arrays = (char *)(h + 1);
     *h = (struct head){.word = TILE, .bytes = (int64_t)n, .n_attributes = spool->n_attributes};
+    /* Copy the numbers only: pointers have no meaning in a file. */
     h->tile = (struct tri_tile){.column = tile->column, .row = tile->row, .first_vertex = tile->first_vertex,
                                 .first_triangle = tile->first_triangle, .first_segment = tile->first_segment,
                                 .n_vertices = tile->n_vertices, .n_triangles = tile->n_triangles,
                                 .n_segments = tile->n_segments};
     if (!pack_tile(arrays, tile, spool->n_attributes))
-        status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
+        status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile refers to a vertex over 2^32 numbers back");
     h->hash = hash_of(h, arrays);
     if (!status && !tri_write_at(spool->file, h, sizeof *h + n, (uint64_t)spool->length))
         status = fail_writing(spool, error);
     spool->length += status ? 0 : (int64_t)(sizeof *h + n);
+    /* spool->length now includes the tile, unless writing has failed. */
     send_off(spool);
     free(h);
     return status;
 }
 
-/* --- all of them again */
+/* --- handing out the tiles of the file again */
 
+/* Unpacks numbers of vertices (see pack_numbers), into malloc'ed memory. NULL: no memory. */
 static int64_t *unpacked(const char *at, size_t n, int64_t end)
 {
     int64_t *number = malloc((n + 1) * sizeof *number);
@@ -132,7 +143,7 @@ static int64_t *unpacked(const char *at, size_t n, int64_t end)
     return number;
 }
 
-/* Hands out one tile from its arrays. */
+/* Hands out one tile from its packed arrays. */
 static enum tri_status hand_out_tile(const struct par_spool *spool, const struct head *h, const char *arrays,
                                      struct tri_error *error)
 {
@@ -148,6 +159,7 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
         array[k].at = number[k] = unpacked(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
         memory = memory && number[k];
     }
+    /* The arrays of numbers have been unpacked; the others are used where they lie. */
     par_tile_point_at(&tile, array);
     enum tri_status status = memory ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(number[PAR_TILE_CORNERS]);
@@ -155,15 +167,18 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
     return status;
 }
 
+/* Fails with TRI_BAD_INPUT and the position of the damaged tile. */
 static enum tri_status fail_damaged(const struct par_spool *spool, int64_t place, struct tri_error *error)
 {
     return tri_fail(error, TRI_BAD_INPUT, spool->path, 0, "damaged at byte %lld", (long long)place);
 }
 
-/* Reads the tile at a place, and its arrays, which are malloc'ed. */
+/* Reads and checks the tile at a position of the file. *arrays is malloc'ed or NULL; the caller frees it, after errors
+ * as well. */
 static enum tri_status read_tile(const struct par_spool *spool, int64_t place, struct head *h, char **arrays,
                                  struct tri_error *error)
 {
+    /* Check the head before its lengths are used. */
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
     if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, (uint64_t)place) || h->word != TILE || h->bytes < 0 ||
@@ -178,6 +193,7 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
     return TRI_OK;
 }
 
+/* Hands out all tiles of the file, in their order. */
 static enum tri_status hand_out_again(struct par_spool *spool, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -194,6 +210,7 @@ static enum tri_status hand_out_again(struct par_spool *spool, struct tri_error 
 
 /* --- the sink */
 
+/* Passes the beginning of the stream on, then hands out the tiles of the file if the run is resumed. */
 static enum tri_status begin_stream(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_spool *spool = user;
@@ -202,6 +219,9 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *stream,
     return status || !spool->again ? status : hand_out_again(spool, error);
 }
 
+/* Appends the tile to the file and passes it on, except the first tile of a resumed run, which is in the file already.
+ * If the receiver fails, this is only noted, since the tile is safe in the file: par_state_border writes a state and
+ * then returns the failure. */
 static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_spool *spool = user;
@@ -215,6 +235,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
     return status;
 }
 
+/* Passes the end of the stream on, unless the receiver has failed before. */
 static enum tri_status end_stream(void *user, struct tri_error *error)
 {
     struct par_spool *spool = user;

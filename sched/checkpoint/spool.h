@@ -1,9 +1,11 @@
-/* Tiles in a file, in the order in which they are handed out: so that whoever takes them can be given all of them again
- * after the process has died. A sink that passes on to another one.
+/* A spool keeps the tiles of a sweep in a file, in the order in which they are handed out, and passes each tile on to
+ * another sink. After the process has died, the receiver can be given all tiles again.
  *
- * The file is only appended to. A tile is a head, with a hash over all of the tile, and its arrays; corners take 32
- * bits, since they are counted back from the last vertex of the tile: up to 2^32 vertices. About 26 bytes a
- * triangle. */
+ *     | head | arrays of tile 1, each padded to 8 bytes | head | arrays of tile 2 | ...
+ *
+ * The file is only appended to. The head of a tile contains a hash of the whole tile. Corners take 32 bits, because
+ * they are counted back from the last vertex of the tile; this allows distances up to 2^32 vertices. A triangle takes
+ * about 26 bytes. */
 #ifndef SCHED_CHECKPOINT_SPOOL_H
 #define SCHED_CHECKPOINT_SPOOL_H
 
@@ -13,20 +15,23 @@
 #include "triangle/base/status.h"
 #include "triangle/base/system.h"
 
+/* Used by the calling thread of a run. */
 struct par_spool {
-    tri_file file;          /* open for reading and writing; TRI_NO_FILE: none */
-    const char *path;       /* for messages; borrowed */
-    const struct tri_sink *to;
-    int64_t length;         /* bytes of whole tiles in the file */
-    int64_t sent;           /* of these are on their way to the disk */
-    bool again;             /* `begin` hands out what is in the file, and the first tile that comes is one of those */
-    enum tri_status failed; /* `to` has failed, and is told no more; tiles are kept all the same */
-    struct tri_error failure;
-    int32_t n_attributes;
+    tri_file file;             /* open for reading and writing; TRI_NO_FILE: not open */
+    const char *path;          /* path of the file for messages; borrowed */
+    const struct tri_sink *to; /* the sink that receives the tiles */
+    int64_t length;            /* bytes of complete tiles in the file */
+    int64_t sent;              /* the part of these bytes that the system has been asked to write to the disk */
+    bool again;                /* `begin` hands out the tiles in the file again; the first tile appended afterwards is
+                                  already in the file and is skipped */
+    enum tri_status failed;    /* not TRI_OK: `to` has failed and receives no more tiles; tiles are still appended to
+                                  the file */
+    struct tri_error failure;  /* details of that failure */
+    int32_t n_attributes;      /* attributes of a vertex */
 };
 
-/* As a sink; the spool lives as long as that. TRI_CANNOT_WRITE, TRI_NO_MEMORY; with `again` also TRI_BAD_INPUT, where
- * the file does not hold whole tiles, and what `to` says. */
+/* Returns the spool as a sink. The spool must outlive it. The sink's functions return TRI_CANNOT_WRITE or
+ * TRI_NO_MEMORY; with `again` also TRI_BAD_INPUT if the file does not hold complete tiles, and errors of `to`. */
 struct tri_sink par_spool_sink(struct par_spool *spool);
 
 #endif

@@ -1,4 +1,6 @@
-/* Files are those of the machine that wrote them: arrays as they lie in memory. */
+/* Writing and reading the state of a run, and the decision when to write one. One function for each part of a state
+ * (carry_...) both writes and reads it, so both have the same format. Arrays are stored as they lie in memory, so a
+ * state can be read only on the same kind of machine. */
 #include "sched/checkpoint/state.h"
 
 #include <assert.h>
@@ -12,8 +14,9 @@
 #include "triangle/base/grow.h"
 #include "triangle/base/hash.h"
 
-/* --- of which run */
+/* --- the hash that identifies a run */
 
+/* The bounds. Optional ones are hashed only if they are set, so that runs without them keep their hash. */
 static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
@@ -25,12 +28,14 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
     return q->passes > 0 ? tri_hash(hash, &q->passes, sizeof q->passes) : hash;
 }
 
+/* The options on which the mesh depends. The number of threads and the memory are not among them. */
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
     const int64_t others[] = {o->by_block, o->size_test_in_parallel};
     return tri_hash(tri_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
+/* The mesh at the beginning. n_kept: number of vertices before refinement, which alone have attributes. */
 static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m, int32_t n_kept)
 {
     const int64_t counts[] = {m->n_vertices, m->n_triangles, m->n_subs, m->n_regions, m->n_columns, m->n_attributes};
@@ -53,16 +58,18 @@ uint64_t par_state_run(const struct par_run *run)
     return hash_mesh(hash, run->mesh, run->asked.n_kept);
 }
 
-/* --- what is carried, to a file and from there */
+/* --- the parts of a state, written to a file or read from it */
 
+/* The data that a walk over a state writes or reads. */
 struct cargo {
-    struct par_run *run;
-    struct par_tiles *tiles; /* NULL: a mesh as a whole */
-    bool memory;             /* there has been enough */
+    struct par_run *run;     /* the run */
+    struct par_tiles *tiles; /* the tiles of a sweep; NULL: the mesh is kept as a whole */
+    bool memory;             /* false: memory ran out; the rest is skipped */
 };
 
 #define CARRY(file, field) par_carry(file, &(field), sizeof(field))
 
+/* The position. `column` is stored by carry_sweep; level is 0 in every state. */
 static void carry_place(struct par_state_file *f, struct par_run *run)
 {
     CARRY(f, run->place.next);
@@ -72,6 +79,7 @@ static void carry_place(struct par_state_file *f, struct par_run *run)
     CARRY(f, run->radius);
 }
 
+/* The counts of the report that the end of the run adds to. Times are not kept. */
 static void carry_report(struct par_state_file *f, struct par_report *r)
 {
     CARRY(f, r->rounds);
@@ -90,12 +98,13 @@ static void carry_report(struct par_state_file *f, struct par_report *r)
     CARRY(f, r->total);
 }
 
-/* A list of *n items: array is the address of the pointer to them. */
+/* A list of *n items. array: address of the pointer to the items, which may move when the list grows for reading. */
 static void carry_items(struct cargo *cargo, struct par_state_file *f, void *array, int32_t *n, int32_t *capacity,
                         size_t item)
 {
     int32_t wanted = *n;
     void *items;
+    /* When reading, this replaces the number by that in the file. */
     CARRY(f, wanted);
     cargo->memory = cargo->memory && tri_grow(array, capacity, wanted, item);
     *n = cargo->memory ? wanted : 0;
@@ -106,6 +115,7 @@ static void carry_items(struct cargo *cargo, struct par_state_file *f, void *arr
 #define CARRY_LIST(cargo, f, list) \
     carry_items(cargo, f, &(list).item, &(list).n, &(list).capacity, sizeof *(list).item)
 
+/* The cells, which may be empty. When reading, the arrays of *p are replaced. */
 static void carry_partition(struct cargo *cargo, struct par_state_file *f, struct par_partition *p)
 {
     struct par_partition as = *p;
@@ -115,6 +125,7 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
     CARRY(f, as.high);
     CARRY(f, as.estimate);
     const size_t n_x = (size_t)as.n_columns, n_y = n_x * (size_t)as.n_rows;
+    /* Allocate arrays for the cells in the file. */
     if (f->reads && n_x > 0) {
         par_partition_free(p);
         as.x = malloc(n_x * sizeof *p->x);
@@ -128,8 +139,10 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
     }
 }
 
+/* How many items are missing? */
 static int32_t more(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
 
+/* The counts of the mesh. When reading, its arrays grow to hold them. */
 static void carry_counts(struct cargo *cargo, struct par_state_file *f, struct tri_mesh *m)
 {
     int32_t v = m->n_vertices, t = m->n_triangles, s = m->n_subs;
@@ -146,6 +159,7 @@ static void carry_counts(struct cargo *cargo, struct par_state_file *f, struct t
     }
 }
 
+/* The arrays of the mesh that refinement changes. carry_counts must come first. */
 static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
 {
     const size_t v = (size_t)m->n_vertices;
@@ -159,7 +173,8 @@ static void carry_mesh(struct par_state_file *f, struct tri_mesh *m)
     par_carry(f, m->sub, (size_t)m->n_subs * sizeof *m->sub);
 }
 
-/* What a sweep has beside that. */
+/* The data of a sweep: column, counts of bad triangles and of tiles, numbers of vertices, and vertices that are held
+ * back. */
 static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
 {
     struct par_run *run = cargo->run;
@@ -170,6 +185,7 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
     CARRY(f, tiles->n_vertices);
     CARRY(f, tiles->n_triangles);
     CARRY(f, tiles->n_segments);
+    /* All triangles that were handed out have left the mesh. */
     run->gone = tiles->n_triangles;
     cargo->memory = cargo->memory && par_tiles_reserve(tiles);
     if (cargo->memory)
@@ -178,6 +194,8 @@ static void carry_sweep(struct cargo *cargo, struct par_state_file *f)
     CARRY_LIST(cargo, f, run->remain.listed);
 }
 
+/* A par_state_walk: the whole state. The file holds, in this order: position, report, worklist with keys, blocks that
+ * are done, spare room, counts and arrays of the mesh, and then either the data of a sweep or the cells. */
 static enum tri_status carry(struct par_state_file *f, void *user, struct tri_error *error)
 {
     struct cargo *cargo = user;
@@ -188,13 +206,13 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     CARRY_LIST(cargo, f, run->key);
     CARRY_LIST(cargo, f, run->place.done);
     for (int k = 0; k < PAR_KINDS; k++) {
-        assert(run->spare.ranges[k].dealt == 0); /* no block is at work */
+        assert(run->spare.ranges[k].dealt == 0); /* no block is running, so no range is dealt out */
         CARRY_LIST(cargo, f, run->spare.ranges[k]);
     }
     carry_counts(cargo, f, run->mesh);
     if (cargo->memory)
         carry_mesh(f, run->mesh);
-    if (cargo->tiles) { /* whose cells have been made anew */
+    if (cargo->tiles) { /* its cells are made again from the input, so they are not stored */
         carry_sweep(cargo, f);
     } else {
         carry_partition(cargo, f, &run->cells);
@@ -203,11 +221,12 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     return cargo->memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a state");
 }
 
-/* --- when */
+/* --- when a state is written */
 
 bool par_state_is_last(const struct par_checkpoint *c, double now, double triangles)
 {
-    const double growth = fmax(triangles / fmax(c->size, 1), 1); /* of what is written; room that is empty is read */
+    const double growth = fmax(triangles / fmax(c->size, 1), 1); /* the part of the cost that grows with the mesh;
+                                                                    unused room is only read, not written */
     const bool measured = c->writing >= PAR_STATE_MEASURES;
     const double lead = measured ? 2 * (c->cost + (growth - 1) * c->writing) : 0;
     return c->limit > 0 && c->saved > 0 && c->limit - now <= lead;
@@ -215,15 +234,19 @@ bool par_state_is_last(const struct par_checkpoint *c, double now, double triang
 
 bool par_state_is_due(const struct par_checkpoint *c, double now, double triangles)
 {
-    static const double EARLY = 0.01; /* of the time: a disk that is slower than the mesher by 30 times is in time */
+    static const double EARLY = 0.01; /* share of the time until the limit, after which the first state measures the
+                                         disk: early enough even for a disk that is 30 times as slow as the mesher */
     const bool measures = c->limit > 0 && c->writing < PAR_STATE_MEASURES;
-    const bool resumed = c->saved == 0 && par_checkpoint_has_state(c); /* it is to get further first */
+    const bool resumed = c->saved == 0 && par_checkpoint_has_state(c); /* a resumed run must first make progress */
     const double wait = measures ? fmin(c->seconds, (resumed ? 0.5 : EARLY) * (c->limit - c->last)) : c->seconds;
     return now - c->last >= wait || par_state_is_last(c, now, triangles);
 }
 
+/* Number of triangles in memory. */
 static double live_triangles(const struct par_run *run) { return (double)(par_triangles(run) - run->gone); }
 
+/* Writes a state, and measures how long it takes. If it is the last state before the limit, requests the end of the
+ * run. Called on the calling thread while no block runs. */
 static enum tri_status save(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                             struct tri_error *error)
 {
@@ -240,8 +263,8 @@ static enum tri_status save(struct par_checkpoint *c, struct par_run *run, struc
 }
 
 #ifndef NDEBUG
-/* Do the lists of what has been read name triangles that are there, by keys that ascend? Links are not looked at: free
- * triangles are not marked yet. */
+/* After reading: do the worklist's entries name existing triangles, and do the keys ascend? Links of triangles are not
+ * checked, since free triangles have not been marked yet. */
 static bool is_state_sound(const struct par_run *run)
 {
     const struct par_ids *list = &run->worklist;
@@ -254,6 +277,7 @@ static bool is_state_sound(const struct par_run *run)
 }
 #endif
 
+/* Reads the state of the checkpoint into the run. */
 static enum tri_status load(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                             struct tri_error *error)
 {
@@ -269,41 +293,47 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_run *run, s
 {
     c->stop = run->mesh->stop;
     c->last = tri_seconds();
-    if (par_checkpoint_has_ranks(c)) /* whose hash of the same run is another one */
+    if (par_checkpoint_has_ranks(c)) /* checked first, since ranks compute a different hash for the same run */
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                        "is the checkpoint of several tasks, and this mesh is to be made as a whole");
+                        "is the checkpoint of several tasks, but this run keeps the mesh as a whole");
     enum tri_status status = par_checkpoint_take(c, par_state_run(run), error);
     const bool is_whole = c->manifest.kind == PAR_WHOLE_STATE;
     if (!status && par_checkpoint_has_state(c) && !is_whole && !run->asked.options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                        "is the checkpoint of a sweep, and this mesh is to be made as a whole");
+                        "is the checkpoint of a sweep, but this run keeps the mesh as a whole");
+    /* While the state is read, only par_checkpoint_read checks for a requested end, before it changes anything. */
     if (!status && par_checkpoint_has_state(c) && is_whole) {
         run->mesh->stop = NULL;
         status = load(c, run, NULL, error);
     }
+    /* A state of a whole mesh, or a sweep that was given up: the mesh must not be swept again. */
     if (is_whole && run->place.next == PAR_BOUNDS)
         run->place.next = PAR_BOUNDS_WHOLE;
     return status;
 }
 
-/* --- borders and phases */
+/* --- states between steps and during phases */
 
 enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                  bool surely, struct tri_error *error)
 {
+    /* The receiver of the tiles has failed: save the state before reporting it. */
     const bool failed = tiles && c->spool.failed, due = par_state_is_due(c, tri_seconds(), live_triangles(run));
     run->mesh->stop = NULL;
     if (!tri_stop_is_asked(c->stop) && !surely && !failed && !due)
         return TRI_OK;
     enum tri_status status = save(c, run, tiles, error);
-    if (failed && error) /* whether the state could be saved or not */
+    if (failed && error) /* regardless of whether the state could be written */
         *error = c->spool.failure;
     if (failed)
         return c->spool.failed;
     return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
 }
 
-/* Asked by blocks before they begin. It does not stay true: a halt ends. */
+/* A tri_stop callback: is a halt due, to write a state? Called before each block begins, on any thread; it only reads
+ * the checkpoint and an atomic count. It may return false again later, since the halt ends when the state has been
+ * written. States take at most a tenth of the time: one is due only after PAR_STATE_REST times the duration of the
+ * last. */
 static bool is_halt_due(void *user)
 {
     const struct par_run *run = user;
@@ -314,6 +344,8 @@ static bool is_halt_due(void *user)
            (par_state_is_due(c, now, triangles) && now - c->last >= PAR_STATE_REST * c->cost);
 }
 
+/* Runs the phase until it ends. Each halt ends par_phase with TRI_STOPPED; a state is written, and the loop runs the
+ * remaining blocks, unless the caller has requested the end. */
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, struct par_turn turn,
                                 struct par_tiles *tiles, struct tri_error *error)
 {
@@ -324,6 +356,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, s
         status = par_phase(run, &turn, error);
         if (status != TRI_STOPPED)
             break;
+        /* A halt: no block is running now, and place.done lists the blocks that have ended. */
         status = save(c, run, tiles, error);
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
@@ -336,7 +369,7 @@ enum tri_status par_state_phase(struct par_checkpoint *c, struct par_run *run, s
 enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_run *run, struct par_tiles *tiles,
                                       struct tri_error *error)
 {
-    const bool again = par_checkpoint_has_sweep(c); /* there may be a state of the step before */
+    const bool again = par_checkpoint_has_sweep(c); /* false if there is only a state of an earlier step */
     c->spool.to = tiles->sink;
     c->spool.again = again;
     c->sink = par_spool_sink(&c->spool);

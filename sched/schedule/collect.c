@@ -1,11 +1,12 @@
-/* What the blocks of a phase leave: triangles for the next one, in canonical order, what they changed and gave up. */
+/* Collects the results of a phase in canonical order: the triangles that its blocks deferred, given-up triangles,
+ * deleted items, unused room and counts. It also holds the functions that add up reports. */
 #include <assert.h>
 #include <stdlib.h>
 
 #include "sched/schedule/phase_tasks.h"
 #include "triangle/base/grow.h"
 
-/* --- what is counted */
+/* --- reports */
 
 void par_report_free(struct par_report *report)
 {
@@ -46,24 +47,26 @@ void par_forget_deferred(struct par_report *report) { report->total.gated = repo
 
 /* --- worklists */
 
-/* What a phase has left. */
+/* Merging the triangles that the tasks have left. */
 struct leftovers {
-    const struct par_phase_run *p;
-    _Atomic(uint64_t) *seen; /* bits of triangles */
-    int32_t *before;         /* [n_tasks + 1] left by the tasks before each */
-    int32_t *item;           /* [before[n_tasks]] */
-    uint64_t *key;           /* [before[n_tasks]] */
+    const struct par_phase_run *p; /* the phase */
+    _Atomic(uint64_t) *seen;       /* [n_triangles / 64 + 1] one bit for each triangle that has been met */
+    int32_t *before;               /* [n_tasks + 1] number of triangles that all tasks before this one have left */
+    int32_t *item;                 /* [before[n_tasks]] the triangles that all tasks have left, in canonical order */
+    uint64_t *key;                 /* [before[n_tasks]] their keys */
 };
 
+/* Marks a triangle, and returns whether it was unmarked. Safe to call from several threads. */
 static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
 {
     const uint64_t bit = (uint64_t)1 << triangle % 64;
     return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
 }
 
-/* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
- * ninefold after the next phase. Two blocks do not leave the same one: each looks at what has two corners in its box,
- * and boxes of one phase are disjoint. So who comes first does not matter. */
+/* A task: removes duplicates from the list of one task. Without this, a triangle that was deferred at three encroached
+ * subsegments would be listed three times, and nine times after the next phase. Two blocks never leave the same
+ * triangle, since each leaves only triangles with two corners in its box, and boxes of one phase are disjoint. So the
+ * result does not depend on the order in which these tasks run. */
 static void drop_repeated(void *context, size_t index)
 {
     const struct leftovers *left = context;
@@ -75,11 +78,13 @@ static void drop_repeated(void *context, size_t index)
     own->n = n;
 }
 
+/* A task: copies the list of one task to its place, and gives each triangle its key. */
 static void gather_own(void *context, size_t index)
 {
     const struct leftovers *left = context;
     const struct par_phase_run *p = left->p;
     const struct par_ids *own = &p->tasks[index].left;
+    /* Keys depend on the block alone, not on the thread that ran it. */
     const uint64_t key = par_key_of(p->partition, p->run->place.round, p->phase, p->tasks[index].block);
     for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
         left->item[at] = own->item[k];
@@ -87,6 +92,8 @@ static void gather_own(void *context, size_t index)
     }
 }
 
+/* Removes duplicates from the lists of all tasks and joins the lists in canonical order. False: no memory, now or while
+ * a task ran. */
 static bool gather_left(struct leftovers *left)
 {
     const struct par_phase_run *p = left->p;
@@ -96,6 +103,7 @@ static bool gather_left(struct leftovers *left)
     left->before = malloc((n + 1) * sizeof *left->before);
     if (!left->seen || !left->before)
         return false;
+    /* First remove duplicates, then compute where each list begins, then copy. */
     tri_execute(&p->run->asked.executor, n, drop_repeated, left);
     left->before[0] = 0;
     for (size_t i = 0; i < n; i++) {
@@ -110,6 +118,7 @@ static bool gather_left(struct leftovers *left)
     return memory;
 }
 
+/* The key of entry i of the worklist; without keys, its position. */
 static uint64_t key_of(const struct par_run *run, int32_t i)
 {
     return run->key.n > 0 ? run->key.item[i] : (uint64_t)i;
@@ -126,6 +135,7 @@ bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t
         return false;
     }
     assert(run->key.n == 0 || run->key.n == list->n);
+    /* Merge the lists. If both have an entry, it is taken from the old list and skipped in the new one. */
     for (int32_t i = 0, k = 0; i < list->n || k < n; at++) {
         bool old = k == n || (i < list->n && key_of(run, i) <= key[k]);
         items[at] = old ? list->item[i] : item[k];
@@ -141,6 +151,8 @@ bool par_merge_worklist(struct par_run *run, const int32_t *item, const uint64_t
     return true;
 }
 
+/* Appends the tasks' lists of changed triangles (on ranks) and of given-up triangles to those of the run. False: no
+ * memory. */
 static bool gather_lists(const struct par_phase_run *p)
 {
     struct par_run *run = p->run;
@@ -151,6 +163,7 @@ static bool gather_lists(const struct par_phase_run *p)
     return memory;
 }
 
+/* Merges what the tasks have left into the worklist, and gathers the other lists. False: no memory. */
 static bool take_back(struct par_phase_run *p)
 {
     struct leftovers left = {.p = p};
@@ -163,12 +176,13 @@ static bool take_back(struct par_phase_run *p)
     return memory;
 }
 
-/* Otherwise than for room, or since somebody asks for the end? */
+/* Has the task failed? A pause for room or a requested end is no failure. */
 static bool has_failed(const struct par_task *task)
 {
     return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
 }
 
+/* Adds an entry for the task to the report's list of blocks. False: no memory. */
 static bool report_block(const struct par_phase_run *p, const struct par_task *task)
 {
     struct par_report *report = p->run->report;
@@ -180,7 +194,9 @@ static bool report_block(const struct par_phase_run *p, const struct par_task *t
     return true;
 }
 
-/* The places of what was erased. Ranks keep vertices that all have, and give back what they have borrowed first. */
+/* Adds the places of deleted vertices and triangles to the spare room. Not on ranks for vertices, because all ranks may
+ * hold them, nor for the triangles of border blocks, which must return the parts that they borrowed first. False: no
+ * memory. */
 static bool release_erased(const struct par_phase_run *p, const struct par_task *task)
 {
     struct par_run *run = p->run;
@@ -199,12 +215,15 @@ enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
     bool memory = take_back(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
+        /* The first failure in canonical order counts, so errors do not depend on timing. */
         if (!status && has_failed(task)) {
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
         par_add_up(&p->run->report->total, &task->report);
+        /* A task that was stopped or has not begun is not reported. */
         memory = memory && (task->progress == PAR_READY || report_block(p, task));
+        /* This cannot fail, and happens after errors, too: no range is lost. */
         par_room_return(&task->view.room, &p->run->spare);
         memory = release_erased(p, task) && memory;
         free(task->erased.item);

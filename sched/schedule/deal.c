@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Few enough shares for counts not to outgrow what is counted. */
+/* Limits the number of shares so that the table of counts is not larger than the items that are dealt. */
 bool par_deal_reserve(struct par_deal *deal, int32_t n, int32_t n_tiles)
 {
     size_t most = (size_t)n / ((size_t)n_tiles + 1) + 1, shares = tri_shares(n);
@@ -27,6 +27,7 @@ int32_t par_add_up_counts(int32_t *at, size_t shares, int32_t n_tiles, int32_t *
     for (int32_t tile = 0; tile < n_tiles; tile++) {
         start[tile] = sum;
         for (size_t share = 0; share < shares; share++) {
+            /* Replace the count by the place of the share's first item of this tile. */
             int32_t *here = &at[share * (size_t)n_tiles + (size_t)tile], count = *here;
             *here = sum;
             sum += count;
@@ -43,15 +44,17 @@ int32_t par_deal_add_up(struct par_deal *deal)
     return sum;
 }
 
+/* The workers that process tiles. */
 struct hands {
-    void (*work)(const void *context, size_t tile, uint64_t *room);
-    const void *context;
-    size_t n_tiles;
-    uint64_t *room;         /* [hands][each] */
-    size_t each;
-    atomic_size_t next;     /* tile */
+    void (*work)(const void *context, size_t tile, uint64_t *room); /* called for each tile */
+    const void *context; /* passed to work */
+    size_t n_tiles;      /* number of tiles */
+    uint64_t *room;      /* [workers][each] scratch memory */
+    size_t each;         /* items of scratch memory for one worker: two for each item of the largest tile */
+    atomic_size_t next;  /* next tile that no worker has begun */
 };
 
+/* A worker: fetches the next tile and processes it, until no tile is left. */
 static void take_tiles(void *context, size_t hand)
 {
     struct hands *h = context;
@@ -59,6 +62,7 @@ static void take_tiles(void *context, size_t hand)
         h->work(h->context, tile, h->room + hand * h->each);
 }
 
+/* Returns the number of items of the largest tile, at least 1. */
 static int32_t largest_tile(const struct par_deal *deal)
 {
     int32_t largest = 1;
@@ -73,6 +77,7 @@ void par_deal_work(const struct par_deal *deal, const struct tri_executor *execu
                    void (*work)(const void *context, size_t tile, uint64_t *room), const void *context)
 {
     const size_t n_tiles = (size_t)deal->n_tiles, largest = (size_t)largest_tile(deal);
+    /* The scratch memory suffices for this many workers. */
     const size_t most = (size_t)deal->n / largest;
     struct hands hands = {work, context, n_tiles, room, 2 * largest, 0};
     tri_execute(executor, most < n_tiles ? most : n_tiles, take_tiles, &hands);

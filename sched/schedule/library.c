@@ -1,5 +1,5 @@
-/* The schedule as the library's way to refine: the functions of ptriangle/par.h, and what those of ptriangle/mpi.h have
- * behind them. */
+/* The functions of ptriangle/par.h, and the part of ptriangle/mpi.h that does not need MPI: they run the parallel
+ * schedule for the common functions in triangle/api/. */
 #include "ptriangle/par.h"
 
 #include "sched/ranks/carrier.h"
@@ -7,15 +7,15 @@
 #include "sched/schedule/threads.h"
 #include "triangle/api/opaque_mesh.h"
 
-/* Passes on what the schedule tells. */
+/* A progress callback of the schedule: passes the number of triangles on to the hook of the library call. */
 static void follow(void *user, const struct par_place *place)
 {
     const struct tri_refine_hooks *hooks = user;
     hooks->told(hooks->told_user, place->triangles);
 }
 
-/* A refine of struct tri_api_way: par_refine with the struct par_options that way->user points to, and with size test,
- * figure and column of regions as settings and way say. */
+/* The refine member of struct tri_api_way: calls par_refine with the options that way->user points to. The size test,
+ * the figure and the region column are set from settings and way. */
 static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *mesh, const struct tri_quality *quality,
                               const struct tri_refine_hooks *hooks, const struct tri_settings *settings,
                               struct tri_refine_report *report, struct tri_error *error)
@@ -27,22 +27,23 @@ static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *me
     how.region_column = way->has_attributes;
     how.hooks = hooks;
     how.progress = hooks->told ? follow : NULL;
-    how.progress_user = (void *)hooks; /* which only reads them */
+    how.progress_user = (void *)hooks; /* follow only reads them */
     enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
     *report = schedule.total;
     par_report_free(&schedule);
     return status;
 }
 
-/* A call of one of the functions below. */
+/* The common part of a call of the functions below. */
 struct call {
-    struct tri_settings settings; /* the caller's, taken */
-    struct par_team team;
-    struct tri_executor executor; /* of the team */
-    struct par_options how;
-    struct tri_api_way way;
+    struct tri_settings settings; /* a checked copy of the caller's settings */
+    struct par_team team;         /* its threads, during the call */
+    struct tri_executor executor; /* runs tasks on the team */
+    struct par_options how;       /* options of the schedule */
+    struct tri_api_way way;       /* by which triangle/api/ calls the schedule */
 };
 
+/* Checks the settings and sets up the team and the options; end_call ends the team. */
 static enum tri_status begin_call(struct call *call, const struct tri_settings *settings, struct tri_error *error)
 {
     enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
@@ -56,6 +57,7 @@ static enum tri_status begin_call(struct call *call, const struct tri_settings *
     return TRI_OK;
 }
 
+/* Ends the team's threads; returns status. */
 static enum tri_status end_call(struct call *call, enum tri_status status)
 {
     par_team_end(&call->team);
@@ -89,7 +91,7 @@ enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tr
 {
     struct call call;
     if (memory < 0 || !sink || !sink->take)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes, and a bound on memory >= 0");
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink with a take function, and memory >= 0");
     enum tri_status status = begin_call(&call, settings, error);
     if (status)
         return status;
@@ -106,11 +108,12 @@ enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_fi
     struct call call;
     enum tri_status status = begin_call(&call, settings, error);
     if (!status && !(sink && sink->take))
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink with a take function");
     if (!status) {
         call.how.carrier = carrier;
         call.how.sink = sink;
         status = end_call(&call, tri_api_mesh_stream(figure, &call.settings, &call.way, error));
     }
+    /* All ranks get the same status, also if only one of them failed. */
     return par_agree(carrier, status, error);
 }

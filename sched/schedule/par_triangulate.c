@@ -1,12 +1,13 @@
-/* triangulate() of libptriangle.a: as that of libtriangle.a, but refines on several threads.
+/* triangulate() of libptriangle.a: like that of libtriangle.a, but it refines on several threads.
  *
- * It defines the same functions as triangle/dropin/triangulate.c, and no others: see there. */
+ * This file defines the same functions as triangle/dropin/triangulate.c, and no others. */
 #include "triangle/dropin/triangle.h"
 
 #include "sched/schedule/schedule.h"
 #include "sched/schedule/threads.h"
 #include "triangle/dropin/call.h"
 
+/* Refines the mesh by the parallel schedule. user: the caller's struct triangulate_options, or NULL. */
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -21,6 +22,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     return status;
 }
 
+/* Makes the call with a team that exists only during it. aloud: prints one line if the call fails. */
 static int run(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                struct triangulateio *vorout, const struct triangulate_options *options, bool aloud)
 {

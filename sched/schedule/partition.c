@@ -1,15 +1,16 @@
-/* Quantiles of the estimated work (triangle/size/estimate.h), first along x, then along y in each column. There are
- * some 32 samples for a cell: enough for shares equal within a sixth. They are sorted in runs, which are merged;
- * columns are sorted, and then merged in pairs, as tasks. Samples that are alike are equal, so their order is the same
- * however they are sorted.
+/* The cells are quantiles of the estimated work (triangle/size/estimate.h), first along x, then along y in each column.
+ * About 32 samples for a cell are enough for shares that are equal within a sixth. All samples are sorted along x in
+ * runs, which are then merged in pairs; each column is sorted along y, and then merged with its neighbour. All of this
+ * runs as tasks. Samples that compare equal are identical, so the result does not depend on the sorting algorithm.
  *
- * SHAPE. Cells are about square on average, over the box of the mesh. But where nearly all of the work lies along a
- * line (a long gap that is filled), quantiles across it lie side by side within it: a block that has one side of a wall
- * cannot split it, and refines up to it as it is; the other half of its work is done from triangles that were good
- * already, step by step, and makes a mesh that grades several times as slowly (measured: up to 2.3 times the triangles
- * of one sequential call at 32 degrees, and 1.06 with cuts that cross the gap). So the box of the middle half of the
- * work, as its quantiles show it, decides on the numbers of columns and rows where it is PAR_SKEW times more drawn out
- * than the mesh: cells are square up to that factor where the work is. */
+ * SHAPE. On average over the bounding box of the mesh, cells are about square. If nearly all of the work lies along a
+ * line, such as a long narrow gap, this choice is bad: quantiles across the gap then lie side by side inside it. A
+ * block that covers one side of a wall cannot split it, and refines up to it as it is. The other half of the work is
+ * done later from triangles that are already good, step by step, which makes a mesh that grades several times as
+ * slowly. (Measured at 32 degrees: up to 2.3 times the triangles of one sequential call; with cuts across the gap, 1.06
+ * times.) So the middle half of the work, as its quantiles show it, is compared with the mesh. If its box is PAR_SKEW
+ * times more elongated, numbers of columns and rows are chosen from that box, so that cells are square up to this
+ * factor where the work is. */
 #include "sched/schedule/partition.h"
 
 #include <assert.h>
@@ -22,21 +23,23 @@
 #include "triangle/size/estimate.h"
 
 enum {
-    RUNS = 16, /* a power of two: each is sorted by a task */
-    FEW = 1024 /* samples are one run */
+    RUNS = 16, /* number of runs, a power of two; each is sorted by a task */
+    FEW = 1024 /* fewer samples are sorted as one run */
 };
 
+/* A place of estimated work. */
 struct sample {
-    struct tri_point q;
-    double work;
+    struct tri_point q; /* the place */
+    double work;        /* estimated number of triangles around it */
 };
 
+/* A growing list of samples. */
 struct samples {
     struct sample *item;
     int64_t n, capacity;
 };
 
-/* A tri_take_work: user is a struct samples. */
+/* A tri_take_work callback: appends a sample. user is a struct samples. False: no memory. */
 static bool add_sample(void *user, struct tri_point q, double work)
 {
     struct samples *s = user;
@@ -46,9 +49,11 @@ static bool add_sample(void *user, struct tri_point q, double work)
     return true;
 }
 
-/* So that equal samples alone have no order: qsort is not stable everywhere, and sums depend on it. */
+/* Both orders end with this comparison, so that only identical samples compare equal. Otherwise the result could differ
+ * between machines, because qsort is not stable everywhere and the rounding of sums depends on the order. */
 static int by_work(const struct sample *a, const struct sample *b) { return (a->work > b->work) - (a->work < b->work); }
 
+/* Order by x, then y, then work. */
 static int by_x(const void *left, const void *right)
 {
     const struct sample *a = left, *b = right;
@@ -57,6 +62,7 @@ static int by_x(const void *left, const void *right)
     return a->q.y != b->q.y ? (a->q.y < b->q.y ? -1 : 1) : by_work(a, b);
 }
 
+/* Order by y, then x, then work. */
 static int by_y(const void *left, const void *right)
 {
     const struct sample *a = left, *b = right;
@@ -67,8 +73,8 @@ static int by_y(const void *left, const void *right)
 
 typedef int compare_samples(const void *left, const void *right);
 
-/* Where a sample lies in the plane's width or height, as 32 bits above its number: monotonous, so that only those that
- * agree have to be compared. */
+/* Makes a sorting key for each sample: its position in the width or height of the plane in the upper 32 bits, its index
+ * in the lower. The position is monotonic, so only samples with equal positions need to be compared exactly. */
 static void make_keys(const struct sample *item, int32_t n, bool along_x, uint64_t *key)
 {
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -77,13 +83,14 @@ static void make_keys(const struct sample *item, int32_t n, bool along_x, uint64
         low = at < low ? at : low;
         high = at > high ? at : high;
     }
-    /* Halves, since the width itself may be beyond what a double holds. */
+    /* Use halves, because the width itself may overflow. */
     const double scale = UINT32_MAX / (high / 2 - low / 2), finite = scale < HUGE_VAL ? scale : 0;
     for (int32_t i = 0; i < n; i++)
         key[i] = (uint64_t)(((along_x ? item[i].q.x : item[i].q.y) / 2 - low / 2) * finite) << 32 | (uint32_t)i;
 }
 
-/* Sorts samples along an axis; room: twice as many. */
+/* Sorts samples along an axis: by radix sort of their keys, then exactly within equal keys. room: scratch memory for
+ * twice as many samples. */
 static void sort_along(struct sample *item, int64_t n, bool along_x, struct sample *room)
 {
     compare_samples *const compare = along_x ? by_x : by_y;
@@ -95,26 +102,30 @@ static void sort_along(struct sample *item, int64_t n, bool along_x, struct samp
         return;
     }
     make_keys(item, (int32_t)n, along_x, key);
+    /* Sort by the upper half of the keys; the lower half then says which sample goes where. */
     tri_radix_sort(key, key + n, (int32_t)n, 32, 64, NULL);
     for (int64_t i = 0; i < n; i++)
         sorted[i] = item[key[i] & UINT32_MAX];
     for (int64_t i = 0, end; i < n; i = end) {
         for (end = i + 1; end < n && key[end] >> 32 == key[i] >> 32;)
             end++;
+        /* Samples with equal upper halves: compare exactly. */
         if (end - i > 1)
             qsort(sorted + i, (size_t)(end - i), sizeof *sorted, compare);
     }
     memcpy(item, sorted, (size_t)n * sizeof *item);
 }
 
-/* Runs of samples, each in order, or to be sorted. */
+/* Samples in runs that are to be sorted or merged. */
 struct runs {
-    struct sample *from, *to; /* the second: room for twice as many */
-    int64_t n, runs;
+    struct sample *from, *to; /* the samples; scratch memory for twice as many */
+    int64_t n, runs;          /* number of samples; number of runs */
 };
 
+/* The first sample of a run. */
 static int64_t run_begin(const struct runs *r, size_t run) { return r->n * (int64_t)run / r->runs; }
 
+/* A task: sorts one run along x. */
 static void sort_run(void *context, size_t run)
 {
     const struct runs *r = context;
@@ -123,7 +134,7 @@ static void sort_run(void *context, size_t run)
         sort_along(r->from + begin, end - begin, true, r->to + 2 * begin);
 }
 
-/* Two lists in order become one. */
+/* Merges two sorted lists into one. */
 static void merge(const struct sample *a, int64_t n_a, const struct sample *b, int64_t n_b, compare_samples *compare,
                   struct sample *to)
 {
@@ -135,7 +146,7 @@ static void merge(const struct sample *a, int64_t n_a, const struct sample *b, i
     }
 }
 
-/* Two neighbours become one. */
+/* A task: merges two neighbouring runs. */
 static void merge_runs(void *context, size_t pair)
 {
     const struct runs *r = context;
@@ -143,13 +154,14 @@ static void merge_runs(void *context, size_t pair)
     merge(r->from + a, middle - a, r->from + middle, end - middle, by_x, r->to + a);
 }
 
-/* scratch: twice as many. */
+/* Sorts all samples along x. scratch: memory for twice as many samples. */
 static void sort_by_x(struct samples *s, struct sample *scratch, const struct tri_executor *executor)
 {
     struct runs r = {s->item, scratch, s->n, s->n < FEW ? 1 : RUNS};
     tri_execute(executor, (size_t)r.runs, sort_run, &r);
     for (; r.runs > 1; r.runs /= 2) {
         tri_execute(executor, (size_t)r.runs / 2, merge_runs, &r);
+        /* Each round of merging swaps the two arrays. */
         struct sample *merged = r.to;
         r.to = r.from;
         r.from = merged;
@@ -158,8 +170,8 @@ static void sort_by_x(struct samples *s, struct sample *scratch, const struct tr
         memcpy(s->item, r.from, (size_t)s->n * sizeof *s->item);
 }
 
-/* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the
- * end. */
+/* Cuts sorted samples into n shares of equal work. cut[k] receives the index of the first sample of share k, and cut[n]
+ * the number of samples. */
 static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
 {
     double total = 0, sum = 0;
@@ -169,6 +181,7 @@ static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
     cut[0] = 0;
     for (int64_t i = 0; i < s->n && k < n; i++) {
         sum += s->item[i].work;
+        /* One sample may end several shares, some of which are then empty. */
         while (k < n && sum >= total * k / n)
             cut[k++] = i + 1;
     }
@@ -177,8 +190,8 @@ static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
     assert(k == n + 1);
 }
 
-/* Boundaries half way between the last sample of a share and the first of the next. Where a share is empty they are
- * equal: an empty cell. */
+/* Places the boundaries halfway between the last sample of a share and the first of the next. The boundaries of an
+ * empty share are equal: an empty cell. */
 static void place_bounds(double *bounds, int32_t n_shares, const struct samples *s, const int64_t *cut, bool along_x,
                          double low, double high)
 {
@@ -195,15 +208,17 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
     }
 }
 
-/* Columns that are cut into rows. */
+/* Cutting columns into rows: the common data of its tasks. */
 struct cutting {
-    struct par_partition *p;
-    struct samples *s;
-    const int64_t *column;  /* [n_columns] the first sample of each column of cells; the last: the end */
-    struct sample *scratch; /* [2 * s->n] */
-    int64_t *cut;           /* [n_columns][n_rows] */
+    struct par_partition *p; /* the result */
+    struct samples *s;       /* all samples, ordered by column */
+    const int64_t *column;   /* [n_columns] the first sample of each column of cells; the last entry is the number of
+                                samples */
+    struct sample *scratch;  /* [2 * s->n] scratch memory */
+    int64_t *cut;            /* [n_columns][n_rows] the first sample of each row, for each column of blocks */
 };
 
+/* A task: sorts the samples of one column of cells along y. */
 static void sort_column(void *context, size_t k)
 {
     const struct cutting *c = context;
@@ -212,19 +227,23 @@ static void sort_column(void *context, size_t k)
         sort_along(c->s->item + first, n, false, c->scratch + 2 * first);
 }
 
-/* A block column has two columns of cells. */
+/* A task: places the row boundaries of one column of blocks, which covers one or two columns of cells. Their sorted
+ * samples are merged into a part of the scratch memory that no other task uses. */
 static void cut_rows(void *context, size_t k)
 {
     const struct cutting *c = context;
     const size_t before = k > 0 ? k - 1 : 0, after = k + 1 < (size_t)c->p->n_columns ? k + 1 : k;
     const size_t rows = (size_t)c->p->n_rows;
     const int64_t first = c->column[before], middle = c->column[k], end = c->column[after], n = end - first;
+    /* Column k writes to places first + middle .. middle + end - 1 of the scratch memory; the next column begins
+     * there. */
     struct samples inside = {c->scratch + (k > 0 ? first + middle : 0), n, n};
     merge(c->s->item + first, middle - first, c->s->item + middle, end - middle, by_y, inside.item);
     cut_shares(&inside, c->p->n_rows - 1, c->cut + k * rows);
     place_bounds(c->p->y + k * rows, c->p->n_rows - 1, &inside, c->cut + k * rows, false, c->p->low.y, c->p->high.y);
 }
 
+/* Places all boundaries of columns and rows. False: no memory. */
 static bool cut_plane(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
 {
     const size_t n_columns = (size_t)p->n_columns;
@@ -246,11 +265,13 @@ static bool cut_plane(struct par_partition *p, struct samples *s, const struct t
     return done;
 }
 
+/* Finding the bounding box: the common data of its tasks. */
 struct boxing {
-    const struct tri_mesh *mesh;
-    struct tri_point low[TRI_MOST_SHARES], high[TRI_MOST_SHARES];
+    const struct tri_mesh *mesh; /* the mesh */
+    struct tri_point low[TRI_MOST_SHARES], high[TRI_MOST_SHARES]; /* box of each share's vertices */
 };
 
+/* Extends a box by another one. */
 static void widen(struct tri_point *low, struct tri_point *high, struct tri_point from, struct tri_point to)
 {
     low->x = from.x < low->x ? from.x : low->x;
@@ -259,6 +280,7 @@ static void widen(struct tri_point *low, struct tri_point *high, struct tri_poin
     high->y = to.y > high->y ? to.y : high->y;
 }
 
+/* A task: finds the box of the vertices of one share. */
 static void box_share(void *context, size_t share)
 {
     struct boxing *b = context;
@@ -270,6 +292,7 @@ static void box_share(void *context, size_t share)
     b->high[share] = high;
 }
 
+/* Finds the bounding box of the mesh, which has at least one vertex. */
 static void find_box(struct par_partition *p, const struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     struct boxing boxing = {.mesh = mesh};
@@ -280,10 +303,12 @@ static void find_box(struct par_partition *p, const struct tri_mesh *mesh, const
         widen(&p->low, &p->high, boxing.low[share], boxing.high[share]);
 }
 
-/* As many columns as make cells about square on average in a box of this shape, in pairs. */
+/* Chooses the numbers of columns and rows so that cells are about square on average in a box of this shape. Both
+ * numbers are even, so that cells form pairs. */
 static void choose_numbers(struct par_partition *p, double cell_triangles, double width, double height)
 {
     double cells = p->estimate / cell_triangles;
+    /* At least two by two cells; far more than a million would cost more than they are worth. */
     cells = cells < 4 ? 4 : cells > 1e6 ? 1e6 : cells;
     double columns = height > 0 ? sqrt(cells * (width / height)) : width > 0 ? cells : 1;
     columns = columns < 2 ? 2 : columns > cells / 2 ? cells / 2 : columns;
@@ -294,18 +319,20 @@ static void choose_numbers(struct par_partition *p, double cell_triangles, doubl
     assert(p->n_columns >= 3 && p->n_rows >= 3);
 }
 
-/* How far the middle half of n - 1 shares reaches, at least two of them. */
+/* Returns the width of the middle half of n - 1 shares, at least two of them. */
 static double middle_half(const double *bounds, int32_t n)
 {
     int32_t quarter = (n - 1) / 4;
     return bounds[n - 1 - quarter] - bounds[quarter];
 }
 
-/* Is the work on a line, against the box that the cells were made for? Then they are chosen anew. */
+/* Chooses the numbers again if the work is much more elongated than the box for which they were chosen. Returns whether
+ * they have changed. */
 static bool choose_for_work(struct par_partition *p, double cell_triangles)
 {
     int32_t columns = p->n_columns, rows = p->n_rows;
     double width = p->high.x - p->low.x, height = p->high.y - p->low.y, middle = middle_half(p->x, columns);
+    /* The height is measured in the middle column. */
     double beside = middle_half(p->y + (size_t)(columns / 2) * (size_t)rows, rows);
     if (PAR_SKEW * middle * height < beside * width)
         choose_numbers(p, cell_triangles, PAR_SKEW * middle, beside);
@@ -314,6 +341,7 @@ static bool choose_for_work(struct par_partition *p, double cell_triangles)
     return p->n_columns != columns || p->n_rows != rows;
 }
 
+/* Cuts the plane with the current numbers of columns and rows. False: no memory. */
 static bool cut_anew(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
 {
     free(p->x);
@@ -333,8 +361,10 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
         find_box(p, mesh, executor);
         choose_numbers(p, cell_triangles, p->high.x - p->low.x, p->high.y - p->low.y);
     }
+    /* Each sample stands for about this much work. */
     double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
     bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
+    /* The first cut shows where the work lies; if it is very elongated, cut again. */
     if (done && choose_for_work(p, cell_triangles))
         done = cut_anew(p, &s, executor);
     free(s.item);
@@ -359,9 +389,11 @@ enum tri_status par_partition_copy(struct par_partition *copy, const struct par_
     return TRI_OK;
 }
 
-/* Two cells become one, from n - 1 cells; where they are no multiple of four the last one becomes empty. */
+/* Returns the number of boundaries after n - 1 cells have been merged in pairs. If n - 1 is not a multiple of four, the
+ * last cell becomes empty. */
 static int32_t coarser(int32_t n) { return 2 * ((n + 2) / 4) + 1; }
 
+/* Keeps every second boundary. from and to may overlap. */
 static void merge_cells(const double *from, int32_t n, double *to)
 {
     for (int32_t k = 0; k < coarser(n); k++)
@@ -371,7 +403,7 @@ static void merge_cells(const double *from, int32_t n, double *to)
 void par_partition_coarsen(struct par_partition *p)
 {
     int32_t columns = coarser(p->n_columns), rows = coarser(p->n_rows);
-    for (int32_t c = 0; c < columns; c++) { /* in place: what is written has been read */
+    for (int32_t c = 0; c < columns; c++) { /* in place: each entry is read before it is overwritten */
         int32_t from = 2 * c < p->n_columns - 1 ? 2 * c : p->n_columns - 1;
         merge_cells(p->y + (size_t)from * (size_t)p->n_rows, p->n_rows, p->y + (size_t)c * (size_t)rows);
     }
@@ -388,12 +420,14 @@ void par_partition_free(struct par_partition *p)
     *p = (struct par_partition){0};
 }
 
+/* The interval of block k along one axis; outer blocks reach to infinity. */
 static void span(const double *bounds, int32_t k, int32_t n, double *low, double *high)
 {
     *low = k < 2 ? -HUGE_VAL : bounds[k - 1];
     *high = k >= n - 2 ? HUGE_VAL : bounds[k + 1];
 }
 
+/* The boundaries of rows in a column of blocks. */
 static const double *rows_of(const struct par_partition *p, int32_t column)
 {
     return p->y + (size_t)column * (size_t)p->n_rows;
@@ -408,10 +442,11 @@ struct tri_fence par_fence(const struct par_partition *p, int32_t column, int32_
     return fence;
 }
 
-/* The cell that holds q, the first or last one for what lies outside. No branch, since it could not be predicted. */
+/* Returns the cell that holds q, or the first or last cell if q lies outside. There is no branch, since a branch could
+ * not be predicted. */
 static int32_t cell_at(const double *bounds, int32_t n, double q)
 {
-    int32_t low = 0; /* it is one of low .. low + left - 1 */
+    int32_t low = 0; /* invariant: the cell is one of low .. low + left - 1 */
     for (int32_t left = n - 1, half; left > 1; left -= half) {
         half = left / 2;
         low += half & -(int32_t)(bounds[low + half] <= q);
@@ -419,7 +454,7 @@ static int32_t cell_at(const double *bounds, int32_t n, double q)
     return low;
 }
 
-/* Of the two blocks over a cell, the one of this parity. */
+/* Returns the one of the two blocks over a cell whose number has this parity. */
 static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity ? cell : cell + 1; }
 
 int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point q)
@@ -452,6 +487,7 @@ int32_t par_locate_owner(struct par_locator *locator, const struct par_partition
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     assert(tri_is_live(&mesh->tri[t]));
+    /* Find the block of the first corner; it owns the triangle if its fence holds the other two as well. */
     int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
     bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
     return owns ? block : TRI_NONE;

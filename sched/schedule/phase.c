@@ -1,4 +1,14 @@
-/* Tasks of a phase: deal out worklists and room, run, collect. */
+/* Runs a phase.
+ *
+ *   1. assign_share   finds the block of each worklist entry, and its estimated work; in parallel
+ *   2. deal_worklists deals the entries to blocks by a counting sort, and makes a task for each block with entries
+ *   3. deal_room      gives ranges of the shared arrays to the tasks; sequential, in canonical order
+ *   4. run_tasks      runs the tasks on all threads; a task ends, pauses for lack of room, or is stopped
+ *   5. repeat 3 and 4 until no task waits
+ *   6. par_collect    (collect.c) returns unused room, and merges the deferred triangles into the worklist
+ *
+ * Steps 1, 2, 3 and 6 depend only on the mesh and the worklist, and the blocks of step 4 change disjoint parts of the
+ * mesh. So the result does not depend on the number of threads. */
 #include "sched/schedule/phase.h"
 
 #include <assert.h>
@@ -12,7 +22,10 @@
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
 
-enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle is no more */
+enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle no longer exists */
+
+/* --- callbacks of the loop, called on the thread that runs the task. Each appends to a list of the task. If memory
+ * runs out, `lost` is set, and par_collect reports the error. */
 
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
@@ -45,18 +58,21 @@ static void ask_for(void *user, const tri_vertex_id edge[2])
     task->lost |= !par_ids_add_all(&task->asked, edge, 2);
 }
 
-/* The block that has its turn now and owns triangle t. */
+/* Returns the block of this phase that owns triangle t and runs in this call; TRI_NONE if there is none, or if it is
+ * another rank's, of another column, or has ended before a halt. */
 static int32_t owner_now(const struct par_phase_run *p, struct par_locator *locator, tri_triangle_id t)
 {
     int32_t block = par_locate_owner(locator, p->partition, p->phase, p->run->mesh, t);
     if (block != TRI_NONE && p->is_done[block])
         return TRI_NONE;
-    if (p->share)
+    if (p->share) /* on ranks, each rank runs its own blocks */
         return block == TRI_NONE || p->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
 }
 
+/* A task: finds the block of each worklist entry of one share, and estimates its work. Entries whose triangle no longer
+ * exists are marked GONE. */
 static void assign_share(void *context, size_t share)
 {
     const struct par_phase_run *p = context;
@@ -70,8 +86,8 @@ static void assign_share(void *context, size_t share)
     }
 }
 
-/* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
- * become, since a pause costs less than gaps do. */
+/* Estimates the number of triangles that a block makes in this phase, from the total work of its entries. The estimate
+ * is a little low on purpose, because a pause costs less than unused room. */
 static int32_t expect(int phase, double work)
 {
     static const double share[PAR_PHASES] = PAR_DONE_IN_PHASES;
@@ -79,18 +95,20 @@ static int32_t expect(int phase, double work)
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
-/* The worklist is dealt to blocks. These are counted from 1; what no block of this phase takes comes before all of
- * them, and stays in the worklist; what has gone is dropped. */
+/* Deals the worklist to blocks by a counting sort. Bin 0 is for entries that no block of this phase gets; they stay in
+ * the worklist. Bin k + 1 is for block k. Entries marked GONE are dropped. */
 struct dealing {
-    struct par_phase_run *p;
-    struct par_deal deal;
-    double *work;  /* [shares][bins], as the counts of the deal */
-    int32_t *kept; /* what stays, and its keys */
-    uint64_t *key;
+    struct par_phase_run *p; /* the phase */
+    struct par_deal deal;    /* counts and places, for shares and bins */
+    double *work;            /* [shares][bins] work of the entries, in the layout of the counts */
+    int32_t *kept;           /* [entries of bin 0] the entries that stay in the worklist */
+    uint64_t *key;           /* their keys; NULL if the worklist has no keys */
 };
 
+/* Returns a share's row of `work`, one item for each bin. */
 static double *work_at(const struct dealing *d, size_t share) { return d->work + share * (size_t)d->deal.n_tiles; }
 
+/* A task: counts the entries of one share by bin, and sums their work. */
 static void count_share(void *context, size_t share)
 {
     const struct dealing *d = context;
@@ -105,6 +123,7 @@ static void count_share(void *context, size_t share)
         }
 }
 
+/* A task: writes each entry of one share to its place, in p->worklist or in `kept`. Shares write to disjoint places. */
 static void deal_share(void *context, size_t share)
 {
     const struct dealing *d = context;
@@ -126,6 +145,8 @@ static void deal_share(void *context, size_t share)
     }
 }
 
+/* Makes a task for each block that got an entry, in the order of block numbers. Work is summed share by share, in a
+ * fixed order, so that estimates do not depend on the number of threads. False: no memory. */
 static bool make_tasks(const struct dealing *d)
 {
     struct par_phase_run *p = d->p;
@@ -146,6 +167,8 @@ static bool make_tasks(const struct dealing *d)
     return p->tasks;
 }
 
+/* Counts, deals and makes the tasks. If it succeeds, the remaining entries become the run's worklist, and `given` keeps
+ * the old one. False: no memory; the run's worklist is unchanged. */
 static bool deal_all(struct dealing *d)
 {
     struct par_run *run = d->p->run;
@@ -156,9 +179,11 @@ static bool deal_all(struct dealing *d)
     d->key = run->key.n > 0 ? malloc(((size_t)n_kept + 1) * sizeof *d->key) : NULL;
     if (!d->kept || (run->key.n > 0 && !d->key))
         return false;
+    /* The counts have become places, so each share can write its entries independently of the others. */
     tri_execute(&run->asked.executor, d->deal.shares, deal_share, d);
     if (!make_tasks(d))
         return false;
+    /* Nothing can fail any more: swap the lists. */
     d->p->given = run->worklist;
     d->p->given_key = run->key;
     run->worklist = (struct par_ids){d->kept, n_kept, n_kept};
@@ -168,6 +193,7 @@ static bool deal_all(struct dealing *d)
     return true;
 }
 
+/* Deals the worklist to the blocks of the phase. False: no memory. */
 static bool deal_worklists(struct par_phase_run *p)
 {
     struct dealing d = {.p = p};
@@ -181,6 +207,8 @@ static bool deal_worklists(struct par_phase_run *p)
     return memory;
 }
 
+/* Prepares a task: its fence, and the hooks by which the loop reports to it. Its part of the worklist has been set by
+ * make_tasks. */
 static void set_up(struct par_phase_run *p, struct par_task *task)
 {
     const struct par_run *run = p->run;
@@ -202,9 +230,10 @@ static void set_up(struct par_phase_run *p, struct par_task *task)
     };
 }
 
-/* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
- * the slowest: a little more room where areas made the expectation about right, a good deal more where it was a
- * guess, and twice that each time. What is too much serves the phases that follow. */
+/* Returns how many more triangles a paused task gets room for. A pause costs the contents of the cache, and all paused
+ * blocks wait for the slowest block. Where areas decide, the first estimate is about right, so a sixteenth of it is
+ * enough; otherwise it is a guess, and a quarter is given. The amount doubles at each pause, but is at most as much as
+ * the task has made so far. Room that stays unused serves later phases. */
 static int32_t more_for(const struct par_task *task, const struct tri_quality *quality)
 {
     double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
@@ -213,6 +242,7 @@ static int32_t more_for(const struct par_task *task, const struct tri_quality *q
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
+/* Sums the estimates of all tasks and grows the shared arrays once. */
 static void reserve_room(struct par_phase_run *p)
 {
     p->expected = 0;
@@ -221,8 +251,9 @@ static void reserve_room(struct par_phase_run *p)
     par_room_reserve(&p->run->spare, p->run->mesh, p->expected);
 }
 
-/* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
- * follow for the triangles that are left: more triangles each time would stay empty. */
+/* Returns for how many triangles a paused task must have room; the result is passed to par_room_extend. If only room
+ * for subsegments has run out, as happens along a coast line, more triangles would stay unused. In this case the number
+ * of unused triangles is returned, and the task gets only the subsegments that belong to them. */
 static int32_t refill(struct par_task *task, const struct tri_quality *quality)
 {
     const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
@@ -234,6 +265,8 @@ static int32_t refill(struct par_task *task, const struct tri_quality *quality)
     return more;
 }
 
+/* Gives a task its first room, or more room if it has paused. A task that asked for several points at once gets room
+ * for at least these. */
 static enum tri_status extend_room(struct par_phase_run *p, struct par_task *task, struct tri_error *error)
 {
     int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, &p->run->bounds);
@@ -245,7 +278,8 @@ static enum tri_status extend_room(struct par_phase_run *p, struct par_task *tas
     return par_room_extend(&task->view.room, &p->run->spare, p->run->mesh, more, error);
 }
 
-/* Room for the tasks that wait for it, in canonical order. */
+/* Gives room to all tasks that wait for it, in canonical order, and makes them ready. Tasks that wait for triangles of
+ * other ranks have enough room. Called on the calling thread while no task runs. */
 static enum tri_status deal_room(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -260,7 +294,8 @@ static enum tri_status deal_room(struct par_phase_run *p, struct tri_error *erro
     return status;
 }
 
-/* Brings, all at once, the triangles for which tasks wait; tasks that wait for room are left alone. */
+/* Fetches from other ranks, all at once, the triangles for which border blocks wait. Tasks that wait only for room are
+ * not affected. */
 static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *error)
 {
     struct par_ids asked = {0};
@@ -276,8 +311,8 @@ static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *err
     return status;
 }
 
-/* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert
- * (cavity.c). */
+/* In debug builds every block marks the triangles that it changes, and an assertion in cavity.c fails if two blocks
+ * change the same one. Extends the marks to the capacity of the arrays. False: no memory. */
 static bool watch_owners(struct par_phase_run *p)
 {
 #ifdef NDEBUG
@@ -293,6 +328,8 @@ static bool watch_owners(struct par_phase_run *p)
     return true;
 }
 
+/* Runs a task from its beginning or from its last pause until it ends, pauses, or is stopped. Called on any thread of
+ * the team. No other thread accesses the task meanwhile, and the shared arrays do not move. */
 static void run_task(struct par_phase_run *p, struct par_task *task)
 {
     double began = tri_seconds();
@@ -300,8 +337,10 @@ static void run_task(struct par_phase_run *p, struct par_task *task)
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->hooks.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->run->mesh);
+    /* The triangles that it asked for before the pause have been fetched. */
     task->asked.n = 0;
     task->status = TRI_OK;
+    /* The refiner keeps the queue of the block across pauses. */
     if (!task->refiner)
         task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &p->run->bounds, &task->hooks,
                                        &task->report, &task->error);
@@ -321,9 +360,10 @@ int64_t par_triangles(const struct par_run *run)
     return run->gone + run->mesh->n_triangles - par_ranges_unused(&run->spare.ranges[PAR_TRIANGLES]);
 }
 
-/* Each thread has one at an address of its own. */
+/* Its address identifies the thread. */
 static _Thread_local char here;
 
+/* Calls the caller's progress callback. Called on the calling thread only. */
 static void tell_place(const struct par_run *run, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = run->asked.options;
@@ -338,10 +378,13 @@ static void tell_place(const struct par_run *run, int phase, double done, int64_
 
 void par_tell(const struct par_run *run, int phase) { tell_place(run, phase, 0, par_triangles(run)); }
 
+/* Returns the least number of triangles that a task has made. A free point makes two triangles; a point on a segment
+ * makes two or, on the boundary, one. */
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
-/* The calling thread tells of what all have done, as often as it has ended a task itself. A point makes two triangles,
- * or, on the boundary, one: that is not less than what has been told before. */
+/* Called on the thread that ran the task, when the task has ended. Adds the task to the progress of all threads; if
+ * this is the calling thread, also reports the progress. The number of triangles counts only what has certainly been
+ * made, so it never decreases. */
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
@@ -352,6 +395,8 @@ static void note_end(struct par_phase_run *p, const struct par_task *task)
         tell_place(p->run, p->phase + 1, before + (1 - before) * share, all);
 }
 
+/* Runs the task at position index of the starting order, unless it is not ready, the end is requested, or the phase is
+ * halted before the task has begun. A task that has begun continues in spite of a halt. */
 static void run_next(void *context, size_t index)
 {
     struct par_phase_run *p = context;
@@ -365,14 +410,15 @@ static void run_next(void *context, size_t index)
         note_end(p, task);
 }
 
-/* Runs every task that is ready, until it has ended, is full, or somebody asks for the end; none begins once somebody
- * asks for a halt. */
+/* Runs all tasks that are ready, until each has ended, has paused, or is stopped. After a halt is requested no new task
+ * begins. */
 static void run_tasks(struct par_phase_run *p)
 {
     double began = tri_seconds();
     struct par_report *report = p->run->report;
-    double shared[PAR_SHARINGS]; /* blocks are no equal shares */
+    double shared[PAR_SHARINGS]; /* blocks are not equal shares: undo below what run_timed adds */
     memcpy(shared, report->seconds_shared, sizeof shared);
+    /* Tasks compare this with the address on their own thread. */
     p->caller = &here;
     tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
@@ -381,6 +427,7 @@ static void run_tasks(struct par_phase_run *p)
     report->phase_seconds[p->phase] += seconds;
 }
 
+/* Is any task in this state? */
 static bool is_any(const struct par_phase_run *p, enum par_progress progress)
 {
     for (int32_t i = 0; i < p->n_tasks; i++)
@@ -389,10 +436,12 @@ static bool is_any(const struct par_phase_run *p, enum par_progress progress)
     return false;
 }
 
+/* A task in the starting order. */
 struct queued {
-    int32_t expected, task;
+    int32_t expected, task; /* sorting key; index of the task */
 };
 
+/* Larger keys first; equal ones in canonical order. */
 static int by_expected(const void *left, const void *right)
 {
     const struct queued *a = left, *b = right;
@@ -401,7 +450,8 @@ static int by_expected(const void *left, const void *right)
     return (a->task > b->task) - (a->task < b->task);
 }
 
-/* The largest first, so that the last to end are small; or, for tests, at random. */
+/* Fixes the order in which tasks start: the largest estimate first, so that small tasks run at the end and all threads
+ * finish at about the same time. For tests: a random order. False: no memory. */
 static bool order_tasks(struct par_phase_run *p)
 {
     unsigned draw = p->run->asked.options->shuffle;
@@ -409,6 +459,7 @@ static bool order_tasks(struct par_phase_run *p)
     p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
     if (queue && p->order) {
         for (int32_t i = 0; i < p->n_tasks; i++) {
+            /* Draw the next random number, for tests. Otherwise the key is the estimate. */
             draw = draw * 1664525u + 1013904223u;
             queue[i] = (struct queued){p->run->asked.options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
         }
@@ -421,12 +472,12 @@ static bool order_tasks(struct par_phase_run *p)
     return done;
 }
 
-/* The worklist, dealt to tasks that can begin. */
+/* Deals the worklist and prepares the tasks. */
 static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *error)
 {
     struct par_report *report = p->run->report;
     double began = tri_seconds();
-    tri_execute(&p->run->asked.executor, TRI_MOST_SHARES, assign_share, p); /* many: each entry takes a while */
+    tri_execute(&p->run->asked.executor, TRI_MOST_SHARES, assign_share, p); /* many shares: each entry is expensive */
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
@@ -438,7 +489,8 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
     return TRI_OK;
 }
 
-/* Room for those that wait, once all others have ended: so what each gets does not depend on when others stopped. */
+/* Gives room to the tasks that wait for it, after all others have stopped. So the room that a task gets does not depend
+ * on when others stopped. */
 static enum tri_status give_room(struct par_phase_run *p, struct tri_error *error)
 {
     double dealing = tri_seconds();
@@ -449,8 +501,8 @@ static enum tri_status give_room(struct par_phase_run *p, struct tri_error *erro
     return status;
 }
 
-/* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some have not ended; after a halt these have
- * not begun. */
+/* Alternates between giving room and running tasks until no task waits. TRI_STOPPED: some tasks have not ended; after a
+ * halt these have not begun. */
 static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *error)
 {
     double reserving = tri_seconds();
@@ -458,10 +510,13 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     reserve_room(p);
     p->run->report->seconds_room += tri_seconds() - reserving;
     do {
+        /* All tasks have stopped here, so the arrays may move. */
         status = give_room(p, error);
         if (status)
             break;
         run_tasks(p);
+        /* A task that is still ready was stopped or, after a halt, has not begun. Tasks that have begun run to their
+         * end in spite of a halt, so the loop goes on while some of them wait. */
         status = is_any(p, PAR_READY) && !p->halt ? tri_fail_stopped(error) : fetch_more(p, error);
     } while (!status && is_any(p, PAR_FULL));
     free(p->mark);
@@ -469,6 +524,8 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     return !status && is_any(p, PAR_READY) ? tri_fail_stopped(error) : status;
 }
 
+/* After a halt: lists the blocks that have ended in run->place.done, and adds their share of the work to
+ * run->share_done. False: no memory. */
 static bool note_done(struct par_phase_run *p)
 {
     bool memory = true;
@@ -481,7 +538,8 @@ static bool note_done(struct par_phase_run *p)
     return memory;
 }
 
-/* The worklist as it was, without what has gone since, or was taken by blocks that are done. */
+/* After a halt: restores the worklist as it was before it was dealt, without the entries whose triangle no longer
+ * exists and those of blocks that have ended. */
 static void put_back(struct par_phase_run *p)
 {
     struct par_ids *list = &p->given;
@@ -503,7 +561,8 @@ static void put_back(struct par_phase_run *p)
     *key = (struct par_keys){0};
 }
 
-/* Runs the phase, or what is left of it; then collects what its tasks have done. */
+/* Runs the phase, or its remaining blocks after a halt, and then collects the results of its tasks. Results are
+ * collected after errors, too, so that the room of all tasks returns to the spare room. */
 static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = begin_tasks(p, error);
@@ -520,7 +579,7 @@ static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *erro
     double merging = tri_seconds();
     enum tri_status collected = par_collect(p, error);
     p->run->report->seconds_merge += tri_seconds() - merging;
-    return collected ? collected : status; /* a failure is told before a stop */
+    return collected ? collected : status; /* a failed block counts more than a stop */
 }
 
 enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, struct tri_error *error)
@@ -533,6 +592,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);
+    /* Blocks that ended before a halt do not run again. */
     p.is_done = calloc((size_t)par_blocks(p.partition), sizeof *p.is_done);
     for (int32_t i = 0; p.is_done && i < run->place.done.n; i++)
         p.is_done[run->place.done.item[i]] = true;
@@ -543,6 +603,7 @@ enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, stru
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
+    /* The list of ended blocks is needed only if the phase is continued after a halt. */
     if (status != TRI_STOPPED) {
         run->place.done.n = 0;
         run->share_done = 0;

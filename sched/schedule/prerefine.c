@@ -1,4 +1,5 @@
-/* Where areas decide, the bounds with areas scaled up; else bad triangles that are long against their cell. */
+/* Two kinds of pre-refinement. If areas decide where triangles are, the mesh is refined to the same bounds with areas
+ * scaled up. Otherwise bad triangles are refined whose edges are long compared with their cell. */
 #include "sched/schedule/prerefine.h"
 
 #include <assert.h>
@@ -10,6 +11,7 @@
 #include "triangle/geometry/shape.h"
 #include "triangle/size/estimate.h"
 
+/* Returns the sine of an angle in degrees, 0 to 180, from the portable cosine. */
 static double sine(double degrees)
 {
     double cosine = tri_cos_degrees(degrees);
@@ -37,13 +39,15 @@ double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c)
     return tri_distance2(a, b) * tri_distance2(b, c) * tri_distance2(c, a) / (4 * area2 * area2);
 }
 
-/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. */
+/* The test for triangles that a graded pre-refinement refines: those with an edge longer than a share of the cell that
+ * they lie in. */
 struct coarse_test {
-    const struct par_partition *partition;
-    double share2; /* square of it */
-    double least2; /* no edge shorter than the root of this is too long in any cell */
+    const struct par_partition *partition; /* the cells */
+    double share2; /* square of this share */
+    double least2; /* square of a length: shorter edges are not too long in any cell, which saves looking up the cell */
 };
 
+/* A tri_urgent callback: is the longest edge of the triangle too long for the cell that holds its centre? */
 static bool is_too_long(void *user, const struct tri_point *xy, const tri_vertex_id v[3])
 {
     const struct coarse_test *test = user;
@@ -56,7 +60,7 @@ static bool is_too_long(void *user, const struct tri_point *xy, const tri_vertex
     return longest2 > test->share2 * size * size;
 }
 
-/* Those of the worklist that are too long, in their order. False: no memory. */
+/* Lists the worklist entries that are too long, in their order. False: no memory. */
 static bool list_long_ones(const struct par_run *run, struct coarse_test *test, struct par_ids *found)
 {
     const struct par_ids *worklist = &run->worklist;
@@ -67,6 +71,7 @@ static bool list_long_ones(const struct par_run *run, struct coarse_test *test, 
     return found->item;
 }
 
+/* Returns the smallest width or height of all cells. */
 static double smallest_cell(const struct par_partition *p)
 {
     double least = HUGE_VAL;
@@ -110,7 +115,9 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
     struct tri_quality coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
+    /* An edge is too long if it is longer than a quarter of the cell; 1/16 is the square of this share. */
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16};
+    /* At most one point for 400 final triangles. */
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_ids long_ones;
     double began = tri_seconds();
@@ -121,6 +128,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)run->worklist.n);
     assert(long_ones.n <= run->worklist.n);
     struct tri_refine_hooks hooks = par_hooks(run);
+    /* Refine only triangles that are too long, including new ones. */
     hooks.urgent = is_too_long;
     hooks.urgent_user = &test;
     hooks.worklist = long_ones.item;
@@ -130,6 +138,7 @@ enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quali
         status = tri_refine_with(run->mesh, &coarse, &hooks, &report, error);
         par_add_points(&run->report->total, &report);
         refined = tri_seconds();
+        /* Only triangles made since the worklist was filled need to be judged. */
         status = status ? status : par_fill_worklist(run, quality, true, error);
     }
     free(long_ones.item);

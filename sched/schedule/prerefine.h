@@ -1,45 +1,46 @@
-/* Pre-refinement: a coarse mesh, from which the cells of a schedule are cut, and in which its seams are narrow; and how
- * large its triangles may be by the paper.
+/* Pre-refinement makes a coarse mesh. The cells of a schedule are cut from it, and its triangles are small against the
+ * cells, so seams are narrow. This header also has the paper's bounds on the size of these triangles.
  *
  * Source: A. N. Chernikov and N. P. Chrisochoides, "Practical and Efficient Point Insertion Scheduling Method for
  * Parallel Guaranteed Quality Delaunay Refinement", ICS 2004. Notation: r is an upper bound on the circumradii in the
- * mesh, rho one on circumradius / shortest edge, theta = arcsin(1 / (2 rho)) one (from below) on angles, A one on
- * areas. */
+ * mesh, rho an upper bound on circumradius / shortest edge, theta = arcsin(1 / (2 rho)) a lower bound on angles, A an
+ * upper bound on areas. */
 #ifndef SCHED_SCHEDULE_PREREFINE_H
 #define SCHED_SCHEDULE_PREREFINE_H
 
 #include "sched/schedule/partition.h"
 #include "sched/schedule/phase.h"
 
-/* rho for an angle bound in degrees, 0 < min_angle <= 60. */
+/* Returns rho for an angle bound in degrees, 0 < min_angle <= 60. */
 double par_rho(double min_angle);
 
-/* Lemma 7: triangles with area <= A and ratio <= rho have r <= 2 rho^(3/2) sqrt(A). */
+/* Lemma 7: triangles with area <= A and ratio <= rho have r <= 2 rho^(3/2) sqrt(A). Returns this bound. */
 double par_radius_lemma7(double max_area, double rho);
 
-/* The tight bound: the extremal triangle is (theta, theta, 180 - 2 theta), r <= sqrt(A / (2 sin^2 theta sin 2 theta));
- * 0.73 of Lemma 7 at 20 degrees, 0.76 at 30. */
+/* The tight bound: the extremal triangle has the angles theta, theta, 180 - 2 theta, so r <= sqrt(A / (2 sin^2 theta
+ * sin 2 theta)). It is 0.73 times the bound of Lemma 7 at 20 degrees, and 0.76 times at 30. */
 double par_radius_tight(double max_area, double min_angle);
 
-/* Square of the circumradius of a triangle. */
+/* Returns the square of the circumradius of a triangle. */
 double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c);
 
-/* The bounds of a uniform pre-refinement: the same with areas scaled up, as the paper has it, for the area that makes
- * PAR_COARSE_PER_CELL triangles in a cell. */
+/* Returns the bounds of a uniform pre-refinement: the given bounds with areas scaled up, as in the paper, so that a
+ * cell holds about PAR_COARSE_PER_CELL triangles. cell: final triangles in a cell. */
 struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double cell);
 
-/* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
- * level has at most a quarter of the triangles of the one above. */
+/* Is the input coarse compared with the final mesh, so that the bounds on sizes decide where its triangles are?
+ * Otherwise the features of the input decide. If true, each level has at most a quarter of the triangles of the level
+ * above. */
 bool par_areas_decide(const struct par_run *run, const struct tri_quality *quality, double estimate,
                       double cell);
 
-/* par_worklist_fill for this run, whose keys are forgotten. */
+/* Calls par_worklist_fill for this run, and clears its keys. */
 enum tri_status par_fill_worklist(struct par_run *run, const struct tri_quality *quality, bool known,
                                   struct tri_error *error);
 
-/* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
- * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
- * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
+/* Graded pre-refinement, for inputs that are already fine in places: refines only bad triangles with an edge that is
+ * long compared with their cell, and inserts at most one point for 400 triangles of the final mesh. It inserts only
+ * points that the bounds require, so it makes no triangle that plain refinement would not make. Fills the worklist. */
 enum tri_status par_prerefine_graded(struct par_run *run, const struct tri_quality *quality,
                                      const struct par_partition *partition, struct tri_error *error);
 

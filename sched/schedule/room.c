@@ -1,4 +1,4 @@
-/* Ranges of the shared arrays. */
+/* Ranges of indices in the shared arrays: how they are dealt to blocks, used, returned, and finally closed. */
 #include "sched/schedule/room.h"
 
 #include <assert.h>
@@ -7,7 +7,7 @@
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
-/* What one insertion takes at most. */
+/* The largest number of items of each kind that one insertion needs. */
 static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_TRIANGLES] = 2, [PAR_SUBS] = 1};
 
 static enum tri_status no_memory(struct tri_error *error)
@@ -28,11 +28,12 @@ int64_t par_ranges_unused(const struct par_ranges *ranges)
     return n;
 }
 
-/* How many items of a kind there are in a mesh, and how many there can be. */
+/* Pointers to a mesh's count and capacity of one kind. */
 struct counts {
-    int32_t *used, *capacity;
+    int32_t *used, *capacity; /* members of the mesh */
 };
 
+/* Returns pointers to the mesh's count and capacity of a kind. */
 static struct counts counts_of(struct tri_mesh *mesh, enum par_kind kind)
 {
     switch (kind) {
@@ -42,14 +43,14 @@ static struct counts counts_of(struct tri_mesh *mesh, enum par_kind kind)
     }
 }
 
-/* The room's current range of a kind; NULL: it has none. */
+/* Returns the room's current range of a kind; NULL: it has none. */
 static struct par_range *current_of(struct par_room *room, enum par_kind kind)
 {
     struct par_ranges *ranges = &room->ranges[kind];
     return room->current[kind] < ranges->n ? &ranges->item[room->current[kind]] : NULL;
 }
 
-/* The counts of a view become those of the room's current range. */
+/* Sets count and capacity of the view to the bounds of the room's current range; to 0 if there is none. */
 static void begin_range(struct par_view *view, enum par_kind kind)
 {
     const struct par_range *range = current_of(&view->room, kind);
@@ -59,7 +60,7 @@ static void begin_range(struct par_view *view, enum par_kind kind)
     *counts.capacity = range ? range->end : 0;
 }
 
-/* The room learns how far its current range has been used. */
+/* Writes the view's count back to the room's current range. */
 static void end_range(struct par_view *view, enum par_kind kind)
 {
     struct par_range *range = current_of(&view->room, kind);
@@ -70,24 +71,29 @@ static void end_range(struct par_view *view, enum par_kind kind)
     range->next = *counts.used;
 }
 
-/* Has the room items of each kind for so many points? Of subsegments it has one. */
+/* Does the room have vertices and triangles for this many points? At most one of the points needs a subsegment. */
 static bool has_room(const struct par_room *room, int32_t points)
 {
     return par_room_left(room, PAR_VERTICES) >= points && par_room_left(room, PAR_TRIANGLES) / 2 >= points;
 }
 
+/* The loop asks for room for one point before an insertion, or for several that must go in without a pause. If several
+ * do not fit, view->points keeps the number, so that the next extension is large enough. For one point, full ranges are
+ * passed over, kind by kind. */
 enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
     struct par_view *view = user;
     assert(mesh == &view->mesh);
     for (enum par_kind kind = PAR_VERTICES; points > 1 && kind < PAR_KINDS; kind++)
         end_range(view, kind);
+    /* Several points: is there room for all of them, in any of the block's ranges? */
     view->points = points > 1 && !has_room(&view->room, points) ? points : 0;
     if (view->points > 0)
         return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         const struct counts counts = counts_of(mesh, kind);
         assert(*counts.used <= *counts.capacity);
+        /* One point: move on to the first range that has room for it. */
         while (*counts.capacity - *counts.used < one_insertion[kind]) {
             end_range(view, kind);
             if (view->room.current[kind] + 1 >= view->room.ranges[kind].n)
@@ -112,19 +118,21 @@ void par_view_end(struct par_view *view)
         end_range(view, kind);
 }
 
-/* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
+/* Reserves space for one more range in both lists: in `to`, to receive it now, and in `spare`, to return it later. Thus
+ * returning a range never needs memory. */
 static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
 {
     return par_ranges_reserve(to, to->n + 1) && par_ranges_reserve(spare, spare->n + spare->dealt + 1);
 }
 
-/* Items of a range that insertions can take. */
+/* Returns the number of items of a range that insertions can use. */
 static int32_t usable(struct par_range range, enum par_kind kind)
 {
     const int32_t n = range.end - range.next;
     return n - n % one_insertion[kind];
 }
 
+/* Appends a range to a block's list; `spare` counts it as dealt. */
 static void deal_range(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
 {
     assert(to->n < to->capacity && range.next < range.end);
@@ -132,6 +140,7 @@ static void deal_range(struct par_ranges *to, struct par_ranges *spare, struct p
     spare->dealt++;
 }
 
+/* Grows the shared arrays of one kind by at least `more` free places. */
 static enum tri_status reserve_items(struct tri_mesh *shared, enum par_kind kind, int32_t more, struct tri_error *error)
 {
     switch (kind) {
@@ -141,11 +150,13 @@ static enum tri_status reserve_items(struct tri_mesh *shared, enum par_kind kind
     }
 }
 
-/* A range too short for an insertion, one triangle, is dealt as well, and comes back with the others: it counts for
- * nothing, and the view passes it over. To sort such out would take a second list of what is free, which marking and
- * closing gaps would have to look through, too.
+/* Extends the ranges of one kind by `need` usable items.
  *
- * Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
+ * A range too short for an insertion (a single triangle) is dealt like any other, but does not count; the view passes
+ * over it, and it returns with the others. Keeping such ranges apart would need a second list of free places, which
+ * marking and closing gaps would have to search as well.
+ *
+ * Nothing is removed from `spare` or counted before the lists have space for it, so no range is ever lost. */
 static enum tri_status extend_kind(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                    enum par_kind kind, int32_t need, struct tri_error *error)
 {
@@ -159,6 +170,7 @@ static enum tri_status extend_kind(struct par_room *room, struct par_room *spare
     }
     if (need <= 0)
         return TRI_OK;
+    /* Spare ranges do not suffice: take the rest from the end of the array, which grows. */
     need = need < PAR_LEAST_RANGE ? PAR_LEAST_RANGE : need;
     if (!reserve_deal(to, from))
         return no_memory(error);
@@ -179,7 +191,8 @@ int32_t par_room_left(const struct par_room *room, enum par_kind kind)
     return left;
 }
 
-/* Of this kind, what comes with so many triangles where this share of the points lies on segments. */
+/* Returns the number of items of a kind that an expected number of triangles needs. on_segments: share of the points
+ * that lie on segments. */
 static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segments)
 {
     switch (kind) {
@@ -189,7 +202,8 @@ static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segmen
     }
 }
 
-/* Of the points that are still to come: an eighth, or more where more have been put there. */
+/* Returns the expected share of points on segments: that of the block's points so far, but at least
+ * PAR_LEAST_ON_SEGMENTS. */
 static double on_segments(const struct par_room *room)
 {
     return room->on_segments > PAR_LEAST_ON_SEGMENTS ? room->on_segments : PAR_LEAST_ON_SEGMENTS;
@@ -208,6 +222,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles)
 {
     enum tri_status status = TRI_OK;
+    /* If memory is bounded, growing ahead of need would waste it. */
     if (shared->bound || shared->storage)
         return;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
@@ -224,6 +239,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
         struct par_ranges *from = &room->ranges[kind], *to = &spare->ranges[kind];
         for (int32_t i = 0; i < from->n; i++) {
             to->dealt--;
+            /* reserve_deal has reserved space for this range. */
             if (from->item[i].next < from->item[i].end)
                 to->item[to->n++] = from->item[i];
         }
@@ -235,6 +251,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 bool par_room_release(struct par_room *spare, enum par_kind kind, int32_t id)
 {
     struct par_ranges *ranges = &spare->ranges[kind];
+    /* Deleted items often follow each other: extend the last range. */
     if (ranges->n > 0 && ranges->item[ranges->n - 1].end == id && ranges->item[ranges->n - 1].next < id) {
         ranges->item[ranges->n - 1].end++;
         return true;
@@ -257,6 +274,7 @@ void par_room_mark_sub(struct tri_mesh *mesh, tri_sub_id s)
     mesh->sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
 }
 
+/* Marks one place of an array as free. */
 static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
 {
     switch (kind) {
@@ -271,13 +289,14 @@ static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
     }
 }
 
-/* Gaps of one kind. */
+/* Marking the gaps of one kind: the common data of its tasks. */
 struct marking {
-    const struct par_ranges *gaps;
-    struct tri_mesh *mesh;
-    enum par_kind kind;
+    const struct par_ranges *gaps; /* the gaps */
+    struct tri_mesh *mesh;         /* the shared arrays */
+    enum par_kind kind;            /* of the items */
 };
 
+/* A task: marks the places of one gap. */
 static void mark_gap(void *context, size_t gap)
 {
     const struct marking *m = context;
@@ -293,16 +312,17 @@ void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const 
     }
 }
 
-/* --- closing: what lies above the new end of an array goes into the gaps below it */
+/* --- closing gaps: items above the new end of an array move to the gaps below it */
 
+/* Orders ranges by their first index. */
 static int by_start(const void *left, const void *right)
 {
     const struct par_range *a = left, *b = right;
     return (a->next > b->next) - (a->next < b->next);
 }
 
-/* Calls move for each item that lies above the new end of an array: from the old end downwards they go to the unused
- * places from the beginning upwards. Returns the new end. */
+/* Calls move for each item above the new end of an array. Items are taken from the old end downwards, and put into the
+ * free places from the lowest upwards. Returns the new end. */
 static int32_t move_items(struct par_ranges *gaps, int32_t count, struct tri_mesh *mesh,
                           void (*move)(struct tri_mesh *mesh, int32_t from, int32_t to))
 {
@@ -310,6 +330,7 @@ static int32_t move_items(struct par_ranges *gaps, int32_t count, struct tri_mes
     struct par_range *into = gaps->item;
     if (gaps->n > 0)
         qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
+    /* From the last gap downwards: move the items between this gap and the one above it, or the end. */
     for (int32_t gap = gaps->n, end = count; end > kept; end = gaps->item[gap].next) {
         gap--;
         assert(gaps->item[gap].end <= end);
@@ -324,6 +345,7 @@ static int32_t move_items(struct par_ranges *gaps, int32_t count, struct tri_mes
     return kept;
 }
 
+/* Moves a triangle, and updates the links of its neighbours. */
 static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_triangle_id to)
 {
     struct tri_triangle *t = &mesh->tri[to];
@@ -333,6 +355,7 @@ static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_trian
         tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(to, e));
 }
 
+/* Moves a subsegment, and updates the links of the triangles on both sides. */
 static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
 {
     struct tri_subsegment *s = &mesh->sub[to];
@@ -342,7 +365,7 @@ static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
             *tri_link_at(mesh, s->side[side]) = ~to;
 }
 
-/* Where the vertex was it leaves where it is now. */
+/* Moves a vertex, and stores its new id in `on` at its old place, where rename_corners looks it up. */
 static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to)
 {
     mesh->xy[to] = mesh->xy[from];
@@ -354,7 +377,7 @@ static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id
     mesh->on[from] = to;
 }
 
-/* Corners learn where vertices have gone. */
+/* A task: replaces the ids of moved vertices in the triangles of one share. */
 static void rename_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
@@ -365,6 +388,7 @@ static void rename_corners(void *context, size_t share)
                 mesh->tri[t].v[k] = mesh->on[mesh->tri[t].v[k]];
 }
 
+/* Closes the gaps among vertices, then updates the corners of triangles and the ends of subsegments. */
 static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     mesh->n_vertices = move_items(gaps, mesh->n_vertices, mesh, move_vertex);
@@ -377,6 +401,8 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const
 
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
 {
+    /* Triangles and subsegments first: moving them updates links only. Moving vertices then updates the corners of
+     * both. */
     shared->n_triangles = move_items(&spare->ranges[PAR_TRIANGLES], shared->n_triangles, shared, move_triangle);
     shared->n_subs = move_items(&spare->ranges[PAR_SUBS], shared->n_subs, shared, move_sub);
     close_vertices(&spare->ranges[PAR_VERTICES], shared, executor);

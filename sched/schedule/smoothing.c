@@ -7,23 +7,23 @@
 #include "sched/tiles/park.h"
 #include "triangle/refine/smooth.h"
 
-/* A phase: vertices dealt to its blocks. */
+/* A smoothing phase: vertices dealt to its blocks, each of which runs as a task. */
 struct smoothing {
-    const struct par_run *run;
-    struct tri_smooth *smooth;
-    enum tri_smooth_pass pass; /* kind of it */
-    int phase;
-    tri_vertex_id *vertex; /* [n] that are still to be smoothed in this pass, in order .. */
-    tri_vertex_id *dealt;  /* [n] .. and by block */
-    int32_t n;
-    struct par_deal deal;  /* of the phase, tile by tile a block */
-    struct tri_smooth_count *count; /* [blocks] */
-    enum tri_status *status; /* [blocks] */
-    int32_t *home;         /* [n_vertices] of tri_smooth */
-    int64_t moved;         /* vertices, in this pass */
+    const struct par_run *run; /* the run */
+    struct tri_smooth *smooth; /* the smoother, shared by all blocks */
+    enum tri_smooth_pass pass; /* what this pass does to vertices */
+    int phase;                 /* 0 to 3 */
+    tri_vertex_id *vertex;     /* [n] vertices that are still to be treated in this pass, in ascending order at first */
+    tri_vertex_id *dealt;      /* [n] the same, ordered by block */
+    int32_t n;                 /* count of vertices left in this pass */
+    struct par_deal deal;      /* counts and places, with blocks of the phase as tiles */
+    struct tri_smooth_count *count; /* [blocks] how many vertices each block moved and left */
+    enum tri_status *status;   /* [blocks] result of each block */
+    int32_t *home;             /* [n_vertices] the block of each vertex in this phase */
+    int64_t moved;             /* vertices moved so far in this pass */
 };
 
-/* Sets the block of each vertex. It stays while the phase runs, although vertices move. */
+/* A task: sets the block of each vertex of one share. It stays while the phase runs, although vertices move. */
 static void find_homes(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -34,6 +34,7 @@ static void find_homes(void *context, size_t share)
         s->smooth->home[v] = par_locate(&locator, &s->run->cells, s->phase, mesh->xy[v]);
 }
 
+/* A task: counts the vertices of one share by block. */
 static void count_share(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -43,6 +44,7 @@ static void count_share(void *context, size_t share)
         count[s->smooth->home[s->vertex[i]]]++;
 }
 
+/* A task: writes the vertices of one share to their places in `dealt`. */
 static void deal_share(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -52,6 +54,8 @@ static void deal_share(void *context, size_t share)
         s->dealt[at[s->smooth->home[s->vertex[i]]]++] = s->vertex[i];
 }
 
+/* A task: treats the vertices of one block. Moves the vertices that it could not treat to the front
+ * of its part of `dealt`. */
 static void smooth_block(void *context, size_t block)
 {
     const struct smoothing *s = context;
@@ -60,7 +64,8 @@ static void smooth_block(void *context, size_t block)
                                        &s->count[block], NULL);
 }
 
-/* What blocks leave is the list of the next phase. */
+/* After a phase: gathers the vertices that the blocks left, which are the list of the next phase, and the counts.
+ * Returns the first error. */
 static enum tri_status gather(struct smoothing *s, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -75,6 +80,7 @@ static enum tri_status gather(struct smoothing *s, struct tri_error *error)
            : status ? tri_fail(error, status, NULL, 0, "out of memory for smoothing") : TRI_OK;
 }
 
+/* Deals the vertices to the blocks of the phase and runs the blocks. */
 static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error)
 {
     const struct tri_executor *executor = &s->run->asked.executor;
@@ -93,6 +99,7 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
     return status;
 }
 
+/* One pass: all movable vertices, in four phases; those that no block could treat follow in one sequential call. */
 static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pass, struct tri_error *error)
 {
     const struct tri_mesh *mesh = s->run->mesh;
@@ -102,6 +109,8 @@ static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pas
     s->moved = 0;
     s->pass = pass;
     s->smooth->home = s->home;
+    /* List the movable vertices in ascending order. The mesh has been numbered, so this order depends on the mesh
+     * alone. */
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (tri_is_movable(mesh, v))
             s->vertex[s->n++] = v;
@@ -113,6 +122,7 @@ static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pas
     return status;
 }
 
+/* All passes; ends early if a pass moves no vertex. */
 static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
@@ -122,6 +132,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
                           .home = tri_mesh_extra(mesh, list),
                           .count = malloc(blocks * sizeof *s.count), .status = malloc(blocks * sizeof *s.status),
                           .moved = 1};
+    /* The lists are as large as the mesh, so they are kept with it, in memory or in files. */
     enum tri_status status = s.vertex && s.dealt && s.home && s.count && s.status
                                  ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
@@ -140,6 +151,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     return status;
 }
 
+/* Numbers the mesh by its tiles, after making sure that there is memory for it. */
 static enum tri_status number(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
@@ -154,6 +166,8 @@ enum tri_status par_smooth(struct par_run *run, struct tri_error *error)
         return TRI_OK;
     if (!run->cells.x)
         return tri_smooth_all(run->mesh, run->asked.quality, error);
+    /* With by_block, the mesh has not been numbered yet, but the order of smoothing depends on its numbers. Afterwards
+     * it is numbered by the new positions. */
     enum tri_status status = run->asked.options->by_block ? number(run, error) : TRI_OK;
     status = status ? status : smooth_by_blocks(run, error);
     return status ? status : number(run, error);

@@ -1,8 +1,8 @@
-/* Tasks handed out to threads that sleep in between.
+/* A team of threads that run tasks and sleep in between.
  *
- * A job is open while its caller works on it. A thread that wakes up in time joins; the caller closes the job when no
- * task is left to begin, and then waits for those who have joined, not for those who are still asleep. A job that is
- * too short for a team costs the waking alone. */
+ * A job is open while its caller is busy with it. A thread that wakes up in time joins the job. When no task is left to
+ * begin, the caller closes the job and waits for the threads that have joined, but not for threads that are still
+ * asleep. So a job that is too short for several threads costs no more than the call that wakes them. */
 #include <limits.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -13,32 +13,40 @@
 #include <omp.h>
 #endif
 
+/* One call of the executor: n tasks. Lives on the caller's stack until the job is closed and all threads have left
+ * it. */
 struct job {
-    void (*task)(void *context, size_t index);
-    void *context;
-    size_t n;           /* tasks */
-    atomic_size_t next; /* the first that nobody has begun; >= n: none */
+    void (*task)(void *context, size_t index); /* called for each index */
+    void *context;      /* passed to task */
+    size_t n;           /* number of tasks */
+    atomic_size_t next; /* index of the next task that no thread has begun; >= n: none is left */
 };
 
+/* The helper threads of a team, and the monitors by which they wait. */
 struct par_crew {
-    struct tri_monitor *gate; /* guards the members from here to joined; wakes for a new job, and for the end */
-    struct job *job;          /* NULL: none is open */
-    uint64_t opened;          /* jobs so far */
-    int joined;               /* threads that have joined the last one */
-    struct tri_monitor *door; /* guards the members from here to expected; wakes when the last thread has left */
-    int left;                 /* threads that have left the last job */
-    int expected;             /* threads that have joined it; INT_MAX: not known while it is open */
-    struct tri_monitor *end;  /* wakes for the end alone */
-    bool is_over;             /* no job will follow; written under both gate and end, read under either */
-    int size;                 /* threads that were asked for, without the caller's */
-    int n_started;            /* entries of thread; with OpenMP the one that opens its region */
-    struct tri_thread *thread[];
+    struct tri_monitor *gate; /* guards the members from here to joined; signalled for a new job and for the end */
+    struct job *job;          /* the open job; NULL: none */
+    uint64_t opened;          /* number of jobs so far */
+    int joined;               /* number of threads that have joined the last job */
+    struct tri_monitor *door; /* guards the members from here to expected; signalled when the last thread has left */
+    int left;                 /* number of threads that have left the last job */
+    int expected;             /* number of threads that have joined it; INT_MAX: unknown, because the job is still
+                                 open */
+    struct tri_monitor *end;  /* signalled only for the end */
+    bool is_over;             /* no more jobs will follow; written while holding gate and end, read while holding
+                                 either */
+    int size;                 /* number of threads requested, without the calling thread */
+    int n_started;            /* number of entries of thread; with OpenMP one, the thread that opens the parallel
+                                 region */
+    struct tri_thread *thread[]; /* [n_started] the threads */
 };
 
-static _Thread_local bool works; /* in work() */
+static _Thread_local bool works; /* this thread is running tasks of some team */
 
 bool par_team_works(void) { return works; }
 
+/* Runs tasks of the job until none is left to begin. Called by the caller and by all threads that have joined. Calls
+ * may be nested, so the old value of the flag is restored. */
 static void work(struct job *job)
 {
     const bool before = works;
@@ -50,7 +58,8 @@ static void work(struct job *job)
 
 /* --- threads of the crew */
 
-/* Waits for a job that is not the last one this thread has joined; NULL: the end. */
+/* Waits for a job other than the last one that this thread has joined, and joins it. Returns NULL at the end of the
+ * team. *last: the number of that job. */
 static struct job *join(struct par_crew *crew, uint64_t *last)
 {
     tri_monitor_enter(crew->gate);
@@ -63,6 +72,7 @@ static struct job *join(struct par_crew *crew, uint64_t *last)
     return job;
 }
 
+/* Leaves the job. The thread does not access the job afterwards; the last one wakes the caller. */
 static void leave(struct par_crew *crew)
 {
     tri_monitor_enter(crew->door);
@@ -71,6 +81,7 @@ static void leave(struct par_crew *crew)
     tri_monitor_leave(crew->door);
 }
 
+/* The main function of a helper thread: joins one job after the other until the end. */
 static void *serve(void *user)
 {
     struct par_crew *crew = user;
@@ -83,8 +94,8 @@ static void *serve(void *user)
 }
 
 #ifdef _OPENMP
-/* A thread of its own opens a region, which lasts as long as the crew. OpenMP binds the region's first thread to the
- * place of the caller, which works there: it sleeps. */
+/* A separate thread opens an OpenMP region that lasts as long as the crew. OpenMP binds the region's first thread to
+ * the same processor as the calling thread, which is busy, so this first thread only sleeps until the end. */
 static void *open_region(void *user)
 {
     struct par_crew *crew = user;
@@ -101,8 +112,9 @@ static void *open_region(void *user)
 }
 #endif
 
-/* --- their caller */
+/* --- the calling thread */
 
+/* Frees the crew; its threads have ended or were never started. */
 static void free_crew(struct par_crew *crew)
 {
     tri_monitor_free(crew->gate);
@@ -111,7 +123,7 @@ static void free_crew(struct par_crew *crew)
     free(crew);
 }
 
-/* Those whom the system refuses are missing; NULL: all of them. */
+/* Starts up to `size` helper threads, fewer if the system refuses some. NULL: none could be started. */
 static struct par_crew *start_crew(int size)
 {
     struct par_crew *crew = calloc(1, sizeof *crew + (size_t)size * sizeof *crew->thread);
@@ -121,6 +133,7 @@ static struct par_crew *start_crew(int size)
     crew->gate = tri_monitor_new();
     crew->door = tri_monitor_new();
     crew->end = tri_monitor_new();
+    /* Without all three monitors, no thread is started. */
     const bool ready = crew->gate && crew->door && crew->end;
 #ifdef _OPENMP
     if (ready && (crew->thread[0] = tri_thread_start(open_region, crew)))
@@ -135,9 +148,10 @@ static struct par_crew *start_crew(int size)
     return NULL;
 }
 
+/* Offers the job to the helper threads, and wakes them. */
 static void open_job(struct par_crew *crew, struct job *job)
 {
-    crew->left = 0; /* nobody has joined who could leave */
+    crew->left = 0; /* no lock needed: no thread has joined this job yet */
     crew->expected = INT_MAX;
     tri_monitor_enter(crew->gate);
     crew->job = job;
@@ -147,10 +161,12 @@ static void open_job(struct par_crew *crew, struct job *job)
     tri_monitor_leave(crew->gate);
 }
 
+/* Closes the job to further threads, and waits until those that have joined have left it. */
 static void close_job(struct par_crew *crew)
 {
     tri_monitor_enter(crew->gate);
     crew->job = NULL;
+    /* From here on no other thread joins. */
     const int joined = crew->joined;
     tri_monitor_leave(crew->gate);
     tri_monitor_enter(crew->door);
@@ -160,10 +176,13 @@ static void close_job(struct par_crew *crew)
     tri_monitor_leave(crew->door);
 }
 
+/* The run function of the executor: opens the job, runs tasks, and closes the job. Starts the helper threads at the
+ * first call that needs them. Without helper threads, the calling thread runs all tasks. */
 static void run_on_team(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     struct par_team *team = self;
     struct job job = {task, context, n_tasks, 0};
+    /* The first job starts the threads; if the system refuses all, the next job tries again. */
     if (team->threads > 1 && !team->crew)
         team->crew = start_crew(team->threads - 1);
     if (team->crew)
@@ -184,10 +203,12 @@ void par_team_end(struct par_team *team)
     tri_monitor_enter(crew->gate);
     tri_monitor_enter(crew->end);
     crew->is_over = true;
+    /* With OpenMP, the region's first thread waits at `end`; all others wait at `gate`. */
     tri_monitor_wake(crew->end);
     tri_monitor_leave(crew->end);
     tri_monitor_wake(crew->gate);
     tri_monitor_leave(crew->gate);
+    /* Threads leave their loops when they see is_over. */
     for (int i = 0; i < crew->n_started; i++)
         tri_thread_join(crew->thread[i]);
     free_crew(crew);

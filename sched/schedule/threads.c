@@ -1,4 +1,5 @@
-/* Threads are tried by making them, and letting them wait for each other, so that all are there at once. */
+/* How many threads a call may use. To find out how many threads the system allows, they are started and made to wait
+ * for each other, so that all exist at the same time. */
 #include "sched/schedule/threads.h"
 
 #include <stdlib.h>
@@ -8,12 +9,13 @@
 #ifdef _OPENMP
 #include <omp.h>
 
+/* The number of threads if the caller did not request one; and whether to test that the system allows that many. */
 static int default_threads(void) { return omp_in_parallel() ? 1 : omp_get_max_threads(); }
 static bool must_try(int threads, bool wary) { return wary || threads > omp_get_num_procs(); }
 
 #else
 
-#ifdef __ELF__ /* not NULL where the caller's program has an OpenMP */
+#ifdef __ELF__ /* not NULL if the caller's program links an OpenMP runtime */
 __attribute__((weak)) int omp_in_parallel(void);
 __attribute__((weak)) int omp_get_max_threads(void);
 #endif
@@ -29,7 +31,8 @@ static int default_threads(void)
     return told <= 0 ? tri_processors() : told < PAR_MOST_THREADS ? (int)told : PAR_MOST_THREADS;
 }
 
-/* A team does without those that the system refuses; but who plans for their memory is wary. */
+/* A team works with fewer threads if the system refuses some, so a test is needed only by callers that plan memory for
+ * each thread. */
 static bool must_try(int threads, bool wary)
 {
     (void)threads;
@@ -37,6 +40,7 @@ static bool must_try(int threads, bool wary)
 }
 #endif
 
+/* The main function of a test thread: waits until all have been started. */
 static void *wait_for_end(void *gate)
 {
     tri_monitor_enter(gate);
@@ -44,7 +48,7 @@ static void *wait_for_end(void *gate)
     return NULL;
 }
 
-/* How many threads can there be beside this one, if no more than n are wanted? */
+/* Returns how many of n threads the system allows beside this one. */
 static int try_threads(int n)
 {
     struct tri_thread *thread[PAR_MOST_THREADS];
@@ -68,6 +72,7 @@ int par_threads(int asked, bool wary)
     threads = threads < PAR_MOST_THREADS ? threads : PAR_MOST_THREADS;
     if (threads <= 1 || !must_try(threads, wary))
         return threads;
-    const int made = try_threads(threads); /* with the one that opens OpenMP's region, and without the caller's */
-    return made == threads ? threads : made / 2 + 1; /* others, and memory, need some of what there is */
+    const int made = try_threads(threads); /* this counts the thread that opens OpenMP's region, but not the calling
+                                              thread */
+    return made == threads ? threads : made / 2 + 1; /* leave some for other threads of the process */
 }

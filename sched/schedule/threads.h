@@ -1,8 +1,8 @@
-/* The threads of a call: how many there can be, and the team that works on what a call hands out in tasks.
+/* The threads of a call: how many there can be, and the team of threads that runs its tasks.
  *
- * A team lives as long as the call that made it, and its threads sleep while there is nothing to do: nothing of it is
- * left behind for a fork, or for other threads that call as well. They are made by OpenMP
- * where the build has it, so that its settings hold (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE), else by the system. */
+ * A team exists only during the call that made it, and its threads sleep when there are no tasks. So no thread remains
+ * after the call that a fork, or another thread that makes a call, could meet. In builds with OpenMP its runtime starts
+ * the threads, so its settings apply (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE); in other builds the system does. */
 #ifndef SCHED_SCHEDULE_THREADS_H
 #define SCHED_SCHEDULE_THREADS_H
 
@@ -12,27 +12,32 @@
 
 enum { PAR_MOST_THREADS = 1024 };
 
-/* How many threads there will be if so many are asked for: at most PAR_MOST_THREADS. <= 0: one, if the caller is in a
- * parallel region of OpenMP or in a task of a team; else OMP_NUM_THREADS, if it is set; else one for each processor of
- * this process. `wary`, or with OpenMP more than there are processors: at most as many as the system gives, which is
- * found by trying, at 20 microseconds a thread. For OpenMP's library ends the program if it is refused a thread: it
- * prints a line and calls exit(1), which can still happen if memory runs out later. */
+/* Returns the number of threads to use if `asked` are requested, at most PAR_MOST_THREADS. asked <= 0: one thread if
+ * the caller is in a parallel region of OpenMP or in a task of a team; otherwise OMP_NUM_THREADS, if set; otherwise one
+ * for each processor of this process.
+ *
+ * If `wary` is set, or, with OpenMP, if more threads than processors are requested, the function starts that many
+ * threads for a moment, at about 20 microseconds each, and returns at most the number that the system allows. The
+ * reason is that the OpenMP runtime ends the program if it cannot start a thread: it prints a line and calls exit(1).
+ * That can still happen if memory runs out later. */
 int par_threads(int asked, bool wary);
 
-/* Is this thread at work on a task? */
+/* Is this thread running a task of a team? */
 bool par_team_works(void);
 
+/* A team: the calling thread and its helper threads. Belongs to the thread that set it up. */
 struct par_team {
-    int threads;           /* >= 1, the caller's one among them, as par_threads says */
-    struct par_crew *crew; /* the other ones; NULL: not needed yet, or refused: the caller works alone */
+    int threads;           /* >= 1, including the calling thread, as par_threads returns it */
+    struct par_crew *crew; /* the other threads; NULL: not needed yet, or the system refused them, and the caller works
+                              alone */
 };
 
-/* Runs tasks on the threads of the team, which are made when they are first needed; about 20 microseconds each. The
- * executor lives as long as *team, and serves one caller at a time. The one way in which anything in sched/ runs in
- * parallel. */
+/* Returns an executor that runs tasks on the threads of the team. The threads are started when they are first needed,
+ * at about 20 microseconds each. The executor lives as long as *team and serves one caller at a time. Everything in
+ * sched/ that runs in parallel runs on such an executor. */
 struct tri_executor par_executor(struct par_team *team);
 
-/* Ends the team's threads and frees all it has. */
+/* Ends the team's threads and frees their memory. The team may be used again; it then starts new threads. */
 void par_team_end(struct par_team *team);
 
 #endif

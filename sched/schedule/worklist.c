@@ -1,4 +1,5 @@
-/* Triangles are judged in shares, and gathered in the order of the shares. */
+/* Lists of ids; filling the worklist; ordering it by tile. Triangles are judged in shares, which run as tasks, and the
+ * bad ones are gathered in the order of the shares, so the result does not depend on the number of threads. */
 #include "sched/schedule/worklist.h"
 
 #include <assert.h>
@@ -28,6 +29,7 @@ bool par_ids_add_all(struct par_ids *ids, const int32_t *more, int32_t n)
     return true;
 }
 
+/* Orders ids in ascending order, for qsort. */
 static int ascending(const void *left, const void *right)
 {
     const int32_t *a = left, *b = right;
@@ -68,16 +70,20 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *tri
     return set->word;
 }
 
+/* Filling the worklist: the common data of its tasks. */
 struct finding {
-    struct tri_mesh *mesh;
-    const struct tri_quality *bounds;
-    const struct par_ids *worklist; /* as it was, or NULL */
-    tri_triangle_id *found;       /* [n_triangles] each share's own behind one another, with gaps */
-    int32_t n[TRI_MOST_SHARES];
-    double radius2[TRI_MOST_SHARES];
+    struct tri_mesh *mesh;      /* the mesh */
+    const struct tri_quality *bounds; /* which triangles are bad */
+    const struct par_ids *worklist; /* the old worklist, if it is known to be complete for old triangles; NULL: judge
+                                       all triangles */
+    tri_triangle_id *found;     /* [n_triangles] bad triangles; each share writes from the index of its first triangle
+                                   on, which leaves gaps */
+    int32_t n[TRI_MOST_SHARES]; /* number of bad triangles of each share */
+    double radius2[TRI_MOST_SHARES]; /* square of the largest circumradius of each share */
 };
 
-/* Brings together what the shares of n have found. */
+/* Closes the gaps between the bad triangles of the shares. n: number of triangles of the mesh. Returns the number of
+ * bad triangles. */
 static int32_t gather(const struct finding *f, int32_t n)
 {
     int32_t filled = 0;
@@ -90,17 +96,19 @@ static int32_t gather(const struct finding *f, int32_t n)
     return filled;
 }
 
-/* Puts those of the worklist that are as old as it between n others of the range. All are in order, and so is what
- * comes of them. */
+/* Merges the old worklist entries of the range into found, which holds n new bad triangles. An entry is dropped if its
+ * triangle has been replaced since, which its generation number shows. Both lists are ascending, and so is the result.
+ * Merging runs from the end, so that it works in place. Returns the new number. */
 static int32_t add_old(const struct finding *f, struct tri_range range, tri_triangle_id *found, int32_t n)
 {
     const struct tri_triangle *tri = f->mesh->tri;
     int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
     for (int32_t i = begin; i < end; i++)
         all += tri[f->worklist->item[i]].life == 0;
+    /* Merge from the end, so that no entry is overwritten before it has been moved. */
     for (int32_t i = end - 1, at = all; i >= begin; i--) {
         tri_triangle_id old = f->worklist->item[i];
-        assert(i == begin || f->worklist->item[i - 1] < old); /* in order, and each once */
+        assert(i == begin || f->worklist->item[i - 1] < old); /* ascending, without duplicates */
         if (tri[old].life != 0)
             continue;
         while (n > 0 && found[n - 1] > old)
@@ -110,8 +118,8 @@ static int32_t add_old(const struct finding *f, struct tri_range range, tri_tria
     return all;
 }
 
-/* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
- * triangle when it was filled: who has a higher number was born since. */
+/* Finds the bad triangles of a range if the old worklist is known. The previous call set the generation number of every
+ * triangle to 0, so only triangles with another number are new and must be judged. */
 static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
     int32_t n = 0;
@@ -122,6 +130,7 @@ static int32_t find_newborn(const struct finding *f, struct tri_range range, tri
     return add_old(f, range, found, n);
 }
 
+/* Returns the square of the largest circumradius of n triangles. */
 static double largest_radius2(const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n)
 {
     double largest = 0;
@@ -133,6 +142,7 @@ static double largest_radius2(const struct tri_mesh *mesh, const tri_triangle_id
     return largest;
 }
 
+/* A task: finds the bad triangles of one share of the mesh, and resets its generation numbers. */
 static void fill_share(void *context, size_t share)
 {
     struct finding *f = context;
@@ -154,6 +164,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
     double largest2 = 0;
     if (!f.found)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    /* Each share writes to its own part of f.found; then the gaps between the parts are closed. */
     tri_execute(executor, tri_shares(n), fill_share, &f);
     for (size_t share = 0; share < tri_shares(n); share++)
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
@@ -164,7 +175,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
     return TRI_OK;
 }
 
-/* --- in the order of tiles: a counting sort by tile; then tiles are tasks */
+/* --- ordering by tile: first a counting sort by tile, then each tile is sorted as a task */
 
 uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
 {
@@ -173,28 +184,31 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
     return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
 }
 
+/* Ordering the worklist by tile: the common data of its tasks. */
 struct ordering {
-    const struct tri_mesh *mesh;
-    const struct par_partition *tiles;
+    const struct tri_mesh *mesh; /* the mesh */
+    const struct par_partition *tiles; /* the cells, whose blocks of phase 0 are the tiles */
     const struct par_ids *worklist;
-    int32_t first, end; /* tiles */
-    struct par_deal deal;
+    int32_t first, end;          /* tiles (blocks of phase 0) whose triangles stay in the list */
+    struct par_deal deal;        /* counts and places, for shares and tiles */
     union {
-        int32_t *tile_of;     /* [worklist.n] TRI_NONE: it leaves */
-        int32_t *item;        /* once all are dealt: places in their tiles, in order, then the triangles there */
+        int32_t *tile_of;        /* [worklist.n] tile - first of each entry; TRI_NONE: it leaves the list */
+        int32_t *item;           /* after the deal: sorted indices inside each tile, then the triangles at them */
     };
-    int32_t *dealt;           /* [worklist.n] triangles, tile by tile */
-    struct tri_point *centre; /* [worklist.n] of these */
-    uint64_t *key;            /* [worklist.n] */
-    uint64_t *room;           /* [2 * worklist.n] */
+    int32_t *dealt;              /* [worklist.n] triangles, tile by tile, unsorted */
+    struct tri_point *centre;    /* [worklist.n] centres of these triangles */
+    uint64_t *key;               /* [worklist.n] the keys of the result */
+    uint64_t *room;              /* [2 * worklist.n] scratch memory for sorting */
 };
 
+/* Returns the home vertex of a triangle, which decides on its tile (see par_order_by_tile). */
 static tri_vertex_id home_of(const struct tri_mesh *mesh, tri_triangle_id t)
 {
     int obtuse = tri_obtuse_corner(mesh, t);
     return mesh->tri[t].v[obtuse < 0 ? 0 : tri_next[obtuse]];
 }
 
+/* A task: finds the tile of each entry of one share, and counts the entries by tile. */
 static void find_tiles(void *context, size_t share)
 {
     const struct ordering *o = context;
@@ -211,6 +225,7 @@ static void find_tiles(void *context, size_t share)
     }
 }
 
+/* Returns the centroid. Corners are added in the triangle's order, so rounding is the same on each rank. */
 static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t)
 {
     const struct tri_point *xy = mesh->xy;
@@ -218,6 +233,7 @@ static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t
     return (struct tri_point){(xy[v[0]].x + xy[v[1]].x + xy[v[2]].x) / 3, (xy[v[0]].y + xy[v[1]].y + xy[v[2]].y) / 3};
 }
 
+/* A task: writes the triangles of one share to their tiles, with their centres. */
 static void deal_share(void *context, size_t share)
 {
     const struct ordering *o = context;
@@ -232,6 +248,7 @@ static void deal_share(void *context, size_t share)
     }
 }
 
+/* Compares two triangles by the coordinates of their first and second corners, independently of ids. */
 static bool is_before(const struct tri_mesh *mesh, tri_triangle_id a, tri_triangle_id b)
 {
     const tri_vertex_id *v = mesh->tri[a].v, *w = mesh->tri[b].v;
@@ -239,7 +256,8 @@ static bool is_before(const struct tri_mesh *mesh, tri_triangle_id a, tri_triang
     return order != 0 ? order < 0 : tri_compare_places(mesh->xy[v[1]], mesh->xy[w[1]]) < 0;
 }
 
-/* Those of equal centres, which are neighbours, and seldom more than two, by insertion. */
+/* Orders triangles with equal centres, which are neighbours in the list, by their corners. There are seldom more than
+ * two, so insertion sort is used. */
 static void order_equals(const struct tri_mesh *mesh, const struct tri_point *centre, const int32_t *triangle,
                          int32_t *place, int32_t n)
 {
@@ -253,6 +271,7 @@ static void order_equals(const struct tri_mesh *mesh, const struct tri_point *ce
     }
 }
 
+/* Called for each tile, on any thread: sorts its triangles along a Hilbert curve, and gives them their keys. */
 static void sort_tile(const void *context, size_t index, uint64_t *room)
 {
     const struct ordering *o = context;
@@ -262,6 +281,7 @@ static void sort_tile(const void *context, size_t index, uint64_t *room)
     const uint64_t key = par_key_of(o->tiles, PAR_NO_ROUND, 0, o->first + (int32_t)index);
     for (int32_t i = 0; i < n; i++)
         item[i] = i;
+    /* Sort indices into the tile along the curve, then replace them by triangles. */
     tri_hilbert_order_coarse(o->centre + begin, item, n, room);
     order_equals(o->mesh, o->centre + begin, dealt, item, n);
     for (int32_t i = 0; i < n; i++) {
@@ -270,6 +290,7 @@ static void sort_tile(const void *context, size_t index, uint64_t *room)
     }
 }
 
+/* Allocates all lists. False: no memory; the caller frees those that were allocated. */
 static bool make_lists(struct ordering *o)
 {
     const size_t n = (size_t)o->worklist->n + 1;
@@ -282,12 +303,13 @@ static bool make_lists(struct ordering *o)
     return deals && o->tile_of && o->dealt && o->centre && o->key && o->room;
 }
 
-/* Returns how many are in order now; TRI_NONE: no memory. */
+/* Orders the entries. Returns how many stay in the list; TRI_NONE: no memory. */
 static int32_t order(struct ordering *o, const struct tri_executor *executor)
 {
     if (!make_lists(o))
         return TRI_NONE;
     tri_execute(executor, o->deal.shares, find_tiles, o);
+    /* Counts become places; n: entries that stay. */
     int32_t n = par_deal_add_up(&o->deal);
     tri_execute(executor, o->deal.shares, deal_share, o);
     par_deal_work(&o->deal, executor, o->room, sort_tile, o);
@@ -305,6 +327,7 @@ bool par_order_by_tile(struct par_ids *worklist, struct par_keys *key, const str
     free(o.centre);
     free(o.room);
     par_deal_free(&o.deal);
+    /* Out of memory: the worklist stays as it was. */
     if (n == TRI_NONE) {
         free(o.item);
         free(o.key);

@@ -258,7 +258,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
                 timeout 100 "$bin/ptriangle" -Qpq30a0.01 letter --output two $kept >.out 2>.err
             fi
             found=$?
-            grep -q 'another process works' .err || break
+            grep -q 'in use by another process' .err || break
             sleep 0.1
             tries=$((tries + 1))
         done
@@ -331,7 +331,7 @@ done
 leave_state 2 -Qpq30a0.001 letter
 if [ -e kept ]; then
     program 1 -Qpq30a0.001e letter --output two --resume kept
-    complains '^kept: is the checkpoint of several tasks, and this mesh is to be made as a whole$'
+    complains '^kept: is the checkpoint of several tasks, but this run keeps the mesh as a whole$'
 fi
 rm -rf kept three.*
 
