@@ -1,14 +1,16 @@
-/* One pass of smoothing: a vertex goes to where the sum of 1 / q over its triangles is least, and edges are flipped
- * until they are Delaunay. q = 4 sqrt(3) area / (sum of the squared edges) is 1 for an equilateral triangle.
+/* One smoothing pass moves each vertex to the point that minimises the sum of 1 / q over its triangles, and flips
+ * edges until they are Delaunay. The quality q = 4 sqrt(3) area / (sum of the squared edges) is 1 for an equilateral
+ * triangle.
  *
- * PLACE. Let e be the edge opposite the vertex x in one of its triangles, l its length, t the height of x over it, and
- * x* the apex of the equilateral triangle over e. Then 1 / q = 1 + |x - x*|^2 / (sqrt(3) l t). Where t is held fixed,
- * the sum is least at the mean of all x* with the weights 1 / (l t); what t adds to the gradient moves each x* along
- * the normal of e. Two such steps are made. No field of sizes is asked: rims that are graded keep their grading.
+ * POSITION. Let e be the edge opposite the vertex x in one of its triangles, l its length, t the height of x over
+ * it, and x* the apex of the equilateral triangle over e. Then 1 / q = 1 + |x - x*|^2 / (sqrt(3) l t). For constant
+ * t the sum is smallest at the mean of all x* with weights 1 / (l t). The gradient with respect to t shifts each x*
+ * along the normal of e. Two such steps are made. No size field is needed: graded rims keep their grading.
  *
- * INVARIANT. Input vertices and those on segments stay. A move is made only if all triangles keep their orientation
- * (exactly), none of them breaks the bound on angles, the sum gets less, and the worst q not lower, or stays good.
- * Flips to Delaunay make the least angle of two triangles larger (Lawson 1977). So bounds on angles are kept. */
+ * INVARIANT. Input vertices and vertices on segments do not move. A move is made only if all triangles keep their
+ * orientation (tested exactly), none violates the angle bound, the sum decreases, and the smallest q does not
+ * decrease or stays good. Delaunay flips increase the smallest angle of two triangles (Lawson 1977), so angle bounds
+ * stay satisfied. */
 #include "triangle/refine/smooth.h"
 
 #include <assert.h>
@@ -21,23 +23,23 @@
 
 struct tri_smooth {
     struct tri_mesh *mesh;
-    double sin2;             /* square of the sine of the bound on angles */
+    double sin2;             /* squared sine of the angle bound */
     tri_triangle_id *corner; /* [n_vertices] a triangle that has the vertex as a corner; TRI_NONE: none */
 };
 
-enum { MOST_RIM = 32 }; /* a vertex with more triangles stays */
+enum { MOST_RIM = 32 }; /* a vertex with more triangles does not move */
 
-/* The triangles around a vertex: triangle i has the rim vertices i and i + 1. */
+/* The triangles around a vertex. Triangle i has the rim vertices i and i + 1. */
 struct star {
     int n;
     tri_triangle_id triangle[MOST_RIM];
-    struct tri_point rim[MOST_RIM + 1]; /* [n + 1] the last is the first */
+    struct tri_point rim[MOST_RIM + 1]; /* [n + 1] the last repeats the first */
 };
 
-/* What counts of a star whose vertex lies at some place. */
+/* The quality of a star, for a given position of its vertex. */
 struct worth {
-    double sum;   /* of 1 / q */
-    double least; /* q */
+    double sum;   /* sum of 1 / q over the triangles */
+    double least; /* smallest q */
     int n_bad;    /* triangles with an angle below the bound */
 };
 
@@ -75,8 +77,8 @@ void tri_smooth_free(struct tri_smooth *smooth)
     free(smooth);
 }
 
-/* The star of a vertex. False: it has to stay, since it meets a subsegment, another region, or too many triangles; or
- * *is_here is false, since not all of its triangles lie in the fence. */
+/* Collects the star of a vertex. Returns false if the vertex must not move: it touches a subsegment, another region,
+ * or too many triangles. Also returns false, with *is_here false, if not all of its triangles lie in the fence. */
 static bool take_star(const struct tri_smooth *r, tri_vertex_id v, const struct tri_fence *fence, struct star *s,
                       bool *is_here)
 {
@@ -119,7 +121,7 @@ static struct worth worth_at(const struct tri_smooth *r, const struct star *s, s
     return w;
 }
 
-/* The weighted mean of the ideal apexes over the rim, for a vertex that is at x. */
+/* Returns the weighted mean of the ideal apexes over the rim edges, for a vertex at x. */
 static struct tri_point better_place(const struct star *s, struct tri_point x)
 {
     const double HALF_ROOT_3 = 0.8660254037844386;
@@ -129,7 +131,7 @@ static struct tri_point better_place(const struct star *s, struct tri_point x)
         const double weight = 1 / (e.x * (x.y - a.y) - e.y * (x.x - a.x)); /* 1 / (l t) */
         struct tri_point apex = {a.x + 0.5 * e.x - HALF_ROOT_3 * e.y, a.y + 0.5 * e.y + HALF_ROOT_3 * e.x};
         const double dx = x.x - apex.x, dy = x.y - apex.y, shift = 0.5 * weight * (dx * dx + dy * dy);
-        sum_x += weight * (apex.x + shift * e.y); /* what t adds: along the normal, away from the edge .. */
+        sum_x += weight * (apex.x + shift * e.y); /* gradient with respect to t: along the normal, away from the edge */
         sum_y += weight * (apex.y - shift * e.x);
         sum += weight;
     }
@@ -142,7 +144,7 @@ static bool is_better(const struct worth *now, const struct worth *then)
            (then->least >= now->least || then->least > TRI_SMOOTH_GOOD);
 }
 
-/* Sets *x to a better place; false: there is none. */
+/* Sets *x to a better position. Returns false if there is none. */
 static bool find_place(const struct tri_smooth *r, const struct star *s, struct tri_point *x)
 {
     struct worth now = worth_at(r, s, *x);
@@ -172,7 +174,7 @@ static bool keeps_orientation(const struct star *s, struct tri_point x)
     return true;
 }
 
-/* Counts what becomes of it. False: no memory. */
+/* Smooths one vertex and counts the outcome. Returns false if memory ran out. */
 static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here,
                        struct tri_smooth_count *count)
 {
