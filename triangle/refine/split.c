@@ -138,11 +138,11 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
  * e is split
  *   - level with v, if 0.9 h <= d and h < l / TRI_NARROW;
  *   - at distance d + h^2 / d from a, if 0.9 h > d and this is less than the distance of the usual point
- *   (tri_split_fraction);
- *   - at the usual point in all other cases. A split that rounding would undo is not made. Let g be the rounding
- *   error of a point along e. Then e is not split if no candidate is level and g * l > TRI_NARROW * h^2. It is also
- *   not split if v lies across a gap that is not filled (gap.h), and if the gap is longer than (TRI_NARROW * h)^2 /
- *   g.
+ *     (tri_split_fraction);
+ *   - at the usual point in all other cases.
+ * A split that rounding would undo is not made. Let g be the rounding error of a point along e. Then e is not split
+ * if no candidate is level and g * l > TRI_NARROW * h^2. It is also not split if v lies across a gap that is not
+ * filled (gap.h), and if the gap is longer than (TRI_NARROW * h)^2 / g.
  *
  * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Level vertices separate two parents
  * permanently: two parallel parents need about as many points as they have vertices, and no part is shorter than
