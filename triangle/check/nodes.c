@@ -1,10 +1,11 @@
-/* Nodes amid edges, of triangles with six nodes.
+/* Midside nodes of triangles with six nodes.
  *
- * Each lies where half the way along its edge is rounded to, from one end or from the other; it carries the marker of
- * its subsegment, on other edges 0, and attributes half the way between those of the ends. Two triangles beside an edge
- * have one node there: nodes of different edges lie at different places, so that is so if there are as many as edges.
+ * Each lies at the rounded midpoint of its edge, computed from one end or the other. It has the marker of its
+ * subsegment (0 on other edges) and the mean of the ends' attributes. Two adjacent triangles must share the node of
+ * their edge. Nodes of different edges lie at different positions, so it suffices to compare the number of nodes
+ * with the number of edges.
  *
- * Triangles are read again, some in a row, and what is known of the points that they name. */
+ * Triangles are read again in slices, with the data of the points that they refer to. */
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
@@ -16,13 +17,13 @@ struct subsegment {
     int32_t marker;
 };
 
-/* Some triangles, and what is known of the points that they name. */
+/* A slice of triangles, with the data of the points that they refer to. */
 struct slice {
     int64_t first, n_triangles;
     int64_t *corners, *middles; /* [n_triangles][3] */
-    int64_t n_named, *named;    /* [n_named] ascending */
-    double *places;             /* [n_named][2] */
-    int32_t *markers;           /* [n_named], if they count */
+    int64_t n_named, *named;    /* [n_named] points in the slice, ascending */
+    double *places;             /* [n_named][2] positions */
+    int32_t *markers;           /* [n_named] markers, if they are checked */
     double *attributes;         /* [n_named][n_attributes] */
 };
 
@@ -30,9 +31,9 @@ struct trial {
     struct checker *c;
     int64_t n_nodes;
     int32_t n_attributes;
-    bool markers;                   /* do they count? */
-    uint8_t *is_named;              /* [n_nodes - n_points] is it a node amid an edge of some triangle? */
-    struct subsegment *subsegments; /* [n_subsegments] by ends */
+    bool markers;                   /* true: markers are checked */
+    uint8_t *is_named;              /* [n_nodes - n_points] 1: the node belongs to an edge of some triangle */
+    struct subsegment *subsegments; /* [n_subsegments] sorted by ends */
     int64_t n_subsegments;
     struct slice slice;
 };
@@ -103,16 +104,16 @@ static enum tri_status read_slice(struct trial *t)
     return status;
 }
 
-/* Its place in the arrays of the slice. */
+/* Returns the index of v in the arrays of the slice. */
 static size_t find(const struct slice *s, int64_t v)
 {
     const int64_t *at = bsearch(&v, s->named, (size_t)s->n_named, sizeof v, tri_check_compare_numbers);
     return (size_t)(at - s->named);
 }
 
-/* --- judging */
+/* --- checks */
 
-/* Half the way between two numbers, as it is rounded from one of them. */
+/* Is m the midpoint of a and b, rounded from either end? */
 static bool is_half_way(double m, double a, double b)
 {
     return m == tri_round_coordinate(a + 0.5 * (b - a)) || m == tri_round_coordinate(b + 0.5 * (a - b));
@@ -178,7 +179,7 @@ static void count_nodes(struct trial *t)
                         (long long)c->report->n_edges);
 }
 
-/* --- all together */
+/* --- the whole mesh */
 
 static bool get_room(struct trial *t)
 {
