@@ -130,7 +130,7 @@ static void judge_attributes(struct trial *t, int64_t m, const int64_t ends[2])
     for (size_t k = 0; k < n; k++)
         if (!is_between(at[0][k], at[1][k], at[2][k]))
             tri_check_fault(t->c, TRI_CHECK_VERTEX_ATTRIBUTES,
-                            "attribute %zu of node %ld is not half the way between those of the ends of edge %ld-%ld",
+                            "attribute %zu of node %ld is not the mean of those at the ends of edge %ld-%ld",
                             k, check_number(t->c, m), check_number(t->c, ends[0]), check_number(t->c, ends[1]));
 }
 
@@ -140,18 +140,18 @@ static void judge_node(struct trial *t, int64_t triangle, int64_t m, const int64
     const struct slice *s = &t->slice;
     const long a = check_number(c, ends[0]), b = check_number(c, ends[1]);
     if (!is_node(t, m)) {
-        tri_check_fault(c, TRI_CHECK_NODES, "triangle %ld has no node amid edge %ld-%ld", check_number(c, triangle), a,
-                        b);
+        tri_check_fault(c, TRI_CHECK_NODES, "triangle %ld has no midside node on edge %ld-%ld",
+                        check_number(c, triangle), a, b);
         return;
     }
     const double *p = s->places + 2 * find(s, m), *u = s->places + 2 * find(s, ends[0]),
                  *v = s->places + 2 * find(s, ends[1]);
     t->is_named[m - c->n_points] = 1;
     if (!is_half_way(p[0], u[0], v[0]) || !is_half_way(p[1], u[1], v[1]))
-        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of triangle %ld does not lie amid edge %ld-%ld",
+        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of triangle %ld is not at the midpoint of edge %ld-%ld",
                         check_number(c, m), check_number(c, triangle), a, b);
     if (t->markers && s->markers[find(s, m)] != marker_of(t, ends[0], ends[1]))
-        tri_check_fault(c, TRI_CHECK_NODES, "node %ld amid edge %ld-%ld has marker %ld instead of %ld",
+        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of edge %ld-%ld has marker %ld instead of %ld",
                         check_number(c, m), a, b, (long)s->markers[find(s, m)], (long)marker_of(t, ends[0], ends[1]));
     if (t->n_attributes > 0)
         judge_attributes(t, m, ends);
@@ -175,7 +175,7 @@ static void count_nodes(struct trial *t)
     for (int64_t i = 0; i < t->n_nodes - c->n_points; i++)
         n += t->is_named[i];
     if (check_good(c, TRI_CHECK_EDGES) && check_good(c, TRI_CHECK_NODES) && n != c->report->n_edges)
-        tri_check_fault(c, TRI_CHECK_NODES, "there are %lld nodes amid %lld edges", (long long)n,
+        tri_check_fault(c, TRI_CHECK_NODES, "there are %lld midside nodes and %lld edges", (long long)n,
                         (long long)c->report->n_edges);
 }
 

@@ -74,7 +74,8 @@ static const char *folder_of(const struct checker *c)
 
 static enum tri_status fail(struct checker *c)
 {
-    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot keep half-edges there: %s", strerror(errno));
+    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot write half-edges to a file there: %s",
+                    strerror(errno));
 }
 
 static bool open_file(const struct checker *c, struct file *file)
@@ -128,7 +129,7 @@ static enum tri_status fetch(struct checker *c, struct file *file)
     }
     here->n = file->n;
     if (!tri_read_again(file->kept, here->at, (size_t)here->n * sizeof *here->at, 0))
-        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was kept there");
+        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read half-edges from a file there");
     (void)tri_file_close(file->kept);
     *file = (struct file){TRI_NO_FILE, 0};
     return TRI_OK;
