@@ -1,11 +1,11 @@
-/* The stages behind triangulate(), and what is told about them. */
+/* Runs the stages of triangulate() and reports messages. */
 #include "triangle/dropin/call.h"
 
 #include <stdio.h>
 
 #include "triangle/dropin/io.h"
 
-/* The client's test for u, if it has one: found by the linker. */
+/* The client's size test for switch u; NULL if the linker finds none. */
 extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
 
 struct io_run {
@@ -43,7 +43,7 @@ static enum tri_status add_size_test(struct io_run *run)
     if (!run->options->unsuitable && !triunsuitable)
         return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0, "switch u: there is no function triunsuitable to ask");
     quality->unsuitable = run->options->unsuitable ? ask_options : ask_client;
-    quality->unsuitable_user = (void *)run->options; /* which only reads it */
+    quality->unsuitable_user = (void *)run->options; /* it is only read */
     return TRI_OK;
 }
 
@@ -57,7 +57,7 @@ static bool is_stopped(void *user)
 
 /* --- messages */
 
-/* Errors, and remarks on input that was hardly meant so. Q keeps these remarks off standard error alone. */
+/* Reports errors, and remarks on probable mistakes in the input. With Q, remarks are not printed on standard error. */
 static void tell_client(const struct io_run *run, bool is_error, const char *text)
 {
     if (run->options->message)
@@ -144,7 +144,7 @@ static enum tri_status run_all(struct io_run *run, const struct triangulateio *i
     return status;
 }
 
-/* What a client that did not ask for errors would go by. */
+/* Sets all counts to 0, for clients that do not check the status. */
 static void zero_counts(struct triangulateio *io)
 {
     io->numberofpoints = io->numberofpointattributes = io->numberofedges = 0;
@@ -166,10 +166,10 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     s.voronoi = s.voronoi && vorout;
     struct io_run run = {.switches = &s, .options = options, .aloud = aloud, .how = tri_switches_options(&s),
                          .error = &error};
-    const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
+    const struct tri_stop stop = {is_stopped, (void *)options}; /* it is only read */
     run.how.executor = executor;
     run.how.refine_call = refine;
-    run.how.refine_user = (void *)options; /* which only reads it */
+    run.how.refine_user = (void *)options; /* it is only read */
     run.how.stop = options->stop ? &stop : NULL;
     if (switches && in && out)
         status = run_all(&run, in, out, vorout);
