@@ -33,7 +33,7 @@ static enum tri_status check_shape(const struct rows *a, const char *what, int64
     if (a->n < 0 || !a->at)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows without an array", what, (long long)a->n);
     if (a->width < 1 || a->stride < a->width || (width != ANY && a->width != width))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld have no meaning", what,
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld are invalid", what,
                         (long long)a->width, (long long)a->stride);
     if (n != ANY && a->n != n)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows instead of %lld", what, (long long)a->n,

@@ -251,8 +251,9 @@ struct refiner {
 
 static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)
 {
-    snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g), which is no length: any"
-             " will do there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0], sizes->odd_at[1]);
+    snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g): it must be above 0,"
+             " and is ignored there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0],
+             sizes->odd_at[1]);
 }
 
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,

@@ -68,7 +68,7 @@ static enum tri_status read_own(const char *path, struct tri_pslg *pslg, struct 
     struct tri_names names;
     if (path[length] == 0)
         return tri_fail(error, TRI_CANNOT_READ, path, 0,
-                        "not a file that is known: .poly, .node, .ele, " TRI_FORMAT_SUFFIXES);
+                        "the file type is unknown; known types are .poly, .node, .ele, " TRI_FORMAT_SUFFIXES);
     enum tri_status status = tri_names_make(&names, path, length, error);
     status = status ? status : read_by_ending(path + length, &names, pslg, elements, error);
     tri_names_free(&names);

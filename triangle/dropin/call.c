@@ -41,7 +41,8 @@ static enum tri_status add_size_test(struct io_run *run)
     if (!run->switches->user_test)
         return TRI_OK;
     if (!run->options->unsuitable && !triunsuitable)
-        return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0, "switch u: there is no function triunsuitable to ask");
+        return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0,
+                        "switch u: there is no size test, neither in the options nor as triunsuitable");
     quality->unsuitable = run->options->unsuitable ? ask_options : ask_client;
     quality->unsuitable_user = (void *)run->options; /* it is only read */
     return TRI_OK;
@@ -100,13 +101,14 @@ static void warn_of_switch(void *user, const char *text, bool misread)
 static void warn_of_input(const struct io_run *run)
 {
     const struct tri_report *report = &run->report;
-    warn_number(run, report->loose, "segment is no edge of the mesh: it is passed on, but the mesh does not keep it",
-                "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
-    warn_number(run, report->duplicates, "point lies where a point of lower number lies, and is not used",
-                "points lie where a point of lower number lies, and are not used");
+    warn_number(run, report->loose,
+                "segment is not an edge of the mesh: it is copied to the output, but the mesh may not contain it",
+                "segments are not edges of the mesh: they are copied to the output, but the mesh may not contain them");
+    warn_number(run, report->duplicates, "point coincides with a point of lower number and is not used",
+                "points coincide with points of lower number and are not used");
     tell_notes(run);
-    warn_number(run, report->carve.between, "hole point lies on a segment, and empties nothing",
-                "hole points lie on segments, and empty nothing");
+    warn_number(run, report->carve.between, "hole point lies on a segment and has no effect",
+                "hole points lie on segments and have no effect");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn_client(run, "the limit of S was reached before the mesh was conforming");
 }
@@ -182,6 +184,6 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (status)
         tell_client(&run, true, error.text);
     else if (no_diagram)
-        tell_client(&run, false, "switch v: there is no struct for the Voronoi diagram");
+        tell_client(&run, false, "switch v: vorout is NULL, so there is no Voronoi diagram");
     return (int)status;
 }

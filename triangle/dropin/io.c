@@ -22,7 +22,7 @@ struct taking {
 static void check(struct taking *t, const char *what, int n, const void *array)
 {
     if (!t->status && n < 0)
-        t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "%d for the number of %s", n, what);
+        t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "the number of %s is %d", what, n);
     if (!t->status && n > 0 && !array)
         t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "%d %s without an array", n, what);
 }

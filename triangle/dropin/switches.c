@@ -192,7 +192,7 @@ void tri_switches_warn(const struct tri_switches *s, void (*warn)(void *user, co
         warn(user, text, true);
     }
     if (s->jettison && s->no_node)
-        warn(user, "-j and -N: vertices are renumbered, and nothing tells how", false);
+        warn(user, "-j and -N: vertices are renumbered, but their new numbers are not written", false);
     if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
         warn(user, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r: the switch is ignored",
              false);

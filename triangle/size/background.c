@@ -158,7 +158,7 @@ enum tri_status tri_background_make(struct tri_background *background, const str
     if (!status)
         status = tri_spread_lengths(&cells, b->length, frame->gradation, &has_data, stop, error);
     if (!status && !has_data)
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value of a triangle is a length");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no vertex of a triangle has a length above 0");
     if (!status) {
         settle_triangles(b);
         status = tri_candidates_make(&b->candidates, &contest, b->n_triangles, frame, error);

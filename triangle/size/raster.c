@@ -150,7 +150,7 @@ enum tri_status tri_raster_make(struct tri_raster *raster, const struct tri_size
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     const int64_t gaps = take(&r, f, frame);
     const enum tri_status status = gaps < n ? limit(&r, gaps, frame, error)
-                                            : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value is a length");
+                                            : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value is above 0");
     if (status)
         tri_raster_clear(&r);
     *raster = r;

@@ -264,7 +264,7 @@ static enum tri_status keep(struct sampling *s, struct tri_error *error)
         status = tri_spread_lengths(&cells, s->length, s->frame->gradation, &has_data, s->frame->mesh->stop, error);
     free(at);
     if (!status && !has_data)
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "nothing that it returned is a length");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it returned no length above 0");
     double longest = 0;
     for (int32_t v = 0; v < s->n; v++)
         longest = tri_larger(longest, s->length[v]);
