@@ -10,10 +10,10 @@ enum { TRI_API_MOST_COPIES = 12 };
 /* A figure with 32-bit counts. Arrays without gaps are borrowed from the caller and only read; the others are
  * copies. */
 struct tri_api_figure {
-    struct tri_pslg pslg;
+    struct tri_pslg pslg;         /* points, segments, holes and regions */
     struct tri_elements elements; /* n is 0 if the figure is no mesh */
-    void *copies[TRI_API_MOST_COPIES];
-    int n_copies;
+    void *copies[TRI_API_MOST_COPIES]; /* [n_copies] arrays that are copies */
+    int n_copies;                      /* number of copies */
 };
 
 /* Checks the shapes of all arrays and converts the figure. Returns TRI_OK, TRI_BAD_INPUT, TRI_TOO_LARGE or

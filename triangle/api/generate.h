@@ -41,9 +41,9 @@ struct tri_options {
     bool even_odd;      /* true: the even-odd rule decides which areas are inside, see tri_carve */
     bool spread_regions; /* true (-A, or -a without a number): assign regions to triangles */
     bool refine;        /* true: run the quality stage, with the options below */
-    struct tri_quality quality;
+    struct tri_quality quality;   /* bounds of the quality stage */
     tri_refine_call *refine_call; /* called instead of tri_refine; NULL: tri_refine */
-    void *refine_user;
+    void *refine_user;            /* passed to refine_call */
     const struct tri_elements *elements; /* -r: existing mesh to rebuild; use_segments and refine are then options of
                                             tri_reconstruct; NULL: make a new mesh from the points */
     bool *is_edge;       /* with elements: as in struct tri_reconstruct_options */
@@ -52,7 +52,7 @@ struct tri_options {
     const struct tri_stop *stop;         /* polled for a stop request here and, as mesh->stop, later; NULL: never
                                             stopped */
     void (*stage)(void *user, enum tri_stage begins); /* called when a stage begins; NULL: not called */
-    void *stage_user;
+    void *stage_user;                                 /* passed to stage */
 };
 
 /* Returns the measured peak memory of tri_generate before refinement, in bytes, including the input. */
@@ -60,11 +60,11 @@ double tri_generate_bytes(const struct tri_pslg *pslg, const struct tri_elements
 
 struct tri_report {
     int32_t duplicates; /* points at the position of a point with a lower index; 0 with elements */
-    struct tri_carve_report carve;
+    struct tri_carve_report carve; /* of carving holes and concavities */
     struct tri_notes notes; /* warnings about probable mistakes in the input */
     int32_t loose;      /* with elements: segments that are no edges of the mesh, see struct tri_reconstruct_options */
-    struct tri_constrain_report constrain;
-    struct tri_refine_report quality;
+    struct tri_constrain_report constrain; /* of inserting segments */
+    struct tri_refine_report quality;      /* of refinement */
 };
 
 struct tri_options tri_defaults(void);

@@ -8,7 +8,7 @@
 
 struct tri_api_mesh {
     struct tri_mesh mesh; /* must be first: callers point to it. No unused numbers, points in the caller's order */
-    struct tri_report report;
+    struct tri_report report;    /* of the stages that made the mesh */
     struct tri_settings refined; /* bounds of the last completed refinement; all 0 if there was none */
     bool has_triangles;   /* true: the figure was a mesh */
     bool has_areas;       /* true: the figure had size bounds */
@@ -18,10 +18,10 @@ struct tri_api_mesh {
     int32_t *neighbors;   /* [n_triangles][3]; NULL until requested */
     int32_t *edges;       /* [n_edges][2]; NULL until requested */
     int32_t *edge_markers; /* [n_edges]; NULL until edges are requested */
-    int32_t n_edges;
+    int32_t n_edges;       /* number of edges, if requested */
     char odd_length[160]; /* warning: edge_length returned an invalid length in the last refinement; "": no */
     char uncovered[256];  /* warning: a size field does not cover the mesh; "": no */
-    char notes[sizeof(struct tri_notes) + 520];
+    char notes[sizeof(struct tri_notes) + 520]; /* warnings, one per line; "": none */
 };
 
 /* The refinement to use: tri_refine, or a parallel schedule. */
@@ -30,8 +30,8 @@ struct tri_api_way {
                               const struct tri_quality *quality, const struct tri_refine_hooks *hooks,
                               const struct tri_settings *settings, struct tri_refine_report *report,
                               struct tri_error *error);
-    const struct tri_executor *executor;
-    void *user;
+    const struct tri_executor *executor; /* runs parallel tasks; NULL: none */
+    void *user;                          /* for `refine` */
     const struct tri_pslg *figure; /* for tri_api_mesh_stream: the input of the mesh; otherwise NULL */
     bool has_attributes;           /* for tri_api_mesh_stream: regions or triangles have attributes */
 };

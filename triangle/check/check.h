@@ -28,21 +28,21 @@ enum { TRI_CHECK_ULPS = 8 };
 
 /* The mesh to check. Indices start at 0; all arrays are borrowed. */
 struct tri_check_mesh {
-    int32_t n_points;
+    int32_t n_points;     /* vertices */
     const double *points; /* [n_points][2] x, y */
-    int32_t n_triangles;
+    int32_t n_triangles;  /* triangles */
     const int32_t *triangles; /* [n_triangles][3] corners */
     const int32_t *neighbors; /* [n_triangles][3] triangle opposite each corner, -1: none; NULL: not given */
-    int32_t n_segments;
+    int32_t n_segments;       /* subsegments */
     const int32_t *segments; /* [n_segments][2] ends of the subsegments; NULL: not given, boundary edges are used
                                 instead */
     const int32_t *segment_markers; /* [n_segments]; NULL: not given */
     const int32_t *point_markers;   /* [n_points]; NULL: not given */
-    int32_t n_attributes;
+    int32_t n_attributes;           /* attributes per triangle */
     const double *attributes; /* [n_triangles][n_attributes], the last is the region's; NULL: not given */
     int32_t n_nodes;          /* rows of points and point_markers; more than n_points if there are midside nodes */
     const int32_t *middles;   /* [n_triangles][3] midside node of the edge opposite each corner; NULL: none */
-    int32_t n_point_attributes;
+    int32_t n_point_attributes;     /* attributes per vertex */
     const double *point_attributes; /* [n_points or n_nodes][n_point_attributes]; NULL: not given */
 };
 
@@ -61,14 +61,14 @@ enum tri_check_array {
 };
 
 struct tri_check_source {
-    int64_t n_points, n_triangles, n_segments;
+    int64_t n_points, n_triangles, n_segments; /* vertices, triangles, subsegments */
     int64_t n_nodes; /* rows of points; those after the first n_points are midside nodes */
-    int32_t n_point_attributes;
+    int32_t n_point_attributes;                /* attributes per vertex */
     unsigned given; /* bit mask: 1 << array for each array that exists; points and corners always exist */
     /* Reads elements first .. first + n - 1 of the array into out. Called by one thread. */
     enum tri_status (*read)(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                             struct tri_error *error);
-    void *user;
+    void *user; /* passed to read */
     /* Bytes that the check may use in addition to what is already used; 0: no limit. It needs one byte per vertex
      * and the memory for subsegments, boundary edges and the input, and divides the rest; if the limit is too small,
      * it uses the minimum it needs. Unpaired half-edges that do not fit are stored in anonymous files in the folder
@@ -76,7 +76,7 @@ struct tri_check_source {
      * bytes each. */
     double memory;
     double beside; /* bytes of that limit that the program uses for other purposes */
-    const char *scratch;
+    const char *scratch; /* folder for temporary files; NULL: /tmp */
 };
 
 /* The fraction of its memory limit that a check plans to use. */
@@ -107,11 +107,11 @@ struct tri_check_options {
     double small_input_angle; /* degrees; input angles below this are small; 0: 60 */
     double max_area;          /* 0: no bound */
     const double *max_areas;  /* [n_triangles] bound for each triangle, <= 0: none; NULL: none at all */
-    enum tri_check_delaunay delaunay;
+    enum tri_check_delaunay delaunay; /* which Delaunay property to check */
     /* >= 0: this many triangles may violate the angle bound, for any reason; < 0: only triangles explained by a
      * small input angle may violate it (see tri_check_report) */
     int64_t max_bad;
-    enum tri_check_border border;
+    enum tri_check_border border; /* where the mesh may end */
     bool convex;       /* the mesh must fill its convex hull, within the tolerance above, and use every point */
     bool renumbered;   /* unused input vertices were removed (-j): input vertices are found by their coordinates */
     bool ignore_holes; /* hole points of the input were not carved */
@@ -167,11 +167,11 @@ struct tri_check_item {
 };
 
 struct tri_check_report {
-    struct tri_check_item item[TRI_N_CHECKS];
+    struct tri_check_item item[TRI_N_CHECKS]; /* result of each kind */
     int64_t n_used_points; /* vertices used by triangles */
-    int64_t n_edges, n_boundary_edges;
+    int64_t n_edges, n_boundary_edges;    /* edges; edges of one triangle only */
     double smallest_angle, largest_angle; /* degrees; 0 if there are no triangles */
-    double smallest_area, largest_area, total_area;
+    double smallest_area, largest_area, total_area;                                 /* 0 if there are no triangles */
     int64_t smallest_angle_at, largest_angle_at, smallest_area_at, largest_area_at; /* triangle numbers from 0; -1:
                                                                                        none */
     int64_t n_small;                                                                /* triangles below min_angle */
@@ -180,7 +180,7 @@ struct tri_check_report {
      * corners, or a vertex joined to a corner by an edge, is an apex, or if two corners lie on the two legs
      * (straight chains) of one apex. */
     int64_t n_small_explained;
-    int64_t n_apexes;
+    int64_t n_apexes; /* vertices with a small input angle */
 };
 
 /* Checks the mesh, and compares it with the input (NULL: unknown). TRI_OK means that the check was completed, not

@@ -24,7 +24,7 @@
 
 /* A point for which the sweep determines whether it lies inside the mesh. */
 struct check_query {
-    struct tri_point at;
+    struct tri_point at;      /* the point */
     enum tri_check_kind kind; /* kind of fault to report if it is inside */
     int32_t id;               /* number of the lost vertex, input segment, hole or region */
     double tolerance;         /* a point closer than this to a boundary edge does not count as inside */
@@ -33,7 +33,7 @@ struct check_query {
 
 /* A missing piece of an input segment: a part of it for which the mesh has no edges. */
 struct check_piece {
-    struct tri_point from, to;
+    struct tri_point from, to; /* ends of the piece */
 };
 
 /* One side of a subsegment. */
@@ -48,30 +48,30 @@ struct check_open {
     int64_t neighbor;                  /* given neighbour across this edge; -1: none, or neighbours are not given */
     double attribute;                  /* region attribute of its triangle */
     struct tri_point at[3];            /* positions of from, to and apex */
-    bool constrained;
+    bool constrained;                  /* true: lies on a subsegment */
 };
 
 struct check_opens {
-    int64_t n, room;
-    struct check_open *at;
+    int64_t n, room; /* half-edges; allocated */
+    struct check_open *at; /* [n] */
 };
 
 /* A half-edge without a twin in any part, with the data that the frame does not contain. */
 struct check_boundary_edge {
-    int64_t from, to, half_edge;
+    int64_t from, to, half_edge; /* end vertices; the half-edge */
     double attribute; /* region attribute of its triangle */
-    bool constrained;
+    bool constrained; /* true: lies on a subsegment */
 };
 
 struct check_boundary {
-    int64_t n, room;
-    struct check_boundary_edge *at;
+    int64_t n, room; /* edges; allocated */
+    struct check_boundary_edge *at; /* [n] */
 };
 
 /* Consecutive triangles. The memory of all arrays is reused for the next part. */
 struct check_part {
     int64_t first; /* first triangle */
-    int32_t n_triangles, n_points, n_half_edges;
+    int32_t n_triangles, n_points, n_half_edges; /* half-edges: 3 per triangle */
     const int32_t *triangles;     /* [n_triangles][3] corners */
     const double *points;         /* [n_points][2] */
     const int64_t *vertex;        /* [n_points] numbers in the mesh, ascending */
@@ -98,12 +98,12 @@ enum { /* flags of each vertex of the mesh */
 };
 
 struct checker {
-    const struct tri_check_source *source;
+    const struct tri_check_source *source; /* the mesh to check */
     const struct tri_pslg *input;       /* NULL: unknown */
-    const struct tri_check_options *options;
-    struct tri_check_report *report;
-    struct tri_error *error;
-    int64_t n_points, n_triangles;
+    const struct tri_check_options *options; /* what to check */
+    struct tri_check_report *report;         /* the result */
+    struct tri_error *error;                 /* details if a step fails */
+    int64_t n_points, n_triangles;           /* of the whole mesh */
 
     /* check.c: of each kind, the fault with the smallest key is reported. `at` is the key of the current item. */
     int64_t at, key[TRI_N_CHECKS];
@@ -114,26 +114,26 @@ struct checker {
     int exponent;      /* coordinates are the given ones times 2^exponent */
     bool rounded;      /* true: scaled coordinates are also rounded */
     double tolerance;  /* distance; see TRI_CHECK_ULPS */
-    struct tri_pslg scaled_input;
+    struct tri_pslg scaled_input; /* the scaled input, to which `input` then points */
     double *scaled[3]; /* the input's scaled points, hole points and regions; NULL: not scaled */
 
     uint8_t *state; /* [n_points] flags, see CHECK_USED */
 
     /* Used in shares.c and store.c: */
     int64_t part_triangles; /* maximum number of triangles in a part */
-    struct check_part part;
-    struct check_store *store;
+    struct check_part part; /* current part */
+    struct check_store *store;      /* half-edges without a twin so far */
     struct check_boundary boundary; /* boundary edges, sorted by half-edge */
 
     /* Used in bounds.c: */
-    struct check_quality *quality;
+    struct check_quality *quality;  /* results for angles and areas */
 
     /* The frame: vertices. */
-    int32_t n_frame;
+    int32_t n_frame; /* number of frame vertices */
     double *points;  /* [n_frame][2] */
     int64_t *vertex; /* [n_frame] numbers in the mesh, ascending */
     /* The frame: the listed subsegments or, if none are given, the boundary edges. */
-    int32_t n_segments;
+    int32_t n_segments;                 /* number of subsegments */
     int32_t *segments; /* [n_segments][2] frame vertices; -1, -1 if an end is no vertex or both are equal */
     int32_t *segment_markers;           /* [n_segments]; NULL: not given */
     struct check_side (*sides)[2];      /* [n_segments] left and right side, looking from the first end to the second */
@@ -146,16 +146,16 @@ struct checker {
     int64_t *found;  /* [input->n_points] used vertex of the mesh at each input point, -1: none */
     int32_t *twin;   /* [input->n_points] the same as a frame vertex */
     int64_t *unused; /* without an input: vertices of the mesh that no triangle uses */
-    double *unused_points;
-    int32_t n_unused;
+    double *unused_points; /* [n_unused][2] their positions */
+    int32_t n_unused;      /* number of unused vertices */
 
     /* Set in segment_chains.c: */
     uint8_t *is_along; /* [n_segments] 1: the subsegment lies along an input segment */
     struct check_piece *missing; /* [n_missing] missing pieces of input segments */
-    int32_t n_missing, missing_capacity;
+    int32_t n_missing, missing_capacity; /* missing pieces; allocated */
 
     struct check_query *queries; /* queries for the sweep */
-    int32_t n_queries, query_capacity;
+    int32_t n_queries, query_capacity;   /* queries; allocated */
 };
 
 /* --- the steps of a check, in this order */
@@ -237,8 +237,8 @@ void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *fo
 enum { CHECK_MOST_SHARES = 64 };
 
 struct check_share {
-    size_t number;
-    int64_t first, end;
+    size_t number; /* number of the share */
+    int64_t first, end; /* items first .. end - 1 */
 };
 
 typedef void check_work(void *user, const struct check_share *share);
@@ -376,7 +376,7 @@ static inline long check_frame_vertex(const struct checker *c, int32_t v)
 /* --- missing pieces: parts of input segments for which the mesh has no edges */
 
 struct check_pieces {
-    int32_t n;
+    int32_t n;              /* number of pieces */
     struct check_piece *at; /* [n] owned by the receiver */
 };
 

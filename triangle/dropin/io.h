@@ -18,11 +18,11 @@ enum { TRI_IO_MOST_COPIES = 10 };
 /* The input with indices from 0, in double precision. Arrays that already have this form are borrowed from the
  * caller. */
 struct tri_io_input {
-    struct tri_pslg pslg;
+    struct tri_pslg pslg;         /* points, segments, holes and regions */
     struct tri_elements elements; /* used with switch r */
     bool *is_edge; /* with r and p: [n_segments] buffer for tri_reconstruct_options.is_edge; otherwise NULL */
     void *copies[TRI_IO_MOST_COPIES]; /* arrays that are not borrowed */
-    int n_copies;
+    int n_copies;                     /* number of copies */
 };
 
 /* Reads what the switches select. Returns TRI_BAD_INPUT for a negative count of points, point attributes, segments

@@ -62,8 +62,8 @@ struct triangulateio {
     TRI_REAL *pointlist;        /* x, y: always | !N */
     TRI_REAL *pointattributelist; /* if there are attributes: always | !N */
     int *pointmarkerlist;       /* NULL: all 0: always | !N !B */
-    int numberofpoints;
-    int numberofpointattributes;
+    int numberofpoints;         /* always */
+    int numberofpointattributes;  /* always: attributes per point */
 
     int *trianglelist;          /* corners counter-clockwise; with o2, then the midside nodes opposite each corner: r
                                    | !E */
@@ -79,9 +79,9 @@ struct triangulateio {
     int numberofsegments;       /* p; without p and c, the number of boundary segments */
 
     TRI_REAL *holelist;         /* x, y: p !r | p or c, !P: the same pointer and count; NULL and 0 without p */
-    int numberofholes;
+    int numberofholes;          /* with holelist */
     TRI_REAL *regionlist;       /* x, y, attribute, largest area: p !r, with A or a | like holelist */
-    int numberofregions;
+    int numberofregions;        /* with regionlist */
 
     int *edgelist;              /* ends: never | e; in vorout with v: Voronoi points, -1 for the infinite end of a
                                    ray */
@@ -120,7 +120,7 @@ struct triangulate_options {
     /* The size test for the switch u, used instead of triunsuitable. Returns non-zero if the triangle a, b, c must
      * be refined. */
     int (*unsuitable)(void *user, const TRI_REAL *a, const TRI_REAL *b, const TRI_REAL *c, TRI_REAL area);
-    void *unsuitable_user;
+    void *unsuitable_user;      /* passed to unsuitable */
     int unsuitable_in_parallel; /* non-zero: several threads may call the size test (this one or triunsuitable) at
                                    once. Its result must not depend on the order of calls, and it is also called for
                                    temporary triangles. 0: u uses one thread */
@@ -129,11 +129,11 @@ struct triangulate_options {
      * otherwise a remark on the input. With the switch Q only three remarks remain: why a mesh is empty, which
      * number of a switch is misread, and that v has no vorout. */
     void (*message)(void *user, int is_error, const char *text);
-    void *message_user;
+    void *message_user; /* passed to message */
     /* Return non-zero to stop. The call then soon returns TRIANGULATE_STOPPED. Called every few thousand steps, by
      * several threads at once. After it has returned non-zero it must keep returning non-zero. */
     int (*stop)(void *user);
-    void *stop_user;
+    void *stop_user; /* passed to stop */
 };
 
 /* Like triangulate, with options; NULL: none. Never prints. */

@@ -25,13 +25,13 @@
 enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_BLOCK = 31, TRI_BATCH = 16 };
 
 struct tri_entry {
-    tri_triangle_id t;
-    uint32_t life;
+    tri_triangle_id t; /* the triangle */
+    uint32_t life;     /* generation number of the triangle when the entry was pushed */
 };
 
 /* Consecutive entries of one bucket. */
 struct tri_block {
-    struct tri_entry entry[TRI_BLOCK];
+    struct tri_entry entry[TRI_BLOCK]; /* in the order in which they were pushed */
     int32_t next; /* index of the next block; -1: none */
 };
 
@@ -43,8 +43,8 @@ struct tri_bucket {
 
 struct tri_bad_queue {
     struct tri_block *block; /* pool of blocks of all buckets */
-    int32_t n_blocks, block_capacity, free_block;
-    struct tri_bucket bucket[TRI_BUCKETS];
+    int32_t n_blocks, block_capacity, free_block; /* blocks used; allocated; first of the free list, -1: none */
+    struct tri_bucket bucket[TRI_BUCKETS];        /* bad angles, by urgency and shortest edge */
     uint64_t filled[TRI_BUCKETS / 64]; /* bit b % 64 of word b / 64: bucket b is not empty */
     int64_t n_angles;                  /* entries in all buckets */
 
@@ -53,7 +53,7 @@ struct tri_bad_queue {
     struct tri_entry batch[TRI_BATCH]; /* entries popped from the ring that were not stale */
     int32_t next, n_batch;    /* batch[next .. n_batch - 1] are to be popped next */
     struct tri_entry *cold;   /* stack of entries that did not fit into the window */
-    int64_t n_cold, cold_capacity;
+    int64_t n_cold, cold_capacity;     /* entries on the stack; allocated */
 };
 
 /* Initialises a queue whose bytes are all zero. Returns false if memory ran out. */

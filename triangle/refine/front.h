@@ -13,14 +13,14 @@
 
 struct tri_front_stack {
     struct tri_entry *item; /* [n] the last entry is popped first */
-    int32_t n, capacity;
+    int32_t n, capacity;    /* entries; allocated */
 };
 
 /* The waiting triangles: those on the front, which are treated first, and the others that are too large. */
 struct tri_front {
-    struct tri_front_stack on, off;
+    struct tri_front_stack on, off; /* triangles on the front; the others */
     bool *large; /* [capacity] whether each new triangle is too large, in the order of cavity edges */
-    int32_t capacity;
+    int32_t capacity;               /* allocated entries of `large` */
 };
 
 void tri_front_free(struct tri_front *front);

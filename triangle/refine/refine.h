@@ -38,7 +38,7 @@ typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, int32_t
 struct tri_part {
     void (*changed)(void *user, const tri_triangle_id *triangle, int32_t n);
     void (*beyond)(void *user, const tri_vertex_id edge[2]);
-    void *user;
+    void *user; /* passed to both */
 };
 
 /* Should the bad triangle with corners v be refined? Bad triangles for which this returns false are treated as good. */
@@ -50,27 +50,27 @@ typedef void tri_erased(void *user, tri_vertex_id v, const tri_triangle_id trian
 /* Connects a call to its surroundings. If all members are zero, the call has the whole mesh to itself. */
 struct tri_refine_hooks {
     tri_urgent *urgent;    /* selects triangles for pre-refinement at circumcentres; NULL: all */
-    void *urgent_user;
+    void *urgent_user;     /* passed to urgent */
     tri_gate *gate;        /* NULL: no gate, every bad triangle may be refined */
-    void *gate_user;
+    void *gate_user;       /* passed to gate */
     const struct tri_fence *fence; /* NULL: no fence, the whole mesh may change */
     const struct tri_owners *owners; /* debug builds assert with it that calls with disjoint fences change different
                                         triangles; NULL: no check */
     const tri_triangle_id *worklist; /* [n_worklist] triangles to judge first; NULL: all. New triangles are always
                                         judged */
-    int32_t n_worklist;
+    int32_t n_worklist;     /* triangles in worklist */
     tri_deferred *deferred; /* called for each deferred triangle; NULL: not called */
-    void *deferred_user;
+    void *deferred_user;    /* passed to deferred */
     tri_deferred *given_up; /* called for each triangle given up, which may vanish later; NULL: not called */
-    void *given_up_user;
+    void *given_up_user;    /* passed to given_up */
     tri_erased *erased;     /* called for each erased vertex; NULL: no vertex is erased (front.c) */
-    void *erased_user;
+    void *erased_user;      /* passed to erased */
     tri_more_room *more_room; /* NULL: the mesh's arrays grow as needed */
-    void *more_room_user;
+    void *more_room_user;     /* passed to more_room */
     const struct tri_part *part; /* NULL: the call has the whole mesh, not a part */
     void (*told)(void *user, int64_t triangles); /* progress: called periodically with the number of triangles; NULL:
                                                     no */
-    void *told_user;
+    void *told_user;                             /* passed to told */
 };
 
 enum tri_excuse { /* the reason why a triangle is still bad */
@@ -86,7 +86,7 @@ enum tri_excuse { /* the reason why a triangle is still bad */
 };
 
 struct tri_refine_report {
-    int64_t inserted_free, inserted_on_segments;
+    int64_t inserted_free, inserted_on_segments; /* new vertices off and on segments */
     int64_t gated, fenced;            /* triangles deferred by the gate; by the fence, which their cavity crosses */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* true: the limit max_steiner ended the call */

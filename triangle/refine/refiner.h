@@ -17,29 +17,29 @@ struct tri_fill;
 struct tri_lattice;
 
 struct tri_refiner {
-    struct tri_mesh *mesh;
-    const struct tri_quality *quality;
-    const struct tri_refine_hooks *hooks;
-    struct tri_refine_report *report;
+    struct tri_mesh *mesh; /* the mesh to refine; borrowed */
+    const struct tri_quality *quality; /* the requested bounds; borrowed */
+    const struct tri_refine_hooks *hooks; /* borrowed */
+    struct tri_refine_report *report;     /* filled during the call; borrowed */
     struct tri_error error; /* error of the current call of tri_refiner_run */
-    struct tri_criterion criterion;
+    struct tri_criterion criterion;       /* the bounds of the current stage */
     int least_exponent; /* binary exponent of mesh->limits.shortest2 */
-    struct tri_cavity cavity;
-    struct tri_bad_queue queue;
+    struct tri_cavity cavity;             /* cavity of the last search */
+    struct tri_bad_queue queue;           /* bad triangles, except in FRONT_STAGE */
     bool lattice;     /* true: place points on a lattice derived from the area bound, where possible */
     double edge;      /* above 0: place points on a lattice with this edge length; 0: no such lattice */
     struct tri_fill *fill; /* state of the current lattice fill (lattice_fill.c); NULL: none */
     struct tri_front front; /* triangles that wait in FRONT_STAGE */
     bool sized;       /* true: the current triangle is refined for its size, not for its angles */
-    enum tri_step step;
+    enum tri_step step;     /* progress within the stage */
     int limit;        /* queue buckets from this one on wait for the second pass */
-    int32_t next_listed, n_worklist;
-    enum tri_bound_stage stage;
+    int32_t next_listed, n_worklist; /* next triangle of the worklist; its length */
+    enum tri_bound_stage stage;      /* current stage */
     enum tri_excuse excuse; /* reason of the last outcome REFUSED */
     bool in_hand;     /* true: the treatment of `hand` was interrupted by a pause */
-    struct tri_entry hand;
+    struct tri_entry hand;  /* the triangle being treated */
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming), or to divide (front.c) */
-    int32_t n_encroached, encroached_capacity;
+    int32_t n_encroached, encroached_capacity; /* entries of `encroached`; allocated */
     uint32_t step_of_stop; /* counter of tri_stop_is_due */
 };
 

@@ -17,9 +17,9 @@ struct tri_site_row {
 enum { TRI_SITE_MARGIN = 2 };
 
 struct tri_sites {
-    struct tri_lattice lattice;
+    struct tri_lattice lattice; /* the lattice of which this is a part */
     double bottom, left;      /* lattice row of row 0 (an even number); lattice column of column 0 */
-    int32_t n_rows;
+    int32_t n_rows;           /* number of rows */
     int32_t n;                /* number of sites; 0: none */
     struct tri_site_row *row; /* [n_rows] */
     int32_t *at;              /* [n] vertex at the site, or TRI_SITE_FREE or TRI_SITE_OUT */

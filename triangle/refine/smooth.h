@@ -22,7 +22,7 @@ void tri_smooth_free(struct tri_smooth *smooth);
 /* Counts the outcomes for the vertices of one call. */
 struct tri_smooth_count {
     int32_t left;  /* vertices left for later, since not all of their triangles lie in the fence */
-    int32_t moved;
+    int32_t moved; /* vertices that were moved */
 };
 
 /* Moves n vertices in the given order, and flips the edges around them until they are Delaunay. On return, vertex[]

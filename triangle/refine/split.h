@@ -17,7 +17,7 @@ enum { TRI_SPLIT_PLACES = 4 * TRI_PLACES };
 
 /* The ideal split point, rounded once: on the parent's line, and on the subsegment. */
 struct tri_split_base {
-    struct tri_point on_line, on_sub;
+    struct tri_point on_line, on_sub; /* on the parent's line; on the subsegment */
 };
 
 /* Returns the ideal split point at this fraction of the subsegment. */
@@ -37,7 +37,7 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 
 /* Where to split a subsegment for -D. */
 struct tri_disk_split {
-    double fraction;
+    double fraction;     /* position as a fraction of the subsegment, from its start */
     tri_vertex_id level; /* the vertex with which the split point is level (split.c); TRI_NONE: none */
 };
 

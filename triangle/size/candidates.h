@@ -11,7 +11,7 @@
  * keys are convex functions. It is at most value + slope * |q|, and at most value + gradient * q + bend * |q|^2. */
 struct tri_key {
     double value, slope, bend; /* bend may be infinite */
-    struct tri_point gradient;
+    struct tri_point gradient; /* of the key at p */
 };
 
 /* Returns the key `length` + `growth` * distance from a convex set. away: vector from the point to the nearest point
@@ -25,25 +25,25 @@ static inline struct tri_key tri_key_of_distance(double length, double growth, s
 
 /* The contest: at each point, the item with the smallest key wins; among equal keys, the first item. */
 struct tri_contest {
-    struct tri_key (*key)(const void *user, int32_t item, struct tri_point p);
+    struct tri_key (*key)(const void *user, int32_t item, struct tri_point p); /* returns an item's key at p */
     /* Returns the tolerated error of keys in a cell with this side, if `winner` has the smallest key `key` there.
      * Must be 0 in cells that are not small compared with the wanted accuracy. */
     double (*allowed)(const void *user, int32_t winner, double key, double side);
-    const void *user;
+    const void *user; /* passed to both functions */
 };
 
 struct tri_candidates {
     struct tri_quadtree tree; /* the number of a leaf is the index of its list */
     int32_t *list;            /* [n] for each leaf: the number of items, then the items in ascending order */
-    int32_t n, capacity;
+    int32_t n, capacity;      /* numbers in list; allocated */
 };
 
 /* Common data for all sources. */
 struct tri_size_frame {
-    const struct tri_mesh *mesh;
+    const struct tri_mesh *mesh; /* the mesh; borrowed */
     struct tri_point low, high; /* bounding box of the mesh */
     double gradation;           /* largest slope; above 0, may be infinite */
-    const struct tri_executor *executor;
+    const struct tri_executor *executor; /* runs parallel tasks; NULL: none */
 };
 
 /* Makes the lists of n >= 1 items for points in the frame's box. A point outside the box uses the list for the

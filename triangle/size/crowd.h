@@ -10,7 +10,7 @@
 #include "triangle/size/quality.h"
 
 struct tri_crowd {
-    const struct tri_mesh *mesh;
+    const struct tri_mesh *mesh; /* borrowed */
     double sin2;     /* squared sine of the angle bound */
     double fineness; /* triangles per square of the feature size; 0: no angle bound */
 };
@@ -27,7 +27,7 @@ double tri_crowd_work(const struct tri_crowd *crowd, tri_triangle_id t, double a
 
 struct tri_integrand {
     double (*at)(const void *user, struct tri_point q); /* returns h, above 0 and below 1e100 */
-    const void *user;
+    const void *user;                                   /* passed to at */
     double over;  /* only the part of 1 / h^2 above this value counts */
     double large; /* parts with a larger area are always divided, because h may vary inside unnoticed */
     double few;   /* parts with fewer squares than this are not divided */

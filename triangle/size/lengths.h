@@ -12,7 +12,7 @@ struct tri_lengths;
 /* The request, with the members of tri_settings of the same names. Borrowed. */
 struct tri_sizes {
     const struct tri_size_field *fields; /* [n] */
-    int64_t n;
+    int64_t n;                           /* number of fields */
     double gradation;          /* largest slope of h; 0: 0.2; infinite: no limit */
     double min_size, max_size; /* bounds on h; 0: none */
     double elements_across;    /* number of edges between facing walls; 0: no requirement */

@@ -16,13 +16,13 @@ struct tri_quadtree {
     double scale;         /* 2^TRI_QUADTREE_DEEPEST / side */
     int32_t *child;       /* [n] four consecutive entries per divided cell, in the order x + 2 y. >= 0: index of the
                              first of its own four; < 0: ~number of a leaf. child[0] is the root */
-    int32_t n, capacity;
+    int32_t n, capacity;  /* entries of child; allocated */
 };
 
 /* A cell. Its side is side * 2^-depth. */
 struct tri_cell {
     uint32_t x, y; /* column and row among the cells of this depth */
-    int depth;
+    int depth;     /* 0 for the root */
 };
 
 /* Returns the leaf that contains the cell x, y of the largest depth, and sets *cell to the leaf's cell. */

@@ -25,11 +25,11 @@ struct tri_quality {
     bool region_areas;     /* true: mesh->regions[t.region].max_area applies as well */
     tri_edge_length *edge_length; /* NULL: none. No triangle may be larger than the equilateral triangle whose edge
                                      is the smallest length at its corners and centroid */
-    void *edge_length_user;
+    void *edge_length_user;            /* passed to edge_length */
     const struct tri_lengths *lengths; /* wanted edge lengths (lengths.h); borrowed; NULL: none */
     bool front;            /* true: new points for lengths are placed by an advancing front (front.h) */
     tri_unsuitable *unsuitable; /* the caller's size test; NULL: none */
-    void *unsuitable_user;
+    void *unsuitable_user;      /* passed to unsuitable */
     double area_scale;     /* for pre-refinement: areas may be larger by this factor, and the size test sees
                               triangles with 1 / area_scale of the area; 0: unused */
     bool lattice;          /* true: if an area bound or a length allows it, points are placed on a lattice
@@ -111,8 +111,8 @@ struct tri_bounds tri_bounds_of(const struct tri_quality *quality, double min_an
  *
  * The wanted sizes of a mesh. Pointers are borrowed. */
 struct tri_asked {
-    const struct tri_mesh *mesh;
-    const struct tri_quality *quality;
+    const struct tri_mesh *mesh; /* borrowed */
+    const struct tri_quality *quality; /* borrowed */
     double area2; /* twice the general area bound, in the mesh's units; infinity: none */
     double coarser; /* factor applied to lengths; above 1 for a coarse mesh */
 };
@@ -182,7 +182,7 @@ bool tri_is_too_large(const struct tri_asked *asked, const struct tri_triangle *
 /* --- bad triangles: the criterion of the refinement loop and of the census */
 
 struct tri_criterion {
-    struct tri_asked asked;
+    struct tri_asked asked;   /* the wanted sizes */
     struct tri_bounds bounds; /* the current angle bound, which may be below the requested one */
 };
 

@@ -42,12 +42,12 @@ static inline float tri_size_float(double length, double scale)
 struct tri_near_item {
     struct tri_point from, along; /* one end, and the vector to the other end; along is 0 for a point */
     double inverse;               /* 1 / |along|^2; 0 for a point */
-    double length, growth;
+    double length, growth;        /* h on the segment; increase of h per distance */
 };
 
 struct tri_near {
     struct tri_near_item *item; /* [n] */
-    int32_t n, capacity;
+    int32_t n, capacity;        /* segments; allocated */
     struct tri_candidates candidates; /* valid after tri_near_settle */
 };
 
@@ -88,9 +88,9 @@ void tri_raster_clear(struct tri_raster *raster);
  * the minimising w. A node with an infinite base does not propagate. */
 struct tri_spreading {
     const struct tri_point *at; /* [n] positions of the nodes */
-    int32_t n;
+    int32_t n;                  /* number of nodes */
     const int32_t *cell;        /* [n_cells][corners] nodes of each cell */
-    int32_t n_cells, corners;
+    int32_t n_cells, corners;   /* number of cells; nodes per cell */
 };
 
 /* Returns TRI_OK, TRI_NO_MEMORY or TRI_STOPPED. */
@@ -109,7 +109,7 @@ struct tri_sampled {
     struct tri_quadtree tree; /* leaves are numbered from 0 */
     double scale;             /* factor for the values, a power of two */
     float *value;             /* [n][9] values of each leaf at its 3 x 3 grid points, lowest row first */
-    int32_t n;
+    int32_t n;                /* number of leaves */
     bool is_coarse;           /* true: the function varies too much for the number of samples */
 };
 
@@ -127,7 +127,7 @@ struct tri_background {
     struct tri_point *at; /* [n] positions of the vertices */
     double *length;       /* [n] lengths with limited gradient */
     int32_t *corner;      /* [n_triangles][3] corners, counter-clockwise */
-    int32_t n, n_triangles;
+    int32_t n, n_triangles;           /* number of vertices; of triangles */
     struct tri_candidates candidates; /* candidate triangles for each place */
 };
 
