@@ -12,15 +12,15 @@ enum { ANY = -1 };
 
 /* A conversion in progress. After a failure, the remaining arrays are skipped. */
 struct taking {
-    struct tri_api_figure *taken;
-    enum tri_status status;
-    struct tri_error *error;
+    struct tri_api_figure *taken; /* the result */
+    enum tri_status status;       /* first failure */
+    struct tri_error *error;      /* its description */
 };
 
 /* An array of any element type. */
 struct rows {
-    const void *at;
-    int64_t n, width, stride;
+    const void *at; /* first element */
+    int64_t n, width, stride; /* rows; elements per row; elements from row to row */
     size_t item; /* bytes per element */
 };
 

@@ -50,9 +50,9 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
 
 /* The caller's size functions, and the first invalid length. Several threads may call them. */
 struct sizes {
-    const struct tri_settings *settings;
-    atomic_flag is_odd;
-    double odd, odd_at[2];
+    const struct tri_settings *settings; /* with the caller's functions */
+    atomic_flag is_odd;                  /* set: an invalid length was returned */
+    double odd, odd_at[2];               /* the first invalid length, and its position */
 };
 
 static void note_odd(struct sizes *sizes, double length, const double at[2])
@@ -211,7 +211,7 @@ static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figu
 
 /* The progress of refinement, for settings.progress. */
 struct following {
-    const struct tri_settings *settings;
+    const struct tri_settings *settings; /* with the caller's progress function */
     double first, estimate, done; /* triangles at the start and at the end (estimated); reported fraction */
 };
 
@@ -244,9 +244,9 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
 
 /* The refinement that tri_generate calls. */
 struct refiner {
-    struct tri_api_mesh *m;
-    const struct tri_settings *settings;
-    const struct tri_api_way *way;
+    struct tri_api_mesh *m; /* the mesh */
+    const struct tri_settings *settings; /* the caller's settings */
+    const struct tri_api_way *way;       /* the refinement to call */
 };
 
 static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)

@@ -112,13 +112,13 @@ void tri_file_free(struct tri_figure *figure)
 
 /* A figure to write and its file name. */
 struct writing {
-    const struct tri_api_figure *figure;
-    const char *name;
-    int first;
+    const struct tri_api_figure *figure; /* the figure */
+    const char *name;                    /* file name */
+    int first;                           /* number of the first point and triangle: 0 or 1 */
     struct tri_ints middles; /* [triangles][3] midside nodes of the edges opposite each corner; n is 0 if there are
                                 none */
-    struct tri_output_set *set;
-    struct tri_error *error;
+    struct tri_output_set *set;          /* the files that are written together */
+    struct tri_error *error;             /* description of a failure */
 };
 
 static enum tri_status open_file(const struct writing *w, const char *ending, struct tri_output **output)

@@ -12,13 +12,13 @@ enum { NEIGHBORS = 2 };
 
 /* A convex hull: the lower and the upper chain, each sorted by x, then y. */
 struct hull {
-    struct tri_point *chain[2];
-    int32_t n[2];
+    struct tri_point *chain[2]; /* lower and upper chain */
+    int32_t n[2];               /* points in each chain */
 };
 
 struct border {
     struct checker *c;
-    struct hull hull;
+    struct hull hull; /* hull of the input, if needed */
 };
 
 static int compare_points(const void *left, const void *right)
@@ -155,7 +155,7 @@ enum { SEVERAL = -2 };
 /* The boundary as a cycle of vertices. */
 struct loop {
     struct checker *c;
-    int32_t n;
+    int32_t n;             /* number of vertices */
     int32_t *from;         /* [n_frame] boundary edge that starts at the vertex; -1: none; SEVERAL: more than one */
     int32_t *vertex;       /* [n] counter-clockwise */
     struct hull hull; /* hull of these vertices */

@@ -236,8 +236,8 @@ static struct shape shape_of(const struct checker *c, int32_t t)
 
 /* A minimum or maximum, and the first triangle that attains it; -1: none yet. */
 struct extreme {
-    double value;
-    int64_t at;
+    double value; /* the extreme value */
+    int64_t at;   /* the triangle */
 };
 
 struct sum { /* a compensated sum (Neumaier 1974) */
@@ -248,7 +248,7 @@ struct sum { /* a compensated sum (Neumaier 1974) */
 struct findings {
     struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the minimum, which belongs to
                                                          the largest angle */
-    struct sum area;
+    struct sum area; /* total area */
     int64_t n_small; /* triangles below the angle bound */
     int64_t n_large; /* triangles above the area bound */
 };
@@ -256,7 +256,7 @@ struct findings {
 struct check_quality {
     double sine2; /* squared sine of the angle bound */
     struct findings all; /* results for the parts read so far */
-    struct findings share[CHECK_MOST_SHARES];
+    struct findings share[CHECK_MOST_SHARES]; /* results of each share of the part */
 };
 
 static const struct findings empty = {.sine2 = {0, -1}, .cosine2 = {0, -1}, .smallest = {0, -1}, .largest = {0, -1}};

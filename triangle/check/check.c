@@ -79,10 +79,10 @@ void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *fo
 }
 
 struct sharing {
-    int64_t n;
-    size_t n_shares;
-    check_work *work;
-    void *user;
+    int64_t n; /* number of items */
+    size_t n_shares; /* number of shares */
+    check_work *work; /* called for each share */
+    void *user;       /* passed to work */
 };
 
 static void do_share(void *context, size_t i)
@@ -105,8 +105,8 @@ void tri_check_in_shares(const struct checker *c, int64_t n, check_work *work, v
 /* The result of each share: the number of items, and the first one. */
 struct counting {
     const struct checker *c;
-    bool (*is_so)(const struct checker *c, int64_t i);
-    int64_t n[CHECK_MOST_SHARES], first[CHECK_MOST_SHARES];
+    bool (*is_so)(const struct checker *c, int64_t i); /* the test */
+    int64_t n[CHECK_MOST_SHARES], first[CHECK_MOST_SHARES]; /* results of each share */
 };
 
 static void count_share(void *counting, const struct check_share *share)

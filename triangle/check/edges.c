@@ -25,7 +25,7 @@ static uint64_t key_of(int32_t a, int32_t b)
 /* A range of vertices whose half-edges one thread counts. Each thread reads all half-edges; that is cheaper than
  * atomic operations. */
 struct range {
-    int32_t first, end;
+    int32_t first, end; /* vertices first .. end - 1 */
 };
 
 static bool holds(struct range r, int32_t v)
@@ -55,8 +55,8 @@ static void fill(const struct checker *c, struct range r)
 
 struct ranges {
     const struct checker *c;
-    void (*look)(const struct checker *c, struct range r);
-    int32_t n;
+    void (*look)(const struct checker *c, struct range r); /* called for each range */
+    int32_t n;                                             /* number of ranges */
 };
 
 static void look_at_range(void *context, size_t i)

@@ -11,11 +11,11 @@
  * mesh. */
 struct reference {
     struct checker *c;
-    int32_t n;
-    const double *points;
+    int32_t n;      /* number of points */
+    const double *points; /* [n][2] positions */
     int64_t *found; /* [n] used vertex of the mesh at each point, -1: none */
     int32_t *table; /* [mask + 1] hash table with open addressing by coordinates: point numbers, -1: free */
-    uint32_t mask;
+    uint32_t mask;  /* size of the table - 1 */
 };
 
 static struct tri_point point_of(const struct reference *r, int32_t v)

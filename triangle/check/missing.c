@@ -14,18 +14,18 @@
 enum { MOST_TRIALS = 1 << 27, MOST_CUTS = 1 << 20 };
 
 struct cut {
-    int32_t piece;
+    int32_t piece; /* index of the piece */
     double at; /* distance from the piece's first end; computed in step 2 */
-    struct tri_point point;
+    struct tri_point point; /* position */
 };
 
 struct cutting {
-    double tolerance;
-    int32_t n;
+    double tolerance;          /* of the mesh */
+    int32_t n;                 /* number of pieces */
     struct check_piece *piece; /* [n] sorted from left to right */
-    int64_t n_trials;
-    int32_t n_cuts, capacity;
-    struct cut *cut;
+    int64_t n_trials;          /* pairs of pieces compared so far */
+    int32_t n_cuts, capacity;  /* cuts; allocated */
+    struct cut *cut;           /* [n_cuts] */
 };
 
 static int compare_pieces(const void *a, const void *b)

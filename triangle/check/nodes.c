@@ -14,12 +14,12 @@ enum { SLICE = 1 << 12 }; /* triangles */
 
 struct subsegment {
     int64_t ends[2]; /* ascending */
-    int32_t marker;
+    int32_t marker;  /* marker of the subsegment */
 };
 
 /* A slice of triangles, with the data of the points that they refer to. */
 struct slice {
-    int64_t first, n_triangles;
+    int64_t first, n_triangles; /* triangles first .. first + n_triangles - 1 */
     int64_t *corners, *middles; /* [n_triangles][3] */
     int64_t n_named, *named;    /* [n_named] points in the slice, ascending */
     double *places;             /* [n_named][2] positions */
@@ -29,13 +29,13 @@ struct slice {
 
 struct trial {
     struct checker *c;
-    int64_t n_nodes;
-    int32_t n_attributes;
+    int64_t n_nodes;                /* points including midside nodes */
+    int32_t n_attributes;           /* attributes per point; 0: none are checked */
     bool markers;                   /* true: markers are checked */
     uint8_t *is_named;              /* [n_nodes - n_points] 1: the node belongs to an edge of some triangle */
     struct subsegment *subsegments; /* [n_subsegments] sorted by ends */
-    int64_t n_subsegments;
-    struct slice slice;
+    int64_t n_subsegments;          /* number of subsegments */
+    struct slice slice;             /* current slice */
 };
 
 static int compare_subsegments(const void *left, const void *right)

@@ -8,7 +8,7 @@
 #include "triangle/check/internal.h"
 
 struct check_rule {
-    enum tri_check_kind kind;
+    enum tri_check_kind kind; /* kind of fault */
     bool once;  /* true: tested once per edge, for the smaller half-edge, and not on the boundary */
     bool walls; /* true: tested for subsegments only */
     bool (*is_bad)(const struct checker *c, const struct check_open *a, const struct check_open *b);

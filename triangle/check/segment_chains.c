@@ -47,9 +47,9 @@ struct chains {
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
     bool beside_border; /* true: the mesh ends at a subsegment along the current input segment */
     struct stop *stop; /* [at most n_points] */
-    int32_t n_stops, stop_capacity;
+    int32_t n_stops, stop_capacity; /* vertices on the line; allocated */
     struct place *place; /* [n_places] sorted from left to right; made when first needed */
-    int32_t n_places;
+    int32_t n_places;    /* number of subsegment vertices */
 };
 
 static double along(const struct line *l, struct tri_point p)

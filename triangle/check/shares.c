@@ -15,9 +15,9 @@ enum {
 
 /* Buffers of a part, in addition to the caller's arrays. They are reused for the next part. */
 struct check_room {
-    int32_t *triangles;
-    int64_t *vertex, *neighbors;
-    double *points, *attributes, *window;
+    int32_t *triangles;    /* [part_triangles][3] corners by local numbers */
+    int64_t *vertex, *neighbors; /* as in struct check_part */
+    double *points, *attributes, *window; /* as in struct check_part; coordinates of a window */
     int64_t point_room;    /* allocated number of vertices */
     int64_t first, last;   /* range of words of `marked` that may not be 0 */
     uint64_t *marked;      /* [n_points / 64 + 1] bit set of vertices */

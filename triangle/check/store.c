@@ -17,10 +17,10 @@ struct file {
 };
 
 struct check_store {
-    struct check_opens here;
+    struct check_opens here; /* half-edges in memory */
     int64_t most; /* maximum number of half-edges in memory */
     int bits;     /* number of hash bits that choose a file */
-    struct file file[N_FILES];
+    struct file file[N_FILES]; /* the files */
 };
 
 enum tri_status tri_check_store_new(struct checker *c)

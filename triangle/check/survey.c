@@ -6,8 +6,8 @@
 #include "triangle/check/internal.h"
 
 struct survey {
-    bool exact, finite;
-    double largest;
+    bool exact, finite; /* all coordinates are in range; are finite */
+    double largest;     /* largest absolute coordinate */
 };
 
 static bool are_exact(const double *values, int64_t n)
@@ -22,9 +22,9 @@ static bool are_exact(const double *values, int64_t n)
 /* The survey so far, the current values, and the results of the shares. */
 struct looking {
     const struct checker *c;
-    struct survey all;
-    const double *values;
-    struct survey share[CHECK_MOST_SHARES];
+    struct survey all; /* of the slices so far */
+    const double *values; /* current slice */
+    struct survey share[CHECK_MOST_SHARES]; /* of each share of the slice */
 };
 
 static const struct survey nothing = {true, true, 0};

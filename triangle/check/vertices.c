@@ -18,7 +18,7 @@ struct markers {
     struct checker *c;
     int32_t *own;        /* [n_frame] marker of the input point at the vertex, 0: none */
     uint8_t *from_input; /* [n_frame] 1: there is an input point at the vertex */
-    int32_t n_trials;
+    int32_t n_trials;    /* searches among all input segments so far */
     int32_t at;          /* index of the next frame vertex */
     enum tri_status status; /* status of reading points */
 };
@@ -147,7 +147,7 @@ enum tri_status tri_check_vertex_markers(struct checker *c)
 static const double TOLERANCE = 1e-6; /* as a fraction of the attribute's range in the input */
 
 struct range {
-    double low, high;
+    double low, high;                 /* limits including the tolerance */
 };
 
 struct judging {

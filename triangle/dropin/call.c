@@ -9,14 +9,14 @@
 extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
 
 struct io_run {
-    const struct tri_switches *switches;
-    const struct triangulate_options *options;
-    bool aloud;
-    struct tri_io_input input;
-    struct tri_options how;
-    struct tri_mesh mesh;
-    struct tri_report report;
-    struct tri_error *error;
+    const struct tri_switches *switches; /* the parsed switches */
+    const struct triangulate_options *options; /* the caller's options, not NULL */
+    bool aloud;                                /* true: print messages on standard error */
+    struct tri_io_input input;                 /* the converted input */
+    struct tri_options how;                    /* options of the stages */
+    struct tri_mesh mesh;                      /* the result */
+    struct tri_report report;                  /* counts and notes of the stages */
+    struct tri_error *error;                   /* description of a failure */
 };
 
 /* --- size test */

@@ -11,12 +11,12 @@ _Static_assert(sizeof(int) == sizeof(int32_t), "the library's int is the mesh's"
 
 /* A conversion in progress. After a failure, the remaining fields are skipped. */
 struct taking {
-    struct tri_io_input *input;
-    const struct triangulateio *in;
+    struct tri_io_input *input; /* the result */
+    const struct triangulateio *in; /* the caller's struct */
     bool is_mesh; /* true: switch r */
-    int32_t base;
-    enum tri_status status;
-    struct tri_error *error;
+    int32_t base; /* number of the first point: 0 or 1 */
+    enum tri_status status;         /* first failure */
+    struct tri_error *error;        /* its description */
 };
 
 static void check(struct taking *t, const char *what, int n, const void *array)
@@ -190,11 +190,11 @@ void tri_io_input_free(struct tri_io_input *input)
 enum { MOST_ARRAYS = 14 };
 
 struct output {
-    const struct tri_switches *switches;
-    struct tri_grid grid, voronoi;
-    struct triangulateio out, vorout;
+    const struct tri_switches *switches; /* select what is written */
+    struct tri_grid grid, voronoi;       /* the mesh and its Voronoi diagram */
+    struct triangulateio out, vorout;    /* copies of the caller's structs */
     void *made[MOST_ARRAYS]; /* arrays allocated here */
-    int n_made;
+    int n_made;              /* number of new arrays */
     bool failed;             /* true: an allocation failed */
 };
 

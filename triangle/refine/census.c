@@ -187,9 +187,9 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality 
 
 /* A parallel count of bad triangles, divided into shares. */
 struct counting {
-    struct tri_criterion criterion;
-    const struct tri_refine_report *report;
-    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1];
+    struct tri_criterion criterion; /* the bounds */
+    const struct tri_refine_report *report; /* report of the refinement */
+    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1]; /* bad triangles per share and reason; last: no reason */
 };
 
 static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,

@@ -120,9 +120,9 @@ static int best_edge(const struct tri_refiner *r, const struct tri_triangle *t, 
 
 /* A triangle and its circumcentre, in a frame whose origin is the first end a of the chosen edge ab. */
 struct stand {
-    struct tri_point a;
+    struct tri_point a; /* first end of the edge */
     double x, y;       /* unit vector from a to b */
-    double length;
+    double length;     /* of the edge */
     double cx, cy;     /* circumcentre relative to a: along the edge, and perpendicular to it */
     double ha, hb;     /* wanted lengths at a and at b */
 };
@@ -253,9 +253,9 @@ enum { MOST_STAR = 64 };
 
 /* The triangles around a vertex. The rim is the polygon of their outer edges. */
 struct star {
-    int n;
-    tri_triangle_id id[MOST_STAR];
-    tri_vertex_id rim[MOST_STAR];
+    int n;                     /* number of triangles */
+    tri_triangle_id id[MOST_STAR];          /* [n] triangles in counter-clockwise order */
+    tri_vertex_id rim[MOST_STAR];           /* [n] rim vertex at which triangle i begins */
     tri_link outer[MOST_STAR]; /* link across the edge from rim[i] to rim[i + 1] */
     int next[MOST_STAR], before[MOST_STAR]; /* neighbours of corner i in the rest of the rim */
 };

@@ -24,35 +24,35 @@
 /* A triangle that is too large. */
 struct large {
     double area2;           /* twice the bound on its area */
-    struct tri_entry entry;
+    struct tri_entry entry; /* the triangle and its generation number */
     int32_t place;          /* index in the worklist or, after the worklist, in the queue */
 };
 
 struct place {
-    int32_t row, column;
+    int32_t row, column; /* as in struct tri_sites */
 };
 
 /* An edge of the border, as seen from the triangles on both sides. */
 struct border {
-    tri_halfedge inside;
-    tri_halfedge outside;
+    tri_halfedge inside;  /* half-edge of the triangle inside */
+    tri_halfedge outside; /* half-edge of the triangle outside */
     tri_region_id region; /* region on the inside */
 };
 
 struct tri_fill {
     struct large *large;   /* [n_large] sorted by bound, then by place */
-    int32_t n_large, large_capacity;
+    int32_t n_large, large_capacity; /* entries of `large`; allocated */
     int32_t done;          /* the current sites are those for the bound of large[done] */
     double cells;          /* number of cells that fit into these triangles */
-    struct tri_sites sites;
+    struct tri_sites sites;          /* the sites of the current bound */
     bool has_sites;        /* true: the sites for the current bound have been found */
     struct place *check;   /* [n_check] sites whose neighbourhood has changed, to be looked at */
-    int32_t n_check, check_capacity;
+    int32_t n_check, check_capacity; /* entries of `check`; allocated */
     struct border *border; /* [n_border] border edges in the order of the cells */
-    int32_t n_border, border_capacity;
+    int32_t n_border, border_capacity; /* entries of `border`; allocated */
     int32_t n_new, n_cells;  /* sites without a vertex; cells */
     tri_triangle_id *number; /* [n_numbers] triangle numbers for the cells, those of replaced triangles first */
-    int32_t n_numbers, number_capacity;
+    int32_t n_numbers, number_capacity; /* entries of `number`; allocated */
 };
 
 /* Marks the links from triangles inside to the outside during the walk over the inside. No subsegment has this
@@ -94,8 +94,8 @@ static bool has_cell(unsigned in) { return in & (in >> 1 | in << (AROUND - 1)); 
 
 /* A cell: its sites counter-clockwise. across[k] is the third site of the cell across the edge opposite to site k. */
 struct cell {
-    struct place at[3];
-    int32_t site[3], across[3];
+    struct place at[3]; /* positions of the sites */
+    int32_t site[3], across[3]; /* indices of sites */
 };
 
 /* Finds the cell whose lower edge starts at this site (by_edge), or the cell whose lowest corner is this site.

@@ -16,20 +16,20 @@ enum { MOST_PENDING = 64, MOST_WALKED = 1024 };
 static const double FLAT = 1e-12;
 
 struct petal {
-    const struct tri_mesh *mesh;
+    const struct tri_mesh *mesh; /* borrowed */
     struct tri_point a;     /* one end of the shortest edge; the coordinates below are relative to it */
     struct tri_point b;     /* the other end of the edge */
     struct tri_point o;     /* centre of the petal's disk */
     double r2;              /* squared radius of the disk */
-    struct tri_point best;
+    struct tri_point best;  /* best point so far */
     double best2;           /* squared distance from `best` to its nearest vertices */
 };
 
 /* A half-edge of the diagram: starts at the circumcentre c of a triangle and crosses the edge `code` of that
  * triangle. */
 struct pending {
-    tri_halfedge code;
-    struct tri_point c;
+    tri_halfedge code; /* the edge of the triangle that is crossed */
+    struct tri_point c; /* circumcentre at which the half-edge starts */
 };
 
 static struct tri_point relative(const struct petal *petal, tri_vertex_id v)

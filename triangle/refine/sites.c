@@ -12,7 +12,7 @@ static const double SLACK = 1e-6;
 
 /* The columns (or rows) from first to last, as whole numbers. */
 struct span {
-    double first, last;
+    double first, last; /* none if first > last */
 };
 
 /* Returns the columns of a row whose points have x coordinates between `from` and `to`. */

@@ -22,7 +22,7 @@
 #include "triangle/tunables.h"
 
 struct tri_smooth {
-    struct tri_mesh *mesh;
+    struct tri_mesh *mesh;   /* borrowed */
     double sin2;             /* squared sine of the angle bound */
     tri_triangle_id *corner; /* [n_vertices] a triangle that has the vertex as a corner; TRI_NONE: none */
 };
@@ -31,8 +31,8 @@ enum { MOST_RIM = 32 }; /* a vertex with more triangles does not move */
 
 /* The triangles around a vertex. Triangle i has the rim vertices i and i + 1. */
 struct star {
-    int n;
-    tri_triangle_id triangle[MOST_RIM];
+    int n;                              /* number of triangles */
+    tri_triangle_id triangle[MOST_RIM]; /* [n] in counter-clockwise order */
     struct tri_point rim[MOST_RIM + 1]; /* [n + 1] the last repeats the first */
 };
 

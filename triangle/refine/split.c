@@ -176,7 +176,7 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
 
 /* The quantities l, h and d of the rule, for one vertex and one subsegment. */
 struct sight {
-    double l, h, d;
+    double l, h, d; /* length; distance of v; distance of the level point from the nearer end */
     bool from_end; /* true: d is measured from the subsegment's second end */
     bool far;      /* true: d >= 0.9 h. With the bound h, rounding could make two parents split each other endlessly */
 };

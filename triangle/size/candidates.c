@@ -19,30 +19,30 @@ static const double CUSHION = 1 + 0x1p-20;
 
 /* The key of an item, from the centre of a part of a cell. */
 struct sight {
-    double value;
+    double value; /* lower bound of the key is value + gradient * displacement */
     struct tri_point gradient;
 };
 
 /* A cell that is left to a task, with its candidates. */
 struct portion {
     int32_t at; /* index in the tree */
-    struct tri_cell cell;
+    struct tri_cell cell;      /* the cell */
     int32_t *list; /* [n] */
-    int64_t n;
+    int64_t n;     /* number of candidates */
     struct tri_candidates out; /* its own result, in which child[0] stands for this cell */
-    enum tri_status status;
+    enum tri_status status;    /* of the task */
 };
 
 struct making {
-    struct tri_candidates *out;
-    const struct tri_contest *contest;
-    const struct tri_stop *stop;
+    struct tri_candidates *out; /* the result */
+    const struct tri_contest *contest; /* borrowed */
+    const struct tri_stop *stop;       /* borrowed; NULL: cannot be stopped */
     int32_t *stack; /* lists of the cells on the path from the root to the current cell */
-    int64_t n, capacity;
+    int64_t n, capacity; /* numbers on the stack; allocated */
     struct sight *sight; /* [QUARTERS] keys for each item of a list */
     struct portion *portion; /* [n_portions] cells left to tasks, in the order of the tree; NULL: no tasks */
-    size_t n_portions;
-    uint32_t steps;
+    size_t n_portions;       /* number of cells left to tasks */
+    uint32_t steps;          /* counter of tri_stop_is_due */
     enum tri_status status; /* the first failure */
 };
 
@@ -147,7 +147,7 @@ static void make_leaf(struct making *m, int32_t at, const int32_t *list, int64_t
 
 /* A square part of a cell: the whole cell or a quarter. */
 struct part {
-    struct tri_point centre;
+    struct tri_point centre; /* centre of the part */
     struct tri_key winner; /* key of the winner at the centre; its value is infinite before there is one */
     double most;           /* upper bound on the smallest key anywhere in the part */
 };

@@ -15,15 +15,15 @@ enum { STRIPS = 6, MOST_TURNS = 32 };
 /* A subsegment on its line. */
 struct wall {
     struct tri_point from, direction; /* start of the subsegment; unit vector along it */
-    double length;
+    double length;                    /* length of the subsegment */
 };
 
 /* The data that determine h in a triangle. */
 struct field {
-    struct tri_point corner[3];
-    double size[3];
+    struct tri_point corner[3];   /* corners of the triangle */
+    double size[3];               /* feature sizes at the corners */
     struct wall strip[STRIPS][2]; /* the two sides of each gap */
-    int n_strips;
+    int n_strips;                 /* number of gaps */
     double least; /* lower limit on h, which keeps the integral finite where walls meet */
 };
 
@@ -148,8 +148,8 @@ double tri_crowd_work(const struct tri_crowd *c, tri_triangle_id t, double asked
  * two points is 1 over the product of both values of h. So a part is integrated from its corners. */
 
 struct place {
-    struct tri_point at;
-    double h;
+    struct tri_point at; /* position */
+    double h;            /* size there */
 };
 
 /* Returns the index of the corner opposite the longest edge. */

@@ -35,9 +35,9 @@ static struct budget budget_for(const struct tri_mesh *mesh, int64_t most)
 
 /* The data from which work is estimated. */
 struct estimator {
-    struct tri_asked asked;
-    struct tri_crowd crowd;
-    struct budget *budget;
+    struct tri_asked asked; /* the wanted sizes */
+    struct tri_crowd crowd; /* the angle bound */
+    struct budget *budget;  /* limit on calls */
     bool at_least; /* true: only the certain part of the caller's sizes counts */
     double large; /* largest area of a piece for which the caller's functions are evaluated */
     double *known; /* [n_triangles] triangles needed for sizes in each; NULL: computed on request */
@@ -63,9 +63,9 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
 
 /* The caller's sizes in a piece of a triangle, as a size h with 1 / h^2 triangles per unit of area. */
 struct wish {
-    const struct tri_asked *asked;
+    const struct tri_asked *asked; /* the wanted sizes */
     const struct tri_point *piece; /* [3] */
-    struct budget *budget;
+    struct budget *budget;         /* limit on calls */
 };
 
 static double wished_at(const void *user, struct tri_point q)
@@ -150,8 +150,8 @@ double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *qualit
 
 /* The work added by every step-th triangle. */
 struct works {
-    const struct estimator *e;
-    double (*of)(const struct estimator *e, tri_triangle_id t);
+    const struct estimator *e; /* the data */
+    double (*of)(const struct estimator *e, tri_triangle_id t); /* returns the work of a triangle */
     int32_t step, n; /* triangles step * i for i < n */
     double *known;   /* [n] the work of each, computed by all threads; NULL: computed on request */
     double sum[TRI_MOST_SHARES];    /* [shares] the sum of each share */
@@ -301,8 +301,8 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_q
 
 /* The receiver of the samples. */
 struct receiver {
-    tri_take_work *take;
-    void *user;
+    tri_take_work *take; /* called for each sample */
+    void *user;          /* passed to take */
 };
 
 /* Samples the work of a triangle, dividing it into four while a piece holds more than `grain`. depth: limit on the

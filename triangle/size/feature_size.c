@@ -28,7 +28,7 @@ static bool is_beside(double edge, double left, double right) { return left <= r
  * a curve by their vertices, so each share begins with a higher vertex than the previous one. Corners owned by
  * another share are processed afterwards; the minimum of all estimates does not depend on the order. */
 struct estimate {
-    struct tri_mesh *mesh;
+    struct tri_mesh *mesh;                  /* sizes go into mesh->feature */
     tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i owns the vertices own[i] .. own[i + 1] - 1 */
 };
 

@@ -112,21 +112,21 @@ enum { MOST_SHRINKINGS = 40, DEEPEST = 12, MOST_UNSEEN = 2 };
 
 /* The position of a wall in its chain of walls. */
 struct along {
-    int32_t chain;
+    int32_t chain; /* number of the chain */
     double place; /* of its first end, along the chain */
     double sign;  /* 1; -1: the wall runs against the chain */
 };
 
 struct channels {
-    const struct tri_size_frame *frame;
+    const struct tri_size_frame *frame; /* data common to all sources */
     struct tri_near walls; /* segments with length 0 and growth 1, for distances */
     tri_sub_id *sub;       /* [walls.n] subsegment of each wall */
     struct along *along;   /* [walls.n] position in its chain */
     double *around;        /* [walls.n] length of each closed chain; infinite for open ones */
     struct tri_near *near; /* receives the lengths */
-    double n;
-    uint32_t steps;
-    enum tri_status status;
+    double n;              /* wanted number of edges across */
+    uint32_t steps;        /* counter of tri_stop_is_due */
+    enum tri_status status; /* first failure */
 };
 
 /* Is the subsegment on the boundary, or between two regions? */

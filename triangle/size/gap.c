@@ -89,8 +89,8 @@ static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, 
 
 /* What an edge bridges: the cost of the most expensive gap (0: none), and whether one of the gaps is a spike. */
 struct gap {
-    double cost;
-    bool spike;
+    double cost; /* of the most expensive gap; 0: none */
+    bool spike;  /* true: one of the gaps is a spike */
 };
 
 /* Does filling any gap between p and another parent that edge uv bridges cost less than this? If it returns true,
@@ -197,11 +197,11 @@ static int octave_of(double cost)
 
 /* Costs and numbers of the triangles that are not cheap in a share of the mesh, by octave of their cost. */
 struct demand {
-    double cost[OCTAVES], count[OCTAVES];
+    double cost[OCTAVES], count[OCTAVES]; /* sum of costs; number of triangles */
 };
 
 struct demands {
-    const struct tri_mesh *mesh;
+    const struct tri_mesh *mesh;          /* borrowed */
     struct demand share[TRI_MOST_SHARES]; /* summed in this order, so the result does not depend on the number of
                                              threads */
 };

@@ -17,8 +17,8 @@ struct tri_lengths {
     struct tri_raster *raster; /* [n_rasters] */
     struct tri_background *background; /* [n_backgrounds] */
     struct tri_sampled *sampled; /* [n_sampled] */
-    int64_t n_rasters, n_backgrounds, n_sampled;
-    char note[NOTE];
+    int64_t n_rasters, n_backgrounds, n_sampled; /* numbers of sources */
+    char note[NOTE];                             /* warning for the user; "": none */
 };
 
 /* --- validation */
@@ -126,9 +126,9 @@ static int64_t count_sources(const struct tri_lengths *l)
 /* --- making */
 
 struct making {
-    struct tri_lengths *out;
-    const struct tri_sizes *sizes;
-    struct tri_size_frame frame;
+    struct tri_lengths *out; /* the result */
+    const struct tri_sizes *sizes; /* the request */
+    struct tri_size_frame frame;   /* data common to all sources */
 };
 
 /* Returns the bounding box of the mesh. Its boundary consists of subsegments. */

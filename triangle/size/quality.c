@@ -184,8 +184,8 @@ double tri_asked_length(const struct tri_asked *asked, const struct tri_point tr
 }
 
 struct asking {
-    const struct tri_mesh *mesh;
-    const struct tri_lengths *lengths;
+    const struct tri_mesh *mesh; /* lengths go into mesh->length */
+    const struct tri_lengths *lengths; /* borrowed */
 };
 
 static void ask_share(void *context, size_t share)

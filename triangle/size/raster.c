@@ -13,12 +13,12 @@ enum { MOST_SWEEPS = 8 };
 
 /* A propagation over the grid. */
 struct spreading {
-    int32_t width, height;
+    int32_t width, height; /* columns and rows */
     double step[2], slope; /* distances of columns and of rows; slope of the propagation */
     const float *base;     /* [height][width] start values; infinite: does not propagate */
     float *least;          /* [height][width] result, at most base */
     int32_t *from;         /* [height][width] the node y that gives the result */
-    bool changed;
+    bool changed;          /* true: a node has changed in this sweep */
 };
 
 /* Tries the y of a neighbour for the node in column i and row j. offset: from the node to the neighbour. */

@@ -18,27 +18,27 @@ static const double SMALL = 0.5;      /* cells with sides below this fraction of
 
 /* A sample point: its distance from the lower left corner, in steps of half a cell of depth DEEPEST. */
 struct node {
-    uint32_t x, y;
+    uint32_t x, y; /* column and row of the point */
 };
 
 struct part {
-    struct tri_cell cell;
+    struct tri_cell cell; /* the cell */
     int32_t at;         /* index in the tree; -1: has been divided */
     int32_t node[NINE]; /* its sample points, lowest row first; -1: not yet known */
     double error;       /* relative error of the prediction from its corners; 0: small enough */
 };
 
 struct sampling {
-    struct tri_sampled *out;
-    const struct tri_size_field *field;
-    const struct tri_size_frame *frame;
+    struct tri_sampled *out; /* the result */
+    const struct tri_size_field *field; /* the function */
+    const struct tri_size_frame *frame; /* data common to all sources */
     struct node *node; /* [n] all sample points so far */
     double *length;    /* [n] sampled lengths in units of the mesh; 0: no data */
-    int32_t n, capacity, asked;
+    int32_t n, capacity, asked;         /* points; allocated; points already sampled */
     int32_t *slot;     /* [n_slots] hash table of sample points; -1: free */
     uint32_t n_slots;  /* a power of two */
     struct part *part; /* [n_parts] the leaves of the tree by number, and divided cells */
-    int32_t n_parts, part_capacity;
+    int32_t n_parts, part_capacity; /* entries of `part`; allocated */
     int32_t first;     /* parts from this one on have not been sampled */
 };
 

@@ -7,13 +7,13 @@
 
 /* The state of a propagation. */
 struct pass {
-    const struct tri_spreading *cells;
-    const double *base;
-    double slope;
-    double *least;
-    int32_t *from;
+    const struct tri_spreading *cells; /* the nodes and cells */
+    const double *base;                /* [n] start values */
+    double slope;                      /* slope of the propagation */
+    double *least;                     /* [n] result */
+    int32_t *from;                     /* [n] node that gives the result */
     unsigned char *changed; /* [n] bit 0: the node changed in this pass; bit 1: in the previous pass */
-    bool any;
+    bool any;               /* true: a node has changed in this pass */
 };
 
 /* Tries the source node of each changed corner for all other corners of the cell. */
