@@ -1,11 +1,13 @@
 /* The C interface of Triangle 1.6, as a drop-in replacement. Code written for Triangle's header compiles with this
  * header. Programs linked to Triangle link to libtriangle.a. If they link to libptriangle.a and libtriangle.a, in
  * this order, they refine on all cores.
+ *
  * The header includes nothing, so it may be included inside a namespace or extern "C". It works with C89 and later,
  * C++98 and later. The coordinate type is TRI_REAL, which is double. If the client defines REAL, as Triangle's own
  * header requires, it must be the same type; this header does not define it. A library built with PTRIANGLE_SINGLE
  * uses float; its clients must define SINGLE. Internally coordinates are always double. Rounding to float may
  * flatten or invert small triangles far from the origin, so keep coordinates near the origin.
+ *
  * No function exits the process or keeps state, so any number of threads may call at the same time. The same input
  * and switches give the same output, bit for bit, for any number of threads, compiler or locale. The two libraries
  * make different meshes for the same bounds. In a forked child process, libptriangle refines on one thread. */

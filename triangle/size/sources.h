@@ -1,9 +1,9 @@
-/* The kinds of size sources whose minimum lengths.c takes. Each keeps its data in units of the mesh and is constant
- * once made.
+/* The kinds of size sources. lengths.c takes their minimum. Each source stores its data in units of the mesh and is
+ * constant once made.
  *
  * GRADATION. A source h0 is limited to the slope g by h(x) = min over y of h0(y) + g |x - y|. This is the largest
- * field below h0 with that slope. The minimum of several limited sources is limited as well, so each source is
- * limited separately. An infinite g means no limit. */
+ * field below h0 with that slope. The minimum of limited sources is limited as well, so each source is limited
+ * separately. An infinite g means no limit. */
 #ifndef TRIANGLE_SIZE_SOURCES_H
 #define TRIANGLE_SIZE_SOURCES_H
 
