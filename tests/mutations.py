@@ -309,17 +309,17 @@ def hole_extended(m):
                    all(3 <= x <= 5 for v in (a, b) for x in m.points[v][:2]))})
 
 
-@mutation("no face carved in vain")
+@mutation("no unexpected holes")
 def face_emptied(m):
     m.remove({t for t in range(len(m.triangles)) if m.in_face(t)})
 
 
-@mutation("no face carved in vain")
+@mutation("no unexpected holes")
 def face_cut_off_with_its_outer_segments(m):
     m.remove({t for t in range(len(m.triangles)) if m.in_corner(t)})
 
 
-@mutation("no face carved in vain")
+@mutation("no unexpected holes")
 def outline_beside_the_others_lost(m):
     n = len(m.input_points)
     m.input_points += [[20.0, 0.0, 0], [21.0, 0.0, 0], [20.0, 1.0, 0]]
@@ -445,7 +445,7 @@ def hole_of_the_input_missing(m):
     m.holes.append([1.0, 1.0])
 
 
-@mutation("no face carved in vain")
+@mutation("no unexpected holes")
 def hole_that_the_input_has_not(m):
     m.holes.clear()
 

@@ -526,7 +526,7 @@ static void test_functions_are_kept(void **state)
     }
     struct tri_error error;
     assert_int_equal(tri_lengths_new(&lengths, &sizes, &mesh, NULL, &error), TRI_BAD_INPUT);
-    assert_string_equal(error.text, "sizes[0], a function: nothing that it returned is a length");
+    assert_string_equal(error.text, "sizes[0], a function: it returned no length above 0");
     a = (struct asked){.which = 0};
     const struct tri_stop stop = {is_asked_thrice, &a};
     mesh.stop = &stop;
@@ -762,12 +762,12 @@ static void test_what_is_no_field_is_refused(void **state)
                                         "sizes[0], near segments: its length is nan, its growth 1",
                                         "sizes[0], a raster: it has no values",
                                         "sizes[0], a raster: its origin is (0, 0), its step (1, 0)",
-                                        "sizes[0], a raster: no value is a length",
+                                        "sizes[0], a raster: no value is above 0",
                                         "sizes[0], a mesh: it has no points",
                                         "sizes[0], a mesh: it has 2 points and 3 values",
                                         "sizes[0], a mesh: its point 1 is (1, inf)",
                                         "sizes[0], a mesh: its triangle 0 has the corner 3, of 3 points",
-                                        "sizes[0], a mesh: no value of a triangle is a length",
+                                        "sizes[0], a mesh: no vertex of a triangle has a length above 0",
                                         "sizes[0], a function: it is NULL", "sizes[0]: its kind is 99"};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
         refuse(&mesh, &(struct tri_sizes){.fields = &fields[k], .n = 1}, texts[k]);

@@ -117,8 +117,8 @@ RING = [[0, 1], [1, 2], [2, 3], [3, 0]]
     (dict(segments=RING, holes=[[9, 9]], regions=[[0.5, 0.5, 1, 0.1]]), "qAa",
      r"segments, holes, regions: ignored without the switch p$"),
     (dict(segments=RING, triangles=[[0, 1, 2], [0, 2, 3]], holes=[[9, 9]]), "r", r"segments: ignored without"),
-    (dict(vertices=SQUARE["vertices"] + [[1, 1]]), "", r"1 point lies where a point of lower number lies, and is not"),
-    (dict(vertices=SQUARE["vertices"] + [[1, 1]] * 2), "", r"2 points lie where a point of lower number lies")])
+    (dict(vertices=SQUARE["vertices"] + [[1, 1]]), "", r"1 point coincides with a point of lower number and is not"),
+    (dict(vertices=SQUARE["vertices"] + [[1, 1]] * 2), "", r"2 points coincide with points of lower number")])
 def test_mistakes_are_warnings(more, switches, words):
     with pytest.warns(ptriangle.IgnoredWarning, match=r"^triangulate\(\): " + words) as caught:
         triangle.triangulate({**SQUARE, **more}, switches)

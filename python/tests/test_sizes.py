@@ -103,7 +103,7 @@ def test_no_data():
 @pytest.mark.parametrize("wanted, words", [
     (dict(size=0), "size: 0 is not > 0"), (dict(size="x"), "size is 'x' instead of a number"),
     (dict(size=([[1.0]], (0, 0, 0, 1))), "extent"), (dict(size=(1, 2)), "a pair is an array"),
-    (dict(size=([[np.nan, np.nan], [np.nan, np.nan]], (0, 0, 1, 1))), "no value is a length"),
+    (dict(size=([[np.nan, np.nan], [np.nan, np.nan]], (0, 0, 1, 1))), "no value is above 0"),
     (dict(size=([[0, 0], [1, 0], [0, 1]], [[0, 1, 5]], [1, 1, 1])), "5"), (dict(size_near={9: 0.1}), "9"),
     (dict(size_near={1: (1, 2, 3)}), "size_near"),
     (dict(size_near={1: -1}), "size_near"), (dict(size_near=[1]), "a dict"),

@@ -150,7 +150,7 @@ for change in '$2 += 0.01' '$5 += 1' '$4 += 1'; do
     part_by_part letter.1 --poly letter.poly
     case $change in
     *4*) denies "^FAIL  vertex attributes: 1, first: attribute 0 of node $last" letter.1 ;;
-    *) denies "^FAIL  nodes amid edges: 1, first: node $last" letter.1 ;;
+    *) denies "^FAIL  midside nodes: 1, first: node $last" letter.1 ;;
     esac
 done
 awk 'NR > 1 && $1 == 2 { $4 = 9e9 } { print }' sound >letter.1.node

@@ -98,7 +98,7 @@ for mesher in triangle ptriangle; do
     mesher 1 $mesher -p letter --size absent.asc
     complains '^absent\.asc: cannot open: '
     mesher 1 $mesher -p letter --size empty.asc
-    complains "^$mesher: --size empty.asc.*: no value is a length\$"
+    complains "^$mesher: --size empty.asc.*: no value is above 0\$"
     wrote broken.asc empty.asc
 
     # --- a number is a bound of 20 degrees, and edges of about that length

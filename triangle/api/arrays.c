@@ -1,4 +1,4 @@
-/* A mesh as arrays: most are its own, with strides; the rest is made when it is asked for. */
+/* A mesh as arrays. Most arrays are views of the mesh, with strides; the others are made on request. */
 #include <stdlib.h>
 
 #include "triangle/api/figure.h"
@@ -60,7 +60,7 @@ void tri_mesh_figure(const struct tri_mesh *mesh, struct tri_figure *figure)
     own.segment_markers = tri_mesh_segment_markers(mesh);
     own.triangles = tri_mesh_triangles(mesh);
     own.triangle_attributes = tri_mesh_triangle_attributes(mesh);
-    (void)tri_api_struct_give(figure, &own, sizeof own, "tri_figure", NULL); /* its size is set */
+    (void)tri_api_struct_give(figure, &own, sizeof own, "tri_figure", NULL); /* cannot fail, because the size is set */
 }
 
 enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neighbors, struct tri_error *error)

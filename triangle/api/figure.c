@@ -1,4 +1,5 @@
-/* Shapes are checked here, contents where they matter (triangle/mesh/pslg.c, triangle/cdt/reconstruct.c). */
+/* Converts figures. Only the shapes of arrays are checked here; contents are checked where they are used
+ * (triangle/mesh/pslg.c, triangle/cdt/reconstruct.c). */
 #include "triangle/api/figure.h"
 
 #include <assert.h>
@@ -9,21 +10,21 @@ enum { MOST_ROWS = 1 << 29, MOST_COLUMNS = 1 << 20 };
 
 enum { ANY = -1 };
 
-/* A figure on its way; after a failure nothing more is taken. */
+/* A conversion in progress. After a failure, the remaining arrays are skipped. */
 struct taking {
-    struct tri_api_figure *taken;
-    enum tri_status status;
-    struct tri_error *error;
+    struct tri_api_figure *taken; /* the result */
+    enum tri_status status;       /* first failure */
+    struct tri_error *error;      /* its description */
 };
 
-/* An array of either kind. */
+/* An array of any element type. */
 struct rows {
-    const void *at;
-    int64_t n, width, stride;
-    size_t item; /* bytes */
+    const void *at; /* first element */
+    int64_t n, width, stride; /* rows; elements per row; elements from row to row */
+    size_t item; /* bytes per element */
 };
 
-/* Has the array n rows (ANY), this wide (ANY)? */
+/* Checks that the array has n rows of this width. ANY: any number. */
 static enum tri_status check_shape(const struct rows *a, const char *what, int64_t n, int64_t width,
                                    struct tri_error *error)
 {
@@ -32,7 +33,7 @@ static enum tri_status check_shape(const struct rows *a, const char *what, int64
     if (a->n < 0 || !a->at)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows without an array", what, (long long)a->n);
     if (a->width < 1 || a->stride < a->width || (width != ANY && a->width != width))
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld have no meaning", what,
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: width %lld and stride %lld are invalid", what,
                         (long long)a->width, (long long)a->stride);
     if (n != ANY && a->n != n)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %lld rows instead of %lld", what, (long long)a->n,
@@ -43,7 +44,8 @@ static enum tri_status check_shape(const struct rows *a, const char *what, int64
     return TRI_OK;
 }
 
-/* The rows of an array that has its shape, without gaps; only read. NULL where there are none. */
+/* Checks the shape of an array and returns its rows without gaps, for reading only: the array itself or a copy. NULL
+ * if there are no rows or after a failure. */
 static void *pack(struct taking *t, struct rows a, const char *what, int64_t n, int64_t width)
 {
     const size_t row = (size_t)a.width * a.item;

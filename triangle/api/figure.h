@@ -1,4 +1,4 @@
-/* What callers of the public headers give, as the mesher takes it. */
+/* Converts the structs of the public headers to those of the mesher. */
 #ifndef TRIANGLE_API_FIGURE_H
 #define TRIANGLE_API_FIGURE_H
 
@@ -7,25 +7,28 @@
 
 enum { TRI_API_MOST_COPIES = 12 };
 
-/* A figure with 32-bit counts. Arrays without gaps are the caller's own, and only read; others are copies. */
+/* A figure with 32-bit counts. Arrays without gaps are borrowed from the caller and only read; the others are
+ * copies. */
 struct tri_api_figure {
-    struct tri_pslg pslg;
-    struct tri_elements elements; /* n is 0: the figure is no mesh */
-    void *copies[TRI_API_MOST_COPIES];
-    int n_copies;
+    struct tri_pslg pslg;         /* points, segments, holes and regions */
+    struct tri_elements elements; /* n is 0 if the figure is no mesh */
+    void *copies[TRI_API_MOST_COPIES]; /* [n_copies] arrays that are copies */
+    int n_copies;                      /* number of copies */
 };
 
-/* Checks the shapes of all arrays. TRI_BAD_INPUT, TRI_TOO_LARGE, TRI_NO_MEMORY. To be freed in any case. O(copies). */
+/* Checks the shapes of all arrays and converts the figure. Returns TRI_OK, TRI_BAD_INPUT, TRI_TOO_LARGE or
+ * TRI_NO_MEMORY. Free *taken in any case. O(size of the copies). */
 enum tri_status tri_api_figure_take(struct tri_api_figure *taken, const struct tri_figure *figure,
                                     struct tri_error *error);
 void tri_api_figure_free(struct tri_api_figure *taken);
 
-/* A struct that begins with its size, as this library knows it: own[own_size] receives what there is of it, else 0.
- * TRI_BAD_INPUT: the size is not set, or what a newer header has is not 0. NULL is all 0. */
+/* Copies a struct that begins with its size into own[own_size]. Members that the caller's header does not have
+ * become 0; NULL gives all zeros. Returns TRI_BAD_INPUT if the size is not set, or if a member unknown to this
+ * library is not 0. */
 enum tri_status tri_api_struct_take(void *own, size_t own_size, const void *given, const char *name,
                                     struct tri_error *error);
 
-/* The same on the way out: as much as the caller's header has, which is `given->size`. */
+/* Copies a struct back to the caller: only the members that the caller's header has, according to `given->size`. */
 enum tri_status tri_api_struct_give(void *given, const void *own, size_t own_size, const char *name,
                                     struct tri_error *error);
 

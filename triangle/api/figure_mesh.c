@@ -1,7 +1,7 @@
 /* Meshes of the public header: made, refined, deleted.
  *
- * INVARIANT: between calls a mesh has no free numbers, its points lie in the order of the caller, and the arrays that
- * are made from it speak of what it is now. */
+ * INVARIANT. Between calls a mesh has no unused numbers, its points are in the caller's order, and the arrays
+ * derived from the mesh are up to date. */
 #include "triangle/api/opaque_mesh.h"
 
 #include <math.h>
@@ -48,11 +48,11 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
     return tri_sizes_check(&sizes, error);
 }
 
-/* The caller's functions of size, and the first length that is none. Several threads may ask. */
+/* The caller's size functions, and the first invalid length. Several threads may call them. */
 struct sizes {
-    const struct tri_settings *settings;
-    atomic_flag is_odd;
-    double odd, odd_at[2];
+    const struct tri_settings *settings; /* with the caller's functions */
+    atomic_flag is_odd;                  /* set: an invalid length was returned */
+    double odd, odd_at[2];               /* the first invalid length, and its position */
 };
 
 static void note_odd(struct sizes *sizes, double length, const double at[2])
@@ -105,7 +105,7 @@ static struct tri_quality quality_of(const struct tri_api_mesh *m, struct sizes 
     return how;
 }
 
-/* *fence is room for the settings' fence in the units of the mesh. */
+/* *fence receives the settings' fence in units of the mesh. */
 static struct tri_refine_hooks hooks_of(const struct tri_api_mesh *m, const struct tri_settings *s,
                                         struct tri_fence *fence)
 {
@@ -118,7 +118,7 @@ static struct tri_refine_hooks hooks_of(const struct tri_api_mesh *m, const stru
     return hooks;
 }
 
-/* --- arrays that are made from the mesh */
+/* --- arrays derived from the mesh */
 
 static void forget(struct tri_api_mesh *m)
 {
@@ -181,7 +181,7 @@ static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
         s->note(s->note_user, m->notes);
 }
 
-/* Brings the invariant about. */
+/* Restores the invariant. */
 static enum tri_status settle(struct tri_api_mesh *m, const struct tri_settings *s, struct tri_error *error)
 {
     forget(m);
@@ -191,7 +191,7 @@ static enum tri_status settle(struct tri_api_mesh *m, const struct tri_settings 
     return status ? status : make_attributes(m, error);
 }
 
-/* --- made */
+/* --- making and refining */
 
 static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figure)
 {
@@ -209,16 +209,16 @@ static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figu
     }
 }
 
-/* How far refinement is, for settings.progress. */
+/* The progress of refinement, for settings.progress. */
 struct following {
-    const struct tri_settings *settings;
-    double first, estimate, done; /* triangles at first and at last; the share that was told */
+    const struct tri_settings *settings; /* with the caller's progress function */
+    double first, estimate, done; /* triangles at the start and at the end (estimated); reported fraction */
 };
 
 static void tell_progress(void *user, int64_t triangles)
 {
     struct following *f = user;
-    const double most = 0.99; /* the end is told when it has come */
+    const double most = 0.99; /* completion is reported separately */
     double done = f->estimate > f->first ? ((double)triangles - f->first) / (f->estimate - f->first) : 0;
     f->done = done > most ? most : done > f->done ? done : f->done;
     f->settings->progress(f->settings->progress_user, f->done, triangles);
@@ -229,7 +229,7 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     double sure;
-    enum tri_status status = tri_refine_prepare(mesh, way->executor, error); /* the estimate asks for features */
+    enum tri_status status = tri_refine_prepare(mesh, way->executor, error); /* the estimate needs feature sizes */
     if (status)
         return status;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
@@ -242,17 +242,18 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
     return status;
 }
 
-/* Whose refinement, for tri_generate. */
+/* The refinement that tri_generate calls. */
 struct refiner {
-    struct tri_api_mesh *m;
-    const struct tri_settings *settings;
-    const struct tri_api_way *way;
+    struct tri_api_mesh *m; /* the mesh */
+    const struct tri_settings *settings; /* the caller's settings */
+    const struct tri_api_way *way;       /* the refinement to call */
 };
 
 static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)
 {
-    snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g), which is no length: any"
-             " will do there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0], sizes->odd_at[1]);
+    snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g): it must be above 0,"
+             " and is ignored there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0],
+             sizes->odd_at[1]);
 }
 
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
@@ -300,10 +301,10 @@ static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_fig
     how.keep_hull = s->keep_hull || pslg->n_segments == 0;
     how.even_odd = s->even_odd;
     how.spread_regions = pslg->n_regions > 0;
-    how.refine = how.elements || has_bounds(m, s) || way->figure; /* a mesh may be refined later, and has to be
-                                                                     Delaunay then */
+    how.refine = how.elements || has_bounds(m, s) || way->figure; /* a mesh may be refined later and must be Delaunay
+                                                                     for that */
     how.refine_call = refine;
-    how.refine_user = (void *)&refiner; /* which only reads it */
+    how.refine_user = (void *)&refiner; /* it is only read */
     how.executor = way->executor;
     how.stop = s->stop ? &stop : NULL;
     return tri_generate(&m->mesh, pslg, &how, &m->report, error);
@@ -314,7 +315,7 @@ static enum tri_status make(struct tri_api_mesh *m, const struct tri_api_figure 
 {
     note_sizes(m, figure);
     enum tri_status status = generate(m, figure, s, way, error);
-    if (!m->mesh.regions) /* empty */
+    if (!m->mesh.regions) /* the mesh is empty */
         return status;
     enum tri_status settled = settle(m, s, status ? NULL : error);
     if (settled)
@@ -336,12 +337,12 @@ enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure
     tri_api_figure_free(&taken);
     if (m->mesh.regions && (!status || status == TRI_NO_MEMORY || status == TRI_STOPPED))
         *mesh = &m->mesh;
-    else /* empty, or refused */
+    else /* the mesh is empty, or was refused */
         tri_mesh_delete(&m->mesh);
     return status;
 }
 
-/* For a figure that has been taken. */
+/* Streams the mesh of a converted figure. */
 static enum tri_status stream(struct tri_api_figure *figure, const struct tri_settings *settings,
                               const struct tri_api_way *given, struct tri_error *error)
 {
@@ -417,7 +418,7 @@ void tri_mesh_delete(struct tri_mesh *mesh)
     free(m);
 }
 
-/* --- asked */
+/* --- queries */
 
 const char *tri_mesh_notes(const struct tri_mesh *mesh) { return ((const struct tri_api_mesh *)mesh)->notes; }
 
@@ -445,7 +446,7 @@ _Static_assert((int)TRI_REASONS == (int)TRI_EXCUSES && (int)TRI_REASON_INPUT_ANG
                    (int)TRI_REASON_DEFERRED == (int)TRI_EXCUSE_DEFERRED,
                "the reasons of the header are those of the library");
 
-/* Did the last refinement end, with bounds at least as strict as these? */
+/* Was the mesh refined successfully with bounds at least as strict as these? */
 static bool is_refined_for(const struct tri_api_mesh *m, const struct tri_settings *s)
 {
     const struct tri_settings *done = &m->refined;
@@ -467,7 +468,8 @@ int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_setting
     struct sizes sizes = {.settings = &own, .is_odd = ATOMIC_FLAG_INIT};
     const struct tri_quality how = quality_of(m, &sizes);
     struct tri_refine_report report = m->report.quality;
-    report.gated += !is_refined_for(m, &own); /* triangles without another reason are deferred to a refinement */
+    report.gated += !is_refined_for(m, &own); /* then triangles without another reason count as deferred to a later
+                                                 refinement */
     tri_count_bad(mesh, &how, &report, NULL, count);
     for (int k = 0; by_reason && k < n_reasons; k++)
         by_reason[k] = 0;

@@ -1,4 +1,4 @@
-/* Figures from files, and to them. */
+/* Reads figures from files and writes them to files. */
 #include "ptriangle/files.h"
 
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static enum tri_status read_by_ending(const char *ending, const struct tri_names
     return tri_read_poly(names->poly, names->node, &options, pslg, &base, &points_in_poly, error);
 }
 
-/* Their arrays become those of the figure. */
+/* Moves the arrays into the figure. */
 static void hand_over(struct tri_figure *figure, struct tri_pslg *pslg, struct tri_elements *elements)
 {
     struct tri_figure own = tri_no_figure();
@@ -57,7 +57,7 @@ static void hand_over(struct tri_figure *figure, struct tri_pslg *pslg, struct t
     own.triangle_attributes = tri_reals_of(elements->attributes, elements->n_attributes > 0 ? elements->n : 0,
                                            elements->n_attributes);
     own.triangle_areas = tri_reals_of(elements->areas, elements->areas ? elements->n : 0, 1);
-    free(elements->extra); /* middles of edges */
+    free(elements->extra); /* midside nodes */
     (void)tri_api_struct_give(figure, &own, sizeof own, "tri_figure", NULL);
 }
 
@@ -68,7 +68,7 @@ static enum tri_status read_own(const char *path, struct tri_pslg *pslg, struct 
     struct tri_names names;
     if (path[length] == 0)
         return tri_fail(error, TRI_CANNOT_READ, path, 0,
-                        "not a file that is known: .poly, .node, .ele, " TRI_FORMAT_SUFFIXES);
+                        "the file type is unknown; known types are .poly, .node, .ele, " TRI_FORMAT_SUFFIXES);
     enum tri_status status = tri_names_make(&names, path, length, error);
     status = status ? status : read_by_ending(path + length, &names, pslg, elements, error);
     tri_names_free(&names);
@@ -104,20 +104,21 @@ void tri_file_free(struct tri_figure *figure)
                             own.segment_markers.at, own.holes.at, own.regions.at, own.triangles.at,
                             own.triangle_attributes.at, own.triangle_areas.at};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-        free((void *)arrays[i]); /* which tri_file_read has allocated */
+        free((void *)arrays[i]); /* allocated by tri_file_read */
     (void)tri_api_struct_give(figure, &none, sizeof none, "tri_figure", NULL);
 }
 
 /* --- writing */
 
-/* What is to be written, and under which name. */
+/* A figure to write and its file name. */
 struct writing {
-    const struct tri_api_figure *figure;
-    const char *name;
-    int first;
-    struct tri_ints middles; /* [triangles][3] of the edges opposite each corner; n is 0 where they have none */
-    struct tri_output_set *set;
-    struct tri_error *error;
+    const struct tri_api_figure *figure; /* the figure */
+    const char *name;                    /* file name */
+    int first;                           /* number of the first point and triangle: 0 or 1 */
+    struct tri_ints middles; /* [triangles][3] midside nodes of the edges opposite each corner; n is 0 if there are
+                                none */
+    struct tri_output_set *set;          /* the files that are written together */
+    struct tri_error *error;             /* description of a failure */
 };
 
 static enum tri_status open_file(const struct writing *w, const char *ending, struct tri_output **output)
@@ -129,7 +130,7 @@ static enum tri_status open_file(const struct writing *w, const char *ending, st
     return status;
 }
 
-/* The grid of a figure. */
+/* Callbacks of the grid: they read the figure. */
 static const struct tri_pslg *pslg_of(const void *user) { return &((const struct writing *)user)->figure->pslg; }
 
 static const struct tri_elements *elements_of(const void *user)
@@ -233,7 +234,7 @@ static enum tri_status write_export(const struct writing *w, const struct tri_fo
     return status ? status : format->write(output, &grid, NULL, w->error);
 }
 
-/* A name is looked at before anything else is. */
+/* Checks the file name before anything else. */
 static enum tri_status check_name(const char *name, struct tri_error *error)
 {
     const char *missing = name[tri_format_base(name)] ? NULL : tri_format_missing(name);
@@ -254,7 +255,7 @@ static enum tri_status write_all(const struct writing *w)
     return status;
 }
 
-/* Second-order triangles become corners and *middles. */
+/* Separates second-order triangles into corners and *middles. */
 static enum tri_status part_nodes(struct tri_figure *own, const struct tri_figure *figure, struct tri_ints *middles,
                                   struct tri_error *error)
 {

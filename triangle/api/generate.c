@@ -1,4 +1,4 @@
-/* The stages in their order. */
+/* Runs the stages of mesh generation in order. */
 #include "triangle/api/generate.h"
 
 #include <assert.h>
@@ -14,7 +14,8 @@ static void announce(const struct tri_options *options, enum tri_stage stage)
         options->stage(options->stage_user, stage);
 }
 
-/* The segments of a PSLG by the numbers that its points have in the mesh. What names no point goes on naming none. */
+/* Converts the segments of a PSLG to the numbers of its points in the mesh. An end that names no point stays
+ * invalid. */
 static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tri_pslg *pslg, const int32_t *place,
                                        struct tri_error *error)
 {
@@ -40,7 +41,7 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
         status = tri_constrain(mesh, pslg, &report->constrain, error);
     assert(status || tri_mesh_is_sound(mesh));
     if (status)
-        return status; /* this stage's, not the next one's */
+        return status; /* the status of this stage, not of the next one */
     announce(options, TRI_STAGE_HOLES);
     if (options->use_segments) {
         struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
@@ -109,7 +110,7 @@ static enum tri_status refine(struct tri_mesh *mesh, const struct tri_options *o
                : tri_refine(mesh, &options->quality, &report->quality, error);
 }
 
-/* The mesh is finished: subsegments run the way of their input segments. */
+/* Turns subsegments to the direction of their input segments, at the end. */
 static void turn_subs(struct tri_mesh *mesh)
 {
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
@@ -142,7 +143,7 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
     }
     assert(tri_mesh_is_sound(mesh));
     status = refine(mesh, options, report, error);
-    assert(tri_mesh_is_sound(mesh)); /* refinement that failed, too, leaves a mesh that is valid */
+    assert(tri_mesh_is_sound(mesh)); /* the mesh is valid even if refinement failed */
     enum tri_status restored = tri_restore_points(mesh, options->executor, error);
     if (restored) {
         tri_mesh_free(mesh);

@@ -1,12 +1,12 @@
-/* From a planar straight line graph to a mesh: the stages in their order.
+/* Mesh generation from a planar straight line graph (PSLG).
  *
- * No global state, no printing, no exit: calls on different meshes may run at the same time. A mesh is made by
- * tri_generate, looked at through triangle/mesh/mesh.h, refined further (wholly, or where a gate allows:
- * triangle/refine/refine.h) by tri_refine as often as wanted, and freed by tri_mesh_free.
+ * There is no global state, printing or exit: calls on different meshes may run at the same time. tri_generate makes
+ * a mesh, triangle/mesh/mesh.h gives access to it, tri_refine refines it further as often as wanted (wholly, or
+ * where a gate allows: triangle/refine/refine.h), and tri_mesh_free frees it.
  *
- * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of
- * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates, size functions and size tests get
- * the caller's coordinates. */
+ * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two. It is 1 for all inputs of
+ * ordinary size. tri_mesh_place returns a vertex in the caller's coordinates. Gates, size functions and size tests
+ * receive the caller's coordinates. */
 #ifndef TRIANGLE_API_GENERATE_H
 #define TRIANGLE_API_GENERATE_H
 
@@ -19,8 +19,8 @@
 #include "triangle/mesh/pslg.h"
 #include "triangle/refine/refine.h"
 
-/* In their order; with tri_options.elements REBUILD stands in place of the first three. QUALITY begins in any case,
- * with a mesh that keeps no bounds yet. */
+/* The stages, in order. With tri_options.elements, REBUILD replaces the first three. QUALITY is always announced,
+ * and the mesh then does not meet any bound yet. */
 enum tri_stage {
     TRI_STAGE_DELAUNAY,
     TRI_STAGE_SEGMENTS,
@@ -30,47 +30,48 @@ enum tri_stage {
     TRI_STAGE_DONE
 };
 
-/* Refines as tri_refine does; or hands the mesh out, and frees it. */
+/* Refines the mesh like tri_refine, or streams it to its receiver and frees it. */
 typedef enum tri_status tri_refine_call(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                                         struct tri_refine_report *report, struct tri_error *error);
 
 struct tri_options {
-    bool use_segments;  /* the segments and holes of the PSLG are part of the input (-p); else its points alone */
-    bool keep_hull;     /* the convex hull stays whole (-c) */
-    bool ignore_holes;  /* (-O) */
-    bool even_odd;      /* segments tell what is inside, see tri_carve */
-    bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
-    bool refine;        /* the quality stage runs, with the options below */
-    struct tri_quality quality;
-    tri_refine_call *refine_call; /* does so in place of tri_refine; NULL: tri_refine */
-    void *refine_user;
-    const struct tri_elements *elements; /* a mesh that is there (-r): it is rebuilt, and use_segments and refine are
-                                            those of tri_reconstruct; NULL: one is made from the points */
+    bool use_segments;  /* true (-p): use the segments and holes of the PSLG; false: use only its points */
+    bool keep_hull;     /* true (-c): keep the whole convex hull */
+    bool ignore_holes;  /* true (-O): do not carve holes */
+    bool even_odd;      /* true: the even-odd rule decides which areas are inside, see tri_carve */
+    bool spread_regions; /* true (-A, or -a without a number): assign regions to triangles */
+    bool refine;        /* true: run the quality stage, with the options below */
+    struct tri_quality quality;   /* bounds of the quality stage */
+    tri_refine_call *refine_call; /* called instead of tri_refine; NULL: tri_refine */
+    void *refine_user;            /* passed to refine_call */
+    const struct tri_elements *elements; /* -r: existing mesh to rebuild; use_segments and refine are then options of
+                                            tri_reconstruct; NULL: make a new mesh from the points */
     bool *is_edge;       /* with elements: as in struct tri_reconstruct_options */
-    int32_t base;        /* 0 or 1: from which the caller counts, for words */
-    const struct tri_executor *executor; /* for what is done in pieces; NULL: one after another */
-    const struct tri_stop *stop;         /* asked whether to go on, here and, by mesh->stop, later; NULL: nobody */
-    void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
-    void *stage_user;
+    int32_t base;        /* 0 or 1: first number in the caller's numbering, for messages */
+    const struct tri_executor *executor; /* runs tasks in parallel; NULL: one after another */
+    const struct tri_stop *stop;         /* polled for a stop request here and, as mesh->stop, later; NULL: never
+                                            stopped */
+    void (*stage)(void *user, enum tri_stage begins); /* called when a stage begins; NULL: not called */
+    void *stage_user;                                 /* passed to stage */
 };
 
-/* Bytes of memory at the peak of tri_generate before it refines, the input included. Measured. */
+/* Returns the measured peak memory of tri_generate before refinement, in bytes, including the input. */
 double tri_generate_bytes(const struct tri_pslg *pslg, const struct tri_elements *elements, bool refine);
 
 struct tri_report {
-    int32_t duplicates; /* points that have a twin of lower index; 0 with elements */
-    struct tri_carve_report carve;
-    struct tri_notes notes; /* what of the input was hardly meant so */
-    int32_t loose;      /* with elements: segments that are no edges of them, see struct tri_reconstruct_options */
-    struct tri_constrain_report constrain;
-    struct tri_refine_report quality;
+    int32_t duplicates; /* points at the position of a point with a lower index; 0 with elements */
+    struct tri_carve_report carve; /* of carving holes and concavities */
+    struct tri_notes notes; /* warnings about probable mistakes in the input */
+    int32_t loose;      /* with elements: segments that are no edges of the mesh, see struct tri_reconstruct_options */
+    struct tri_constrain_report constrain; /* of inserting segments */
+    struct tri_refine_report quality;      /* of refinement */
 };
 
 struct tri_options tri_defaults(void);
 
-/* Makes *mesh from the PSLG. On failure *mesh is empty, except that what refinement had done when it ran out of memory
- * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check and
- * tri_reconstruct. The PSLG is only read. */
+/* Makes *mesh from the PSLG, which is only read. On failure *mesh is empty, with one exception: if refinement ran
+ * out of memory (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED), *mesh is valid but only partly refined.
+ * TRI_BAD_INPUT: see tri_pslg_check and tri_reconstruct. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
 

@@ -1,4 +1,4 @@
-/* The judge of triangle/check/check.h behind its public header. */
+/* The public interface of the mesh checker, triangle/check/check.h. */
 #include "ptriangle/check.h"
 
 #include <stdio.h>

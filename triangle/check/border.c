@@ -1,24 +1,24 @@
-/* The border: every boundary edge lies along an input segment, or along the convex hull of the input where that may be
- * one.
+/* The border: every boundary edge lies along an input segment or, if that is allowed, along the convex hull of the
+ * input.
  *
- * The hull is found by scans along the points in order of x, then y (Andrew 1979). An edge lies along it if both its
- * ends are within the tolerance of the line of one hull edge, that below or above them or a neighbour of that: points
- * made on the hull are rounded. */
+ * The hull is found by scanning the points sorted by x, then y (Andrew 1979). An edge lies along the hull if both
+ * ends are within the tolerance of the line of one hull edge, since points created on the hull are rounded. The hull
+ * edge may be the one below or above the ends, or one of its neighbours. */
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
 
 enum { NEIGHBORS = 2 };
 
-/* Of points: the lower and the upper chain, in order of x, then y. */
+/* A convex hull: the lower and the upper chain, each sorted by x, then y. */
 struct hull {
-    struct tri_point *chain[2];
-    int32_t n[2];
+    struct tri_point *chain[2]; /* lower and upper chain */
+    int32_t n[2];               /* points in each chain */
 };
 
 struct border {
     struct checker *c;
-    struct hull hull;
+    struct hull hull; /* hull of the input, if needed */
 };
 
 static int compare_points(const void *left, const void *right)
@@ -27,7 +27,7 @@ static int compare_points(const void *left, const void *right)
     return tri_compare_places(*p, *q);
 }
 
-/* Keeps of n sorted points those of the lower (+1) or upper (-1) chain. */
+/* Copies the points of the lower (sign +1) or upper (-1) chain from n sorted points. Returns how many there are. */
 static int32_t scan(struct tri_point *out, const struct tri_point *sorted, int32_t n, int sign)
 {
     int32_t k = 0;
@@ -40,7 +40,7 @@ static int32_t scan(struct tri_point *out, const struct tri_point *sorted, int32
     return k;
 }
 
-/* Sorts the points, and frees them. */
+/* Makes the hull. Sorts the points and frees them. */
 static enum tri_status make_hull(struct tri_point *points, int64_t n, struct hull *hull)
 {
     for (int i = 0; i < 2; i++)
@@ -79,7 +79,7 @@ static bool is_near(struct tri_point a, struct tri_point b, struct tri_point p, 
     return fabs(x * (p.y - a.y) - y * (p.x - a.x)) <= tolerance * sqrt(x * x + y * y);
 }
 
-/* Do both points lie along one edge of the chain? */
+/* Do both points lie along the same edge of the chain? */
 static bool is_along_chain(const struct border *b, int chain, struct tri_point p, struct tri_point q)
 {
     const struct tri_point *hull = b->hull.chain[chain], at = tri_compare_places(p, q) < 0 ? p : q;
@@ -103,7 +103,7 @@ static bool is_along_hull(const struct border *b, int32_t s)
     return is_along_chain(b, 0, p, q) || is_along_chain(b, 1, p, q);
 }
 
-/* Did whoever asks forget to say that the mesh may end there? */
+/* Does the edge lie along the hull, so that the user may have forgotten the option that allows it? */
 static bool may_be_meant(struct border *b, int32_t s)
 {
     return (b->hull.chain[0] || find_input_hull(b) == TRI_OK) && is_along_hull(b, s);
@@ -132,7 +132,7 @@ enum tri_status tri_check_border(struct checker *c)
     struct border b = {.c = c};
     const struct tri_check_options *o = c->options;
     bool listed = check_is_listed(c), segments = c->input->n_segments > 0;
-    if (o->border == TRI_CHECK_BORDER_ANY || (segments && !listed)) /* which segments there are is not known */
+    if (o->border == TRI_CHECK_BORDER_ANY || (segments && !listed)) /* the segments are not known */
         return TRI_OK;
     bool hull = !segments || o->convex || o->border == TRI_CHECK_BORDER_HULL;
     enum tri_status status = hull ? find_input_hull(&b) : TRI_OK;
@@ -146,19 +146,19 @@ enum tri_status tri_check_border(struct checker *c)
 
 /* --- convexity
  *
- * A simple closed boundary visits the corners of its hull in their order; between two of them it must
- * lie along the edge of the hull that joins them. Vertices on hull edges are rounded, to either side: hence the
- * tolerance, which is twice that of segments. */
+ * A simple closed boundary visits the corners of its hull in order. Between two corners it must lie along the hull
+ * edge that joins them. Vertices on hull edges are rounded to either side, so the tolerance is twice that of
+ * segments. */
 
 enum { SEVERAL = -2 };
 
-/* The boundary as a loop of vertices. */
+/* The boundary as a cycle of vertices. */
 struct loop {
     struct checker *c;
-    int32_t n;
-    int32_t *from;         /* [n_frame] the boundary edge that leaves the vertex, -1: none, SEVERAL */
+    int32_t n;             /* number of vertices */
+    int32_t *from;         /* [n_frame] boundary edge that starts at the vertex; -1: none; SEVERAL: more than one */
     int32_t *vertex;       /* [n] counter-clockwise */
-    struct hull hull; /* of these */
+    struct hull hull; /* hull of these vertices */
 };
 
 static void list_boundary(struct loop *l)
@@ -177,7 +177,7 @@ static void fault_at(struct loop *l, int32_t v)
     tri_check_fault(l->c, TRI_CHECK_HULL, "the boundary is not convex at vertex %ld", check_frame_vertex(l->c, v));
 }
 
-/* True: the boundary is one loop. */
+/* Collects the cycle. Returns false if the boundary is not a single cycle. */
 static bool walk_loop(struct loop *l)
 {
     const struct checker *c = l->c;
@@ -222,8 +222,8 @@ static int32_t next_corner(const struct loop *l, int32_t place)
     return place;
 }
 
-/* Are the vertices behind `place` up to the next corner of the hull near the edge to it? Returns that corner's place;
- * -1: no. */
+/* Tests whether the vertices after `place`, up to the next hull corner, are close to the hull edge. Returns the
+ * index of that corner, or -1 if they are not. */
 static int32_t follow_edge(struct loop *l, int32_t place)
 {
     int32_t next = next_corner(l, place);

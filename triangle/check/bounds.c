@@ -1,46 +1,48 @@
-/* Angles and areas.
+/* Angles and areas, in floating point.
  *
- * In floating point: squared sines are good to a relative error of about 1e-14 (coordinate differences are correctly
- * rounded, and the cross product of a triangle with a smallest angle of x radians cancels by a factor of 1/x at most).
- * A bound counts as missed from a relative 1e-12 on.
+ * Squared sines have a relative error of about 1e-14: coordinate differences are correctly rounded, and the cross
+ * product of a triangle with a smallest angle of x radians loses at most a factor of 1/x to cancellation. A bound
+ * counts as violated from a relative 1e-12 on.
  *
- * What shares of the triangles and parts of the mesh say is put together in their order. The sum of areas carries the
- * rounding of each addition along: into how many parts the mesh is cut makes no difference that a double would show. */
+ * Results of shares and parts are combined in order. The sum of areas carries the rounding error of each addition
+ * along, so the division into parts makes no difference that a double can show. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
 
-#define TRI_CHECK_SLACK   1e-12 /* a bound counts as missed from there on */
+#define TRI_CHECK_SLACK   1e-12 /* relative violation from which a bound counts as missed */
 #define TRI_CHECK_RADIANS (3.14159265358979323846 / 180)
 
 struct apexes {
     struct checker *c;
-    double apex_cosine; /* signed square of the cosine of the largest small input angle */
-    uint8_t *is_apex;   /* [n_frame] */
-    int32_t *apex_of;   /* [2 n_segments], for each fan entry: the apex that its chain reaches, NO_APEX, UNKNOWN.. */
+    double apex_cosine; /* signed squared cosine of the largest small input angle */
+    uint8_t *is_apex;   /* [n_frame] 1: the vertex is an apex */
+    int32_t *apex_of;   /* [2 n_segments] apex reached by the chain from each fan entry, or NO_APEX, UNKNOWN,
+                           UNDER_WAY */
 };
 
-/* --- which small angles the input is to blame for
+/* --- small angles caused by the input
  *
- * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh
- * between them. Near it no mesher can keep a bound: triangles at the apex, those that touch one at it, and those that
- * span its legs further out (across two concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
+ * An apex is a vertex at which two subsegments meet at less than 60 degrees (or options.small_input_angle) with the
+ * mesh between them. Near an apex no mesher can meet the bound. These triangles are explained by it: triangles at
+ * the apex, triangles that share a vertex with one of those, and triangles that span its legs farther out (across
+ * two concentric shells; Miller, Pav & Walkington 2003). */
 
 enum {
-    MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
+    MAX_LEGS = 24, /* maximum number of legs tried for one corner */
     NO_APEX = -1,
     UNKNOWN = -2,
     UNDER_WAY = -3
 };
 
-/* Is there a triangle on the left of the subsegment, seen from its end that the fan entry names? */
+/* Is there a triangle to the left of the subsegment, looking from the end that the fan entry names? */
 static bool is_meshed(const struct checker *c, int32_t fan_entry)
 {
     return c->sides[fan_entry >> 1][fan_entry & 1].half_edge >= 0;
 }
 
-/* Between two fan entries at v. */
+/* Do two fan entries at v enclose a small angle with the mesh between them? */
 static bool is_wedge(const struct apexes *w, int32_t v, int32_t i, int32_t j)
 {
     const struct checker *c = w->c;
@@ -50,10 +52,10 @@ static bool is_wedge(const struct apexes *w, int32_t v, int32_t i, int32_t j)
     if (dot * fabs(dot) <= (w->apex_cosine + TRI_CHECK_SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
         return false;
     bool left = ax * by - ay * bx > 0;
-    return is_meshed(c, left ? i : j); /* a triangle between them? */
+    return is_meshed(c, left ? i : j); /* is a triangle between them? */
 }
 
-/* More than 24 subsegments enclose an angle of 15 degrees at most: no need to compare them all. */
+/* More than 24 subsegments enclose an angle of at most 15 degrees, so they need not be compared. */
 static bool is_apex(const struct apexes *q, int32_t v)
 {
     const struct checker *c = q->c;
@@ -78,7 +80,7 @@ static bool is_straight(const struct checker *c, int32_t from, int32_t by, int32
     return dot > 0 && fabs(ax * cy - ay * bx) <= 1e-9 * dot + c->tolerance * length;
 }
 
-/* The subsegment that goes straight on from u to v and beyond; its fan entry at v, -1: none. */
+/* Returns the fan entry at v of the subsegment that continues straight on from u to v; -1: none. */
 static int32_t straight_on(const struct checker *c, int32_t u, int32_t v)
 {
     for (int32_t i = c->fan_first[v]; i < c->fan_first[v + 1]; i++) {
@@ -88,8 +90,8 @@ static int32_t straight_on(const struct checker *c, int32_t u, int32_t v)
     return -1;
 }
 
-/* Apex that the chain reaches which begins with fan entry i. What is found holds for all entries on the way, so that
- * each is passed twice in all. A chain that comes back to itself reaches none. */
+/* Returns the apex that the chain from fan entry i reaches. The result holds for all entries on the way, so each
+ * entry is visited only twice in total. A closed chain reaches no apex. */
 static int32_t apex_along(struct apexes *q, int32_t i)
 {
     const struct checker *c = q->c;
@@ -206,18 +208,18 @@ static void free_apexes(struct apexes *q)
 
 struct shape {
     double area;    /* signed */
-    double sine2;   /* of the smallest angle, squared */
-    double cosine2; /* of the largest angle, squared, with the sign of the cosine */
+    double sine2;   /* squared sine of the smallest angle */
+    double cosine2; /* squared cosine of the largest angle, with the sign of the cosine */
 };
 
-/* Of a triangle of the part. */
+/* Returns the shape of a triangle of the part. */
 static struct shape shape_of(const struct checker *c, int32_t t)
 {
     struct tri_point p[3];
     double d[3][2], l[3];
     for (int k = 0; k < 3; k++)
         p[k] = check_place(c, c->part.triangles[3 * (size_t)t + (size_t)k]);
-    for (int k = 0; k < 3; k++) { /* edge opposite corner k */
+    for (int k = 0; k < 3; k++) { /* d[k]: edge opposite corner k */
         struct tri_point a = p[(k + 1) % 3], b = p[(k + 2) % 3];
         d[k][0] = b.x - a.x;
         d[k][1] = b.y - a.y;
@@ -232,28 +234,29 @@ static struct shape shape_of(const struct checker *c, int32_t t)
     return (struct shape){cross / 2, cross * cross / (l[longest] * l[m]), dot * fabs(dot) / (l[i] * l[j])};
 }
 
-/* Least or largest of something, and the first triangle that has it; -1: none yet. */
+/* A minimum or maximum, and the first triangle that attains it; -1: none yet. */
 struct extreme {
-    double value;
-    int64_t at;
+    double value; /* the extreme value */
+    int64_t at;   /* the triangle */
 };
 
-struct sum { /* Neumaier 1974 */
+struct sum { /* a compensated sum (Neumaier 1974) */
     double total, rest;
 };
 
-/* Of some triangles. */
+/* The results for some triangles. */
 struct findings {
-    struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the least, of the largest angle */
-    struct sum area;
-    int64_t n_small; /* below the bound of angles */
-    int64_t n_large; /* above that of areas */
+    struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the minimum, which belongs to
+                                                         the largest angle */
+    struct sum area; /* total area */
+    int64_t n_small; /* triangles below the angle bound */
+    int64_t n_large; /* triangles above the area bound */
 };
 
 struct check_quality {
-    double sine2; /* squared sine of the bound */
-    struct findings all; /* of the parts so far */
-    struct findings share[CHECK_MOST_SHARES];
+    double sine2; /* squared sine of the angle bound */
+    struct findings all; /* results for the parts read so far */
+    struct findings share[CHECK_MOST_SHARES]; /* results of each share of the part */
 };
 
 static const struct findings empty = {.sine2 = {0, -1}, .cosine2 = {0, -1}, .smallest = {0, -1}, .largest = {0, -1}};
@@ -359,7 +362,7 @@ static void summarize(struct checker *c, const struct findings *all)
     r->largest_angle = acos(cosine) / TRI_CHECK_RADIANS;
 }
 
-/* Areas above their bound, in the part. */
+/* Is the area of triangle t of the part above its bound? */
 static bool is_too_large(const struct checker *c, int64_t t)
 {
     return is_large(c, (int32_t)t, shape_of(c, (int32_t)t).area);
@@ -417,7 +420,7 @@ static void judge_small(struct checker *c, struct apexes *apexes, int32_t t, con
                     degrees_of_sine2(s->sine2));
 }
 
-/* The triangles below the bound; few, as a rule. */
+/* Explains the triangles below the angle bound. There are usually few. */
 static enum tri_status judge_angles(struct checker *c, struct apexes *apexes)
 {
     enum tri_status status = mark_all_near(apexes);

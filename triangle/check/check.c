@@ -1,7 +1,5 @@
-/* The judge: runs the checks in the order in which they lean on each other, and keeps the report.
- *
- * Each check lives in a file of its own. A check that needs the outcome of another is skipped when that one
- * failed: what it would say has no meaning then. */
+/* Runs the checks in the order in which they depend on each other, and fills the report. Each check has its own
+ * file. If a check fails, checks that depend on it are skipped, because their results would be meaningless. */
 #include "triangle/check/check.h"
 
 #include <assert.h>
@@ -31,8 +29,8 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_BORDER] = "boundary along the input",
     [TRI_CHECK_VERTEX_MARKERS] = "vertex markers",
     [TRI_CHECK_HOLES] = "holes",
-    [TRI_CHECK_FACES] = "no face carved in vain",
-    [TRI_CHECK_NODES] = "nodes amid edges",
+    [TRI_CHECK_FACES] = "no unexpected holes",
+    [TRI_CHECK_NODES] = "midside nodes",
     [TRI_CHECK_VERTEX_ATTRIBUTES] = "vertex attributes",
     [TRI_CHECK_REGIONS] = "regions",
     [TRI_CHECK_ANGLES] = "angles",
@@ -61,7 +59,7 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind)
         item->state = TRI_CHECK_OK;
 }
 
-/* As if it had not been. */
+/* Resets a kind to skipped. */
 static void unask(struct checker *c, enum tri_check_kind kind)
 {
     memset(&c->report->item[kind], 0, sizeof c->report->item[kind]);
@@ -81,10 +79,10 @@ void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *fo
 }
 
 struct sharing {
-    int64_t n;
-    size_t n_shares;
-    check_work *work;
-    void *user;
+    int64_t n; /* number of items */
+    size_t n_shares; /* number of shares */
+    check_work *work; /* called for each share */
+    void *user;       /* passed to work */
 };
 
 static void do_share(void *context, size_t i)
@@ -104,11 +102,11 @@ void tri_check_in_shares(const struct checker *c, int64_t n, check_work *work, v
     tri_execute(c->options->executor, sharing.n_shares, do_share, &sharing);
 }
 
-/* Of each share: how many items are so, and the first. */
+/* The result of each share: the number of items, and the first one. */
 struct counting {
     const struct checker *c;
-    bool (*is_so)(const struct checker *c, int64_t i);
-    int64_t n[CHECK_MOST_SHARES], first[CHECK_MOST_SHARES];
+    bool (*is_so)(const struct checker *c, int64_t i); /* the test */
+    int64_t n[CHECK_MOST_SHARES], first[CHECK_MOST_SHARES]; /* results of each share */
 };
 
 static void count_share(void *counting, const struct check_share *share)
@@ -229,14 +227,14 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
 {
     at = (struct tri_point){tri_round_coordinate(at.x), tri_round_coordinate(at.y)};
     if (!tri_is_in_range(at))
-        return TRI_OK; /* outside the mesh, all of which is in range */
+        return TRI_OK; /* it is outside the mesh, whose coordinates are all in range */
     if (!tri_grow(&c->queries, &c->query_capacity, c->n_queries + 1, sizeof *c->queries))
         return TRI_NO_MEMORY;
     c->queries[c->n_queries++] = (struct check_query){at, kind, id, tolerance, false};
     return TRI_OK;
 }
 
-/* --- the mesh as arrays */
+/* --- arrays as a source */
 
 static void widen(int64_t *out, const int32_t *values, int64_t n)
 {
@@ -300,22 +298,23 @@ struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
                                      .user = (void *)m};
 }
 
-/* --- its memory */
+/* --- memory */
 
-/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links,
- * vertices, and what else is given. */
+/* Returns the bytes per triangle of a part: corners twice (edges.c reuses the array that they are read into), links,
+ * vertices, and the other given arrays. */
 static double bytes_of_triangle(const struct tri_check_source *source, double vertices)
 {
     return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4) +
            (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
-/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of winding.c
- * has in hand, when there is no part any more, and each point and segment of the input. */
+/* Measured bytes: per subsegment of the frame, additionally per boundary edge, per edge of the sweep in winding.c
+ * (which runs after the parts are released), and per point and segment of the input. */
 static const double SUBSEGMENT_BYTES = 126, BOUNDARY_BYTES = 48, SWEEP_BYTES = 196, INPUT_BYTES = 40;
 
-/* Boundary edges, at first. A mesh is a plane graph (Euler): in one piece without holes it has 2 vertices - triangles,
- * less 2. With holes there are fewer than three times as many; or as many as subsegments are listed, which they are. */
+/* Estimates the number of boundary edges. By Euler's formula, a connected mesh without holes has 2 * vertices -
+ * triangles - 2 of them. With holes there are fewer than three times as many. If subsegments are listed, their
+ * number is also a limit. */
 static double likely_boundary_edges(const struct tri_check_source *source)
 {
     const double simple = fmax(0, 2 * (double)source->n_points - (double)source->n_triangles);
@@ -329,7 +328,8 @@ static double least_bytes(const struct tri_check_source *source, const struct tr
     const double subsegments = fmax(boundary, (double)source->n_segments);
     const double beside = amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * subsegments +
                           BOUNDARY_BYTES * boundary + INPUT_BYTES * items;
-    const double swept = beside + SWEEP_BYTES * (input != NULL ? subsegments : boundary); /* with regions: all */
+    const double swept = beside + SWEEP_BYTES * (input != NULL ? subsegments : boundary); /* with regions, the sweep
+                                                                                             contains all subsegments */
     return fmax(beside, TRI_CHECK_SHARE * swept);
 }
 
@@ -340,12 +340,13 @@ double tri_check_least_bytes(const struct tri_check_source *source, const struct
 
 double tri_check_bound(const struct tri_check_source *source, double least)
 {
-    static const double MOST_SHARE = 0.7, WORTH_A_LOOK = 1e7; /* the parts need some as well */
+    static const double MOST_SHARE = 0.7, WORTH_A_LOOK = 1e7; /* the parts need memory as well */
     const double bound = fmax(least / MOST_SHARE, least + source->beside);
     return least / MOST_SHARE < WORTH_A_LOOK ? 0 : bound;
 }
 
-/* As many triangles as the bound allows beside these bytes, at least a few; all, where no bound is set. */
+/* Chooses the size of parts: as many triangles as the limit allows in addition to `least` bytes, but at least a few;
+ * all triangles if there is no limit. */
 static enum tri_status choose_part(struct checker *c, double least)
 {
     enum { LEAST = 16 };
@@ -361,7 +362,7 @@ static enum tri_status choose_part(struct checker *c, double least)
     return status;
 }
 
-/* The boundary is known now: are there more edges than were likely? The parts are read again later, if at all. */
+/* Chooses again if there are more boundary edges than estimated. Parts are only read again later, if at all. */
 static enum tri_status reckon_again(struct checker *c)
 {
     const struct tri_check_source *source = c->source;
@@ -375,9 +376,9 @@ static enum tri_status reckon_again(struct checker *c)
                     1e-6 * tri_check_bound(source, least), 1e-6 * source->memory);
 }
 
-/* --- the trial */
+/* --- the check */
 
-/* What triangles and pairs of them say. *good: corners and coordinates are what they should be. */
+/* Checks triangles and pairs of triangles, part by part. *good: corners and coordinates are valid. */
 static enum tri_status look_at_parts(struct checker *c, bool *good)
 {
     enum tri_status status = TRI_OK;
@@ -398,7 +399,8 @@ static enum tri_status look_at_parts(struct checker *c, bool *good)
     return status;
 }
 
-/* What was said of pairs has no meaning where those are none. */
+/* Returns whether edges and orientations are good. If not, resets the checks of pairs, whose results would be
+ * meaningless. */
 static bool pairs_are_good(struct checker *c)
 {
     bool edges = check_good(c, TRI_CHECK_EDGES);
@@ -421,7 +423,7 @@ static enum tri_status judge_frame(struct checker *c)
     status = status ? status : tri_check_quality(c);
     if (status != TRI_OK || !pairs_are_good(c))
         return status;
-    tri_check_release_part(c); /* the sweep takes its place */
+    tri_check_release_part(c); /* makes room for the sweep */
     status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
@@ -429,7 +431,7 @@ static enum tri_status judge_frame(struct checker *c)
     return c->options->convex ? tri_check_hull(c) : TRI_OK;
 }
 
-/* The checks, in the order in which they lean on each other. */
+/* Runs all checks, in the order in which they depend on each other. */
 static enum tri_status run(struct checker *c)
 {
     bool good = true;
@@ -477,7 +479,7 @@ static enum tri_status check_finite(const char *what, int32_t n, const double *v
     return TRI_OK;
 }
 
-/* NaN is at no place, not even its own: it cannot be looked up. */
+/* Coordinates must be finite: NaN differs from itself, so it cannot be looked up. */
 static enum tri_status check_input(const struct tri_pslg *input, struct tri_error *error)
 {
     enum tri_status status = check_finite("vertex", input->n_points, input->points, 2, error);

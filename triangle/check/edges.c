@@ -1,9 +1,9 @@
-/* Edges of a part: which half-edges are the two sides of one edge.
+/* Pairs the half-edges of a part: finds the two half-edges of each edge.
  *
- * Half-edges are grouped by the lesser vertex of their edge (counting sort), each group sorted by the other vertex,
- * direction and name, in one number: other vertex << 33 | comes from the other << 32 | half-edge. What belongs to one
- * edge stands side by side then, in the same order whatever threads put it there, and a search takes O(log n), whatever
- * heap of triangles this may be. */
+ * Half-edges are grouped by the smaller vertex of their edge (counting sort). Each group is sorted by one number,
+ * made of the other vertex, direction and half-edge: other vertex << 33 | comes from the other << 32 | half-edge. So
+ * the half-edges of one edge are adjacent, in an order that does not depend on the threads, and a search takes O(log
+ * n) for any input, also an invalid one. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,10 +22,10 @@ static uint64_t key_of(int32_t a, int32_t b)
     return other << 33 | (uint64_t)(a > b) << 32;
 }
 
-/* Vertices that one thread counts for: it looks at all half-edges, but needs no atomic operations, which would cost
- * more than looking. */
+/* A range of vertices whose half-edges one thread counts. Each thread reads all half-edges; that is cheaper than
+ * atomic operations. */
 struct range {
-    int32_t first, end;
+    int32_t first, end; /* vertices first .. end - 1 */
 };
 
 static bool holds(struct range r, int32_t v)
@@ -55,8 +55,8 @@ static void fill(const struct checker *c, struct range r)
 
 struct ranges {
     const struct checker *c;
-    void (*look)(const struct checker *c, struct range r);
-    int32_t n;
+    void (*look)(const struct checker *c, struct range r); /* called for each range */
+    int32_t n;                                             /* number of ranges */
 };
 
 static void look_at_range(void *context, size_t i)
@@ -80,7 +80,7 @@ static void group(struct checker *c)
     each_range(c, count);
     for (int32_t i = 0; i < n; i++)
         p->entry_of[i + 1] += p->entry_of[i];
-    /* While a group is filled its start moves to its end, which is the start of the next one: shift them back. */
+    /* Filling a group moves its start to its end, which is the start of the next group. Shift the starts back. */
     each_range(c, fill);
     memmove(p->entry_of + 1, p->entry_of, (size_t)n * sizeof *p->entry_of);
     p->entry_of[0] = 0;
@@ -107,7 +107,7 @@ static void sort_group(uint64_t *entry, int32_t n)
     }
 }
 
-/* First entry of the group that is not below the key. */
+/* Returns the first entry of the group that is not below the key. */
 static int32_t lower_bound(const struct check_part *p, int32_t v, uint64_t key)
 {
     int32_t low = p->entry_of[v], high = p->entry_of[v + 1];
@@ -121,10 +121,10 @@ static int32_t lower_bound(const struct check_part *p, int32_t v, uint64_t key)
     return low;
 }
 
-/* The half-edges of a part from one vertex to another, and back. O(log n). */
+/* The half-edges of a part from one vertex to another, and in the opposite direction. O(log n). */
 struct check_edge {
-    int32_t there, back;     /* the first; -1: none */
-    int32_t n_there, n_back; /* how many there are */
+    int32_t there, back;     /* the first in each direction; -1: none */
+    int32_t n_there, n_back; /* number in each direction */
 };
 
 static struct check_edge find_edge(const struct checker *c, int32_t a, int32_t b)
@@ -141,7 +141,7 @@ static struct check_edge find_edge(const struct checker *c, int32_t a, int32_t b
     return e;
 }
 
-/* Links the half-edges of one edge, which are entries i .. end - 1, if they are its two sides. */
+/* Links the half-edges in entries i .. end - 1, which all lie on one edge, if they are exactly two and opposite. */
 static void link_edge(struct check_part *p, int32_t i, int32_t end)
 {
     int32_t h = (int32_t)(p->entry[i] & 0xffffffffu);
@@ -182,7 +182,7 @@ static void note_side(struct checker *c, struct check_side *side, int32_t h)
         *side = (struct check_side){half_edge, check_attribute(c, h / 3)};
 }
 
-/* Half-edges along listed subsegments. */
+/* Marks the half-edges along listed subsegments. */
 static void constrain(struct checker *c)
 {
     memset(c->part.constrained, 0, (size_t)c->part.n_half_edges / 8 + 1);

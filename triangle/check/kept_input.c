@@ -1,21 +1,21 @@
-/* The input: its vertices, segments and holes are what they should be in the mesh.
+/* Checks that the vertices, segments and holes of the input appear correctly in the mesh.
  *
- * Points that coincide are one vertex of the mesh; which of them carries the triangles is the mesher's choice. So each
- * input point has a `twin`: the used vertex at its place. */
+ * Points that coincide are one vertex of the mesh. The mesher may choose which of them is used by triangles. So each
+ * input point has a twin: the used vertex at its position. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "triangle/check/internal.h"
 
-/* The points that the mesh must do justice to: those of the input, or where it is unknown, those of the mesh that no
- * triangle uses. */
+/* The points that the mesh must account for: the points of the input or, if it is unknown, the unused points of the
+ * mesh. */
 struct reference {
     struct checker *c;
-    int32_t n;
-    const double *points;
-    int64_t *found; /* [n] used vertex of the mesh at the place of each, -1: none */
-    int32_t *table; /* [mask + 1] open addressing by coordinates: numbers of points, -1: free */
-    uint32_t mask;
+    int32_t n;      /* number of points */
+    const double *points; /* [n][2] positions */
+    int64_t *found; /* [n] used vertex of the mesh at each point, -1: none */
+    int32_t *table; /* [mask + 1] hash table with open addressing by coordinates: point numbers, -1: free */
+    uint32_t mask;  /* size of the table - 1 */
 };
 
 static struct tri_point point_of(const struct reference *r, int32_t v)
@@ -32,7 +32,7 @@ static uint32_t hash(struct tri_point p)
     return (uint32_t)(h >> 32);
 }
 
-/* Where the table holds a point at the place of p, or the free place where it belongs. */
+/* Returns the slot of the point at p, or the free slot in which it belongs. */
 static uint32_t slot_of(const struct reference *r, struct tri_point p)
 {
     uint32_t i = hash(p) & r->mask;
@@ -54,13 +54,13 @@ static enum tri_status make_table(struct reference *r, int32_t n)
     return TRI_OK;
 }
 
-/* The points of the mesh before `end`. */
+/* Calls `look` for the points of the mesh before `end`. */
 static enum tri_status each_point(struct reference *r, int64_t end, check_take *look)
 {
     return tri_check_each_slice(r->c, TRI_CHECK_POINTS, end, 2 * sizeof(double), look, r);
 }
 
-/* Input points that are used themselves, under their number. */
+/* Finds input points that are used under their own number. */
 static void find_same(void *reference, int64_t first, int64_t n, const void *elements)
 {
     struct reference *r = reference;
@@ -73,7 +73,7 @@ static void find_same(void *reference, int64_t first, int64_t n, const void *ele
     }
 }
 
-/* Used vertices at the places of points in the table; the first of each counts. */
+/* Finds used vertices at the positions of points in the table. The first vertex of each position counts. */
 static void find_elsewhere(void *reference, int64_t first, int64_t n, const void *elements)
 {
     struct reference *r = reference;
@@ -87,7 +87,7 @@ static void find_elsewhere(void *reference, int64_t first, int64_t n, const void
     }
 }
 
-/* The others: only they need a search. */
+/* Searches for the remaining points by their positions. */
 static enum tri_status search(struct reference *r)
 {
     int32_t n_searched = 0;
@@ -110,7 +110,7 @@ static enum tri_status search(struct reference *r)
     return status;
 }
 
-/* Where the input is unknown. */
+/* Lists the unused points, if the input is unknown. */
 static void take_unused(void *reference, int64_t first, int64_t n, const void *elements)
 {
     struct reference *r = reference;
@@ -188,7 +188,8 @@ static int64_t number_of(const struct checker *c, int32_t i)
     return c->input != NULL ? i : c->unused[i];
 }
 
-/* Points without twin: lost if they lie inside the mesh, or anywhere if that is to be the hull of all. */
+/* Adds queries for points without a twin: they are lost if they lie inside the mesh. If the mesh must fill the hull
+ * of all points, they are lost anywhere. */
 static enum tri_status ask_for_lost(struct checker *c)
 {
     if (c->n_triangles == 0 || c->options->ignore_lost)
@@ -215,7 +216,8 @@ static enum tri_status ask_for_holes(struct checker *c)
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; i < c->input->n_holes && status == TRI_OK; i++) {
         struct tri_point p = {c->input->holes[2 * (size_t)i], c->input->holes[2 * (size_t)i + 1]};
-        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, c->tolerance); /* beside a wall it means either side */
+        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, c->tolerance); /* within the tolerance of a wall, the point
+                                                                           may mean either side */
     }
     return status;
 }

@@ -1,10 +1,10 @@
-/* Missing pieces, cut where they meet.
+/* Cuts missing pieces where they meet.
  *
- *   1. In order of their left ends, each is compared with those that begin before it ends. An end of one that surely
- *      lies on the other cuts that there; where no end does, but the two cross (exactly decided), both are cut at the
- *      rounded crossing.
- *   2. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept: so pieces
- *      that run along each other are one. */
+ * 1. The pieces are sorted by their left ends. Each is compared with the pieces that start before it ends. If an end
+ *    of one certainly lies on the other, the other is cut there. If there is no such end but the two cross (decided
+ *    exactly), both are cut at the rounded crossing.
+ * 2. The results are the parts of each piece between successive cuts. Of equal parts one is kept, so overlapping
+ *    pieces become one. */
 #include "triangle/check/internal.h"
 
 #include <stdlib.h>
@@ -14,18 +14,18 @@
 enum { MOST_TRIALS = 1 << 27, MOST_CUTS = 1 << 20 };
 
 struct cut {
-    int32_t piece;
-    double at; /* distance from the piece's first end; known when all pieces are */
-    struct tri_point point;
+    int32_t piece; /* index of the piece */
+    double at; /* distance from the piece's first end; computed in step 2 */
+    struct tri_point point; /* position */
 };
 
 struct cutting {
-    double tolerance;
-    int32_t n;
-    struct check_piece *piece; /* [n] from left to right, in order */
-    int64_t n_trials;
-    int32_t n_cuts, capacity;
-    struct cut *cut;
+    double tolerance;          /* of the mesh */
+    int32_t n;                 /* number of pieces */
+    struct check_piece *piece; /* [n] sorted from left to right */
+    int64_t n_trials;          /* pairs of pieces compared so far */
+    int32_t n_cuts, capacity;  /* cuts; allocated */
+    struct cut *cut;           /* [n_cuts] */
 };
 
 static int compare_pieces(const void *a, const void *b)
@@ -45,7 +45,7 @@ static int compare_cuts(const void *a, const void *b)
     return tri_compare_places(p->point, q->point);
 }
 
-/* From left to right, each but once; returns how many remain. */
+/* Sorts the pieces from left to right and removes duplicates; returns how many remain. */
 static int32_t sort(struct check_piece *piece, int32_t n)
 {
     int32_t kept = 0;
@@ -75,7 +75,7 @@ static bool is_too_long(const struct cutting *k)
     return k->n_trials > MOST_TRIALS || k->n_cuts > MOST_CUTS;
 }
 
-/* Between the ends of the piece, surely on it? */
+/* Does p certainly lie on the piece, strictly between its ends? */
 static bool is_inside(const struct check_piece *s, struct tri_point p)
 {
     double x = s->to.x - s->from.x, y = s->to.y - s->from.y;
@@ -97,7 +97,7 @@ static struct tri_point crossing_of(const struct check_piece *s, const struct ch
     return (struct tri_point){tri_round_coordinate(s->from.x + at * x), tri_round_coordinate(s->from.y + at * y)};
 }
 
-/* Step 1, of two. */
+/* Step 1 for two pieces. */
 static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
 {
     const struct check_piece *s = &k->piece[i], *r = &k->piece[j];
@@ -117,7 +117,7 @@ static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
     return status == TRI_OK && tri_is_exact_point(p) ? add_cut(k, j, p) : status;
 }
 
-/* Those that may meet piece i, and begin behind it. */
+/* Step 1 for piece i and the pieces after it. */
 static enum tri_status meet_others(struct cutting *k, int32_t i)
 {
     const struct check_piece *s = &k->piece[i];
@@ -134,7 +134,7 @@ static enum tri_status meet_others(struct cutting *k, int32_t i)
     return status;
 }
 
-/* At the ends of all pieces, and where they meet. */
+/* Cuts pieces at their own ends and where they meet. */
 static enum tri_status find_cuts(struct cutting *k)
 {
     enum tri_status status = TRI_OK;

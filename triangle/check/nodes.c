@@ -1,10 +1,11 @@
-/* Nodes amid edges, of triangles with six nodes.
+/* Midside nodes of triangles with six nodes.
  *
- * Each lies where half the way along its edge is rounded to, from one end or from the other; it carries the marker of
- * its subsegment, on other edges 0, and attributes half the way between those of the ends. Two triangles beside an edge
- * have one node there: nodes of different edges lie at different places, so that is so if there are as many as edges.
+ * Each lies at the rounded midpoint of its edge, computed from one end or the other. It has the marker of its
+ * subsegment (0 on other edges) and the mean of the ends' attributes. Two adjacent triangles must share the node of
+ * their edge. Nodes of different edges lie at different positions, so it suffices to compare the number of nodes
+ * with the number of edges.
  *
- * Triangles are read again, some in a row, and what is known of the points that they name. */
+ * Triangles are read again in slices, with the data of the points that they refer to. */
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
@@ -13,28 +14,28 @@ enum { SLICE = 1 << 12 }; /* triangles */
 
 struct subsegment {
     int64_t ends[2]; /* ascending */
-    int32_t marker;
+    int32_t marker;  /* marker of the subsegment */
 };
 
-/* Some triangles, and what is known of the points that they name. */
+/* A slice of triangles, with the data of the points that they refer to. */
 struct slice {
-    int64_t first, n_triangles;
+    int64_t first, n_triangles; /* triangles first .. first + n_triangles - 1 */
     int64_t *corners, *middles; /* [n_triangles][3] */
-    int64_t n_named, *named;    /* [n_named] ascending */
-    double *places;             /* [n_named][2] */
-    int32_t *markers;           /* [n_named], if they count */
+    int64_t n_named, *named;    /* [n_named] points in the slice, ascending */
+    double *places;             /* [n_named][2] positions */
+    int32_t *markers;           /* [n_named] markers, if they are checked */
     double *attributes;         /* [n_named][n_attributes] */
 };
 
 struct trial {
     struct checker *c;
-    int64_t n_nodes;
-    int32_t n_attributes;
-    bool markers;                   /* do they count? */
-    uint8_t *is_named;              /* [n_nodes - n_points] is it a node amid an edge of some triangle? */
-    struct subsegment *subsegments; /* [n_subsegments] by ends */
-    int64_t n_subsegments;
-    struct slice slice;
+    int64_t n_nodes;                /* points including midside nodes */
+    int32_t n_attributes;           /* attributes per point; 0: none are checked */
+    bool markers;                   /* true: markers are checked */
+    uint8_t *is_named;              /* [n_nodes - n_points] 1: the node belongs to an edge of some triangle */
+    struct subsegment *subsegments; /* [n_subsegments] sorted by ends */
+    int64_t n_subsegments;          /* number of subsegments */
+    struct slice slice;             /* current slice */
 };
 
 static int compare_subsegments(const void *left, const void *right)
@@ -103,16 +104,16 @@ static enum tri_status read_slice(struct trial *t)
     return status;
 }
 
-/* Its place in the arrays of the slice. */
+/* Returns the index of v in the arrays of the slice. */
 static size_t find(const struct slice *s, int64_t v)
 {
     const int64_t *at = bsearch(&v, s->named, (size_t)s->n_named, sizeof v, tri_check_compare_numbers);
     return (size_t)(at - s->named);
 }
 
-/* --- judging */
+/* --- checks */
 
-/* Half the way between two numbers, as it is rounded from one of them. */
+/* Is m the midpoint of a and b, rounded from either end? */
 static bool is_half_way(double m, double a, double b)
 {
     return m == tri_round_coordinate(a + 0.5 * (b - a)) || m == tri_round_coordinate(b + 0.5 * (a - b));
@@ -129,7 +130,7 @@ static void judge_attributes(struct trial *t, int64_t m, const int64_t ends[2])
     for (size_t k = 0; k < n; k++)
         if (!is_between(at[0][k], at[1][k], at[2][k]))
             tri_check_fault(t->c, TRI_CHECK_VERTEX_ATTRIBUTES,
-                            "attribute %zu of node %ld is not half the way between those of the ends of edge %ld-%ld",
+                            "attribute %zu of node %ld is not the mean of those at the ends of edge %ld-%ld",
                             k, check_number(t->c, m), check_number(t->c, ends[0]), check_number(t->c, ends[1]));
 }
 
@@ -139,18 +140,18 @@ static void judge_node(struct trial *t, int64_t triangle, int64_t m, const int64
     const struct slice *s = &t->slice;
     const long a = check_number(c, ends[0]), b = check_number(c, ends[1]);
     if (!is_node(t, m)) {
-        tri_check_fault(c, TRI_CHECK_NODES, "triangle %ld has no node amid edge %ld-%ld", check_number(c, triangle), a,
-                        b);
+        tri_check_fault(c, TRI_CHECK_NODES, "triangle %ld has no midside node on edge %ld-%ld",
+                        check_number(c, triangle), a, b);
         return;
     }
     const double *p = s->places + 2 * find(s, m), *u = s->places + 2 * find(s, ends[0]),
                  *v = s->places + 2 * find(s, ends[1]);
     t->is_named[m - c->n_points] = 1;
     if (!is_half_way(p[0], u[0], v[0]) || !is_half_way(p[1], u[1], v[1]))
-        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of triangle %ld does not lie amid edge %ld-%ld",
+        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of triangle %ld is not at the midpoint of edge %ld-%ld",
                         check_number(c, m), check_number(c, triangle), a, b);
     if (t->markers && s->markers[find(s, m)] != marker_of(t, ends[0], ends[1]))
-        tri_check_fault(c, TRI_CHECK_NODES, "node %ld amid edge %ld-%ld has marker %ld instead of %ld",
+        tri_check_fault(c, TRI_CHECK_NODES, "node %ld of edge %ld-%ld has marker %ld instead of %ld",
                         check_number(c, m), a, b, (long)s->markers[find(s, m)], (long)marker_of(t, ends[0], ends[1]));
     if (t->n_attributes > 0)
         judge_attributes(t, m, ends);
@@ -174,11 +175,11 @@ static void count_nodes(struct trial *t)
     for (int64_t i = 0; i < t->n_nodes - c->n_points; i++)
         n += t->is_named[i];
     if (check_good(c, TRI_CHECK_EDGES) && check_good(c, TRI_CHECK_NODES) && n != c->report->n_edges)
-        tri_check_fault(c, TRI_CHECK_NODES, "there are %lld nodes amid %lld edges", (long long)n,
+        tri_check_fault(c, TRI_CHECK_NODES, "there are %lld midside nodes and %lld edges", (long long)n,
                         (long long)c->report->n_edges);
 }
 
-/* --- all together */
+/* --- the whole mesh */
 
 static bool get_room(struct trial *t)
 {

@@ -1,16 +1,16 @@
-/* What is to be said of an edge and the triangles beside it: the neighbours given, the empty circle (exact; by
- * Delaunay's lemma, constrained form: Lee & Lin 1986, edges suffice), and attributes, which are the same on both sides
- * of every edge that is no subsegment. So all triangles of a face have one attribute, and what it should be is asked of
- * the sweep (winding.c).
+/* Rules for an edge and its adjacent triangles: given neighbours, empty circles, and region attributes. The empty
+ * circle test is exact; by Delaunay's lemma in its constrained form (Lee & Lin 1986) it suffices to test edges.
+ * Region attributes must be equal on both sides of every edge that is not a subsegment. So all triangles of a face
+ * have the same attribute, and the sweep (winding.c) determines which one it should be.
  *
- * Each rule is asked of a half-edge a and the one on the other side, b, which is NULL at the boundary: where both are
- * in a part, or when they have been matched. */
+ * Each rule is tested for a half-edge a and its twin b, which is NULL at the boundary. This happens when both are in
+ * a part, or when they have been matched. */
 #include "triangle/check/internal.h"
 
 struct check_rule {
-    enum tri_check_kind kind;
-    bool once;  /* of an edge, and not of the boundary: asked of the lesser half-edge */
-    bool walls; /* of subsegments alone */
+    enum tri_check_kind kind; /* kind of fault */
+    bool once;  /* true: tested once per edge, for the smaller half-edge, and not on the boundary */
+    bool walls; /* true: tested for subsegments only */
     bool (*is_bad)(const struct checker *c, const struct check_open *a, const struct check_open *b);
     void (*tell)(struct checker *c, const struct check_open *a, const struct check_open *b);
 };
@@ -20,7 +20,7 @@ static bool is_conforming(const struct checker *c)
     return c->options->delaunay == TRI_CHECK_CONFORMING;
 }
 
-/* --- neighbours as they are given */
+/* --- given neighbours */
 
 static int64_t triangle_of(const struct check_open *b) { return b != NULL ? b->half_edge / 3 : -1; }
 
@@ -68,8 +68,8 @@ static void tell_circle(struct checker *c, const struct check_open *a, const str
 
 static bool is_flat(const struct check_open *a) { return tri_dot(a->at[0], a->at[1], a->at[2]) < 0; }
 
-/* A subsegment counts once, also where vertices on both sides lie in its circle. Where none are listed the boundary is
- * what there is. */
+/* Is the subsegment encroached? If vertices on both sides lie in its circle, it counts once. If no subsegments are
+ * listed, boundary edges count as subsegments. */
 static bool is_encroached(const struct checker *c, const struct check_open *a, const struct check_open *b)
 {
     const bool constrained = a->constrained || (b == NULL && !check_is_listed(c));
@@ -108,7 +108,7 @@ static bool is_asked(const struct checker *c, const struct check_rule *rule)
     }
 }
 
-/* The rule of circles, asked of every edge: of what tri_check_open tells, the places alone are needed. */
+/* The Delaunay rule, tested for every edge. It needs only positions, so it does not call tri_check_open. */
 static bool is_not_delaunay_at(const struct checker *c, int64_t i)
 {
     const int32_t h = (int32_t)i, back = c->part.link[h];
@@ -161,7 +161,7 @@ void tri_check_matched(struct checker *c, const struct check_open *a, const stru
         judge_side(c, b, a);
 }
 
-/* Every triangle is strictly counter-clockwise. */
+/* --- orientation: every triangle is strictly counter-clockwise */
 
 static double twice_area(const struct checker *c, int64_t t)
 {

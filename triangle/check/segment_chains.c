@@ -1,15 +1,15 @@
 /* Input segments as chains of subsegments.
  *
- *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within
- *      the tolerance, not back and not beyond the end; the best aligned first. Each vertex is visited once per segment,
- *      for what can be reached from it does not depend on the way there. Where nearly coincident segments leave several
- *      ways, up to the first fork it is certain which subsegments the input segment runs along; the others it may run
- *      along, and their markers are right if some choice makes them so.
- *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
- *      sorted along it; chains are followed from each that lies beyond what is covered so far.
- *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. If nothing does, and
- *      no chain leads from end to end, a piece is missing beside others within rounding of it. It may have been carved
- *      where one of these bounds the mesh; else it should be there. */
+ * 1. Depth-first search from the first end of the input segment, along subsegments whose far end lies on its line
+ *    within the tolerance, not backwards and not beyond the end; the best aligned first. Each vertex is visited once
+ *    per segment, because what can be reached from it does not depend on the path to it. If nearly coincident
+ *    segments leave several paths, the input segment certainly runs along the subsegments up to the first fork, and
+ *    possibly along the others. Their markers are correct if some choice of paths makes them so.
+ * 2. If the second end is not reached, pieces may have been carved. Then all subsegment vertices on the line are
+ *    sorted along it, and chains are followed from each one beyond the covered part.
+ * 3. Uncovered parts must lie outside the mesh; the sweep tests some of their points. If no part is uncovered but no
+ *    chain leads from end to end, a piece beside others within rounding is missing. It may have been carved if one
+ *    of the others bounds the mesh. */
 #include "triangle/check/internal.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@
 
 enum { HUB = 16 };
 
-struct line { /* the input segment in question */
+struct line { /* the current input segment */
     int32_t id, marker;
     struct tri_point a, b;
     double dx, dy, length, tolerance;
@@ -31,7 +31,7 @@ struct stop {  /* a vertex on the line */
     int32_t vertex;
 };
 
-struct place { /* of a vertex of subsegments */
+struct place { /* position of a subsegment vertex */
     struct tri_point at;
     int32_t vertex;
 };
@@ -40,16 +40,16 @@ struct chains {
     struct checker *c;
     uint32_t search;   /* number of the current search */
     uint32_t *seen;    /* [n_points] last search that visited the vertex, 0: none */
-    int32_t *via;      /* [n_points] fan entry by which it came there, -1: it began there */
-    uint32_t *forked;  /* [n_points] last search that found several ways on from there */
-    int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
+    int32_t *via;      /* [n_points] fan entry from which it was reached, -1: start of the search */
+    uint32_t *forked;  /* [n_points] last search that found several paths from the vertex */
+    int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed at most once from each end */
     int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
-    bool beside_border; /* does the mesh end at a subsegment along the input segment in question? */
-    struct stop *stop; /* [n_points at most] */
-    int32_t n_stops, stop_capacity;
-    struct place *place; /* [n_places] from left to right; made when first needed */
-    int32_t n_places;
+    bool beside_border; /* true: the mesh ends at a subsegment along the current input segment */
+    struct stop *stop; /* [at most n_points] */
+    int32_t n_stops, stop_capacity; /* vertices on the line; allocated */
+    struct place *place; /* [n_places] sorted from left to right; made when first needed */
+    int32_t n_places;    /* number of subsegment vertices */
 };
 
 static double along(const struct line *l, struct tri_point p)
@@ -80,7 +80,8 @@ static void may_run_along(struct chains *k, const struct line *l, int32_t subseg
         k->possible[subsegment] = l->id;
 }
 
-/* Pushes the ways on from vertex u, the best aligned on top. Backwards by less than the tolerance counts as on. */
+/* Pushes the paths that continue from vertex u, the best aligned on top. A step backwards by less than the tolerance
+ * is allowed. */
 static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int32_t top)
 {
     const struct checker *c = k->c;
@@ -113,8 +114,8 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
     return top;
 }
 
-/* Step 1: from vertex u towards `goal`, along all ways that there are; returns it, or the vertex furthest on if it is
- * out of reach. */
+/* Step 1: searches from vertex u towards `goal` along all paths. Returns the goal, or the farthest vertex if the
+ * goal is not reached. */
 static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t goal)
 {
     int32_t top = 0, furthest = u;
@@ -138,7 +139,7 @@ static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t
     }
 }
 
-/* Exactly on the input segment? */
+/* Does p lie exactly on the input segment? */
 static bool holds(const struct line *l, struct tri_point p)
 {
     return p.x >= fmin(l->a.x, l->b.x) && p.x <= fmax(l->a.x, l->b.x) && p.y >= fmin(l->a.y, l->b.y) &&
@@ -151,8 +152,8 @@ static bool is_exactly_on(const struct chains *k, const struct line *l, int32_t 
     return holds(l, check_point(k->c, ends[0])) && holds(l, check_point(k->c, ends[1]));
 }
 
-/* Does a step of the chain that leads to u lead no farther on than the tolerance? Then it may lead over to another
- * input segment's vertices, and past a piece that was carved. */
+/* Does the chain to u contain a step that advances by at most the tolerance? Such a step may lead to vertices of
+ * another input segment, and past a carved piece. */
 static bool has_side_step(const struct chains *k, const struct line *l, int32_t u)
 {
     const struct checker *c = k->c;
@@ -162,8 +163,8 @@ static bool has_side_step(const struct chains *k, const struct line *l, int32_t 
     return false;
 }
 
-/* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where
- * that the chain is its own is a guess, where the chain is exactly on its line. */
+/* Marks the chain by which the search reached u as certain for the input segment, up to the first fork. If it is
+ * only assumed that the chain belongs to the segment, marks the subsegments exactly on its line. */
 static void mark_chain(struct chains *k, const struct line *l, int32_t u, bool whole)
 {
     const struct checker *c = k->c;
@@ -215,7 +216,7 @@ static int compare_stops(const void *a, const void *b)
     return (s->vertex > t->vertex) - (s->vertex < t->vertex);
 }
 
-/* The first place that is no farther left than that. */
+/* Returns the first place with an x coordinate of at least x. */
 static int32_t find_place(const struct chains *k, double x)
 {
     int32_t low = 0, high = k->n_places;
@@ -229,7 +230,7 @@ static int32_t find_place(const struct chains *k, double x)
     return low;
 }
 
-/* Step 2, the vertices on the line. */
+/* Step 2: lists the vertices on the line. */
 static enum tri_status find_stops(struct chains *k, const struct line *l)
 {
     enum tri_status status = k->place == NULL ? list_places(k) : TRI_OK;
@@ -253,8 +254,8 @@ static enum tri_status note_missing(struct checker *c, struct tri_point from, st
     return TRI_OK;
 }
 
-/* Step 3. Pieces as short as the tolerance are beneath notice; pieces whose ends are not surely on the segment close no
- * face (winding.c). */
+/* Step 3: adds queries for an uncovered part. Parts not much longer than the tolerance are ignored. Parts whose ends
+ * are not certainly on the segment do not bound a face (winding.c). */
 static enum tri_status ask_about(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
 {
     double from = along(l, begin), to = along(l, end);
@@ -296,7 +297,7 @@ static bool names_points(const struct tri_pslg *input, int32_t id)
     return ends[0] >= 0 && ends[0] < input->n_points && ends[1] >= 0 && ends[1] < input->n_points;
 }
 
-/* Do many subsegments end at this input point? */
+/* Do more than HUB subsegments end at this input point? */
 static bool is_hub(const struct checker *c, int32_t point)
 {
     int32_t v = c->twin[point];
@@ -308,8 +309,8 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     const struct tri_pslg *input = k->c->input;
     int32_t a = input->segments[2 * (size_t)id], b = input->segments[2 * (size_t)id + 1];
     if (!names_points(input, id))
-        return TRI_OK; /* skipped by the mesher, too */
-    if (is_hub(k->c, a) && !is_hub(k->c, b)) { /* at the end of a search, ways on are not looked at */
+        return TRI_OK; /* the mesher skips it as well */
+    if (is_hub(k->c, a) && !is_hub(k->c, b)) { /* ending the search at the hub avoids pushing its many subsegments */
         int32_t hub = a;
         a = b;
         b = hub;

@@ -1,9 +1,8 @@
-/* Parts: triangles in a row, and the vertices that are their corners.
+/* Parts: consecutive triangles and the vertices that are their corners.
  *
- *   1. The corners are read as they are, and the vertices that they name marked in a set of bits, one for each vertex
- *      of the mesh.
- *   2. Vertex v gets as its number in the part how many marked ones come before it: so the order of vertices stays.
- *   3. Their coordinates are read in slices, of windows of the mesh in which any are marked. */
+ * 1. The corners are read, and their vertices are marked in a bit set with one bit per vertex of the mesh.
+ * 2. The local number of vertex v is the number of marked vertices before it, so the order of vertices is kept.
+ * 3. Coordinates are read in windows of the mesh that contain marked vertices. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,15 +13,15 @@ enum {
     SAMPLE = 1 << 14  /* triangles */
 };
 
-/* What a part needs beside the caller's arrays; kept from one part to the next. */
+/* Buffers of a part, in addition to the caller's arrays. They are reused for the next part. */
 struct check_room {
-    int32_t *triangles;
-    int64_t *vertex, *neighbors;
-    double *points, *attributes, *window;
-    int64_t point_room;    /* vertices that there is room for */
-    int64_t first, last;   /* words of marked that may not be 0 */
-    uint64_t *marked;      /* [n_points / 64 + 1] */
-    int32_t *before;       /* [n_points / 64 + 1] marked vertices before each word; from first to last */
+    int32_t *triangles;    /* [part_triangles][3] corners by local numbers */
+    int64_t *vertex, *neighbors; /* as in struct check_part */
+    double *points, *attributes, *window; /* as in struct check_part; coordinates of a window */
+    int64_t point_room;    /* allocated number of vertices */
+    int64_t first, last;   /* range of words of `marked` that may not be 0 */
+    uint64_t *marked;      /* [n_points / 64 + 1] bit set of vertices */
+    int32_t *before;       /* [n_points / 64 + 1] marked vertices before each word from first to last */
 };
 
 static int count_bits(uint64_t x)
@@ -44,7 +43,7 @@ int32_t tri_check_local(const struct checker *c, int64_t v)
     return (r->marked[v >> 6] >> (v & 63) & 1) != 0 ? number_of(r, v) : -1;
 }
 
-/* Arrays that every part needs. */
+/* Allocates the arrays that every part needs. */
 static enum tri_status make_room(struct checker *c)
 {
     struct check_part *p = &c->part;
@@ -167,7 +166,7 @@ static enum tri_status number(struct checker *c)
     return TRI_OK;
 }
 
-/* Step 3, the words from w to end - 1. */
+/* Step 3 for the words w .. end - 1. */
 static enum tri_status read_window(struct checker *c, int64_t w, int64_t end)
 {
     struct check_room *r = c->part.room;
@@ -228,7 +227,7 @@ enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good)
     struct check_part *p = &c->part;
     *good = true;
     if (p->triangles != NULL && p->first == first)
-        return TRI_OK; /* it is there */
+        return TRI_OK; /* the part is already loaded */
     enum tri_status status = p->room == NULL ? make_room(c) : TRI_OK;
     if (status != TRI_OK)
         return status;

@@ -1,4 +1,5 @@
-/* Half-edges in memory, or in files by a hash of their edge: all of one edge come into one file. */
+/* Stores half-edges in memory, or in files chosen by a hash of their edge, so that all half-edges of an edge are in
+ * the same file. */
 #include "triangle/check/internal.h"
 
 #include <errno.h>
@@ -11,15 +12,15 @@
 enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 
 struct file {
-    tri_file kept; /* TRI_NO_FILE: not there yet */
-    int64_t n;     /* half-edges in it */
+    tri_file kept; /* TRI_NO_FILE: not yet created */
+    int64_t n;     /* half-edges in the file */
 };
 
 struct check_store {
-    struct check_opens here;
-    int64_t most; /* to be in memory */
-    int bits;     /* of the hash that chooses a file */
-    struct file file[N_FILES];
+    struct check_opens here; /* half-edges in memory */
+    int64_t most; /* maximum number of half-edges in memory */
+    int bits;     /* number of hash bits that choose a file */
+    struct file file[N_FILES]; /* the files */
 };
 
 enum tri_status tri_check_store_new(struct checker *c)
@@ -33,7 +34,7 @@ enum tri_status tri_check_store_new(struct checker *c)
     if (c->source->memory <= 0)
         return TRI_OK;
     c->store->most = LEAST_ROOM + (int64_t)fmin(c->source->memory / 8 / sizeof(struct check_open), 0x1p40);
-    /* Should all half-edges be spilled, a file is to fit, too. */
+    /* Even if all half-edges are spilled, each file should fit into memory. */
     double files = 3 * (double)c->n_triangles / (double)c->store->most;
     while (c->store->bits < MOST_BITS && (double)(1 << c->store->bits) < files)
         c->store->bits++;
@@ -73,7 +74,8 @@ static const char *folder_of(const struct checker *c)
 
 static enum tri_status fail(struct checker *c)
 {
-    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot keep half-edges there: %s", strerror(errno));
+    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot write half-edges to a file there: %s",
+                    strerror(errno));
 }
 
 static bool open_file(const struct checker *c, struct file *file)
@@ -83,7 +85,7 @@ static bool open_file(const struct checker *c, struct file *file)
     return file->kept != TRI_NO_FILE;
 }
 
-/* All that is in memory goes to the files. */
+/* Moves all half-edges from memory to the files. */
 static enum tri_status spill(struct checker *c)
 {
     struct check_store *s = c->store;
@@ -127,13 +129,14 @@ static enum tri_status fetch(struct checker *c, struct file *file)
     }
     here->n = file->n;
     if (!tri_read_again(file->kept, here->at, (size_t)here->n * sizeof *here->at, 0))
-        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was kept there");
+        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read half-edges from a file there");
     (void)tri_file_close(file->kept);
     *file = (struct file){TRI_NO_FILE, 0};
     return TRI_OK;
 }
 
-/* Calls take for all of each file, or all there are; what it is given it may sort. The store is empty then. */
+/* Calls `take` with all half-edges of each file, or with those in memory if nothing was spilled. `take` may sort
+ * them. The store is empty afterwards. */
 static enum tri_status drain(struct checker *c,
                              enum tri_status (*take)(struct checker *c, struct check_open *at, int64_t n))
 {
@@ -153,10 +156,10 @@ static enum tri_status drain(struct checker *c,
     return status;
 }
 
-/* Half-edges without other side in their part: matched across parts, when all have been seen.
+/* Matches the half-edges without a twin in their part, after the last part.
  *
- * Sorted by edge, the two sides of one stand side by side. One alone is a boundary edge; more than two, or two on the
- * same side, are faults, and count as boundary edges, too. */
+ * Sorted by edge, the two half-edges of an edge are adjacent. A single one is a boundary edge. More than two, or two
+ * with the same direction, are faults and also count as boundary edges. */
 
 static int compare_edges(const struct check_open *a, const struct check_open *b)
 {
@@ -178,7 +181,7 @@ static int compare_half_edges(const void *left, const void *right)
     return (a->half_edge > b->half_edge) - (a->half_edge < b->half_edge);
 }
 
-/* The first of them tells, as all do. */
+/* Reports the first half-edge of a faulty edge; all count as faults. */
 static void tell_bad(struct checker *c, const struct check_open *at, int64_t n)
 {
     int64_t same = 0;
@@ -201,7 +204,7 @@ static enum tri_status keep_boundary(struct checker *c, const struct check_open 
     return TRI_OK;
 }
 
-/* The half-edges of one edge. */
+/* Matches the half-edges of one edge. */
 static enum tri_status match_edge(struct checker *c, const struct check_open *at, int64_t n)
 {
     if (n == 2 && at[0].from == at[1].to) {
@@ -247,7 +250,7 @@ static void count_edges(struct checker *c)
 enum tri_status tri_check_match(struct checker *c)
 {
     tri_check_begin(c, TRI_CHECK_EDGES);
-    tri_check_release_part(c); /* room for the others; it comes back when asked for */
+    tri_check_release_part(c); /* frees memory; the part is loaded again when needed */
     enum tri_status status = drain(c, match_all);
     if (status != TRI_OK)
         return status;

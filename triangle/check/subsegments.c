@@ -1,6 +1,6 @@
-/* Subsegments, and the frame: the vertices that they, the boundary and the input have.
+/* Subsegments, and the frame: the vertices of subsegments, of the boundary and of the input.
  *
- * Where the mesh comes without a list, its boundary edges are the subsegments; then nothing can be wrong with them. */
+ * If the mesh has no list of subsegments, its boundary edges are used, and nothing about them needs checking. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,7 +60,8 @@ static enum tri_status list_vertices(struct checker *c)
     if (n > INT32_MAX / 2)
         return TRI_TOO_LARGE;
     c->n_frame = (int32_t)n;
-    return tri_resize(&c->vertex, (size_t)n + 1, sizeof *v) ? TRI_OK : TRI_NO_MEMORY; /* those that are left */
+    return tri_resize(&c->vertex, (size_t)n + 1, sizeof *v) ? TRI_OK : TRI_NO_MEMORY; /* shrinks the array to the
+                                                                                         remaining vertices */
 }
 
 static enum tri_status read_places(struct checker *c)
@@ -71,14 +72,14 @@ static enum tri_status read_places(struct checker *c)
                              : tri_check_gather(c, TRI_CHECK_POINTS, c->vertex, c->n_frame, bytes, c->points);
 }
 
-/* Number in the frame of a vertex that is there, or -1. */
+/* Returns the frame number of a vertex, or -1 if it is not in the frame. */
 int32_t tri_check_in_frame(const struct checker *c, int64_t v)
 {
     const int64_t *found = bsearch(&v, c->vertex, (size_t)c->n_frame, sizeof v, tri_check_compare_numbers);
     return found != NULL ? (int32_t)(found - c->vertex) : -1;
 }
 
-/* Subsegments and boundary edges by vertices of the frame. */
+/* Converts subsegments and boundary edges to vertices of the frame. */
 static enum tri_status translate(struct checker *c)
 {
     bool listed = check_is_listed(c);
@@ -116,7 +117,7 @@ enum tri_status tri_check_frame(struct checker *c)
     return status == TRI_OK ? translate(c) : status;
 }
 
-/* --- subsegments are edges, listed once, and the boundary consists of them */
+/* --- subsegments are edges and listed once; the boundary consists of subsegments */
 
 static int64_t least_half_edge(const struct checker *c, int32_t s)
 {
@@ -124,7 +125,7 @@ static int64_t least_half_edge(const struct checker *c, int32_t s)
     return there >= 0 && (back < 0 || there < back) ? there : back;
 }
 
-struct listing { /* an edge of the mesh, and the subsegment that lists it */
+struct listing { /* a mesh edge and the subsegment that lists it */
     int64_t edge;
     int32_t s;
 };
@@ -137,7 +138,7 @@ static int compare_listings(const void *left, const void *right)
     return (a->s > b->s) - (a->s < b->s);
 }
 
-/* twice[s]: an earlier subsegment lists the same edge. */
+/* Sets twice[s] if an earlier subsegment lists the same edge. */
 static enum tri_status find_repeated(const struct checker *c, uint8_t *twice)
 {
     struct listing *list = tri_check_array(c->n_segments, sizeof *list);
@@ -204,7 +205,7 @@ static enum tri_status group_by_vertex(struct checker *c)
     }
     for (int32_t i = 0; i < n; i++)
         c->fan_first[i + 1] += c->fan_first[i];
-    for (int32_t i = 0; i < 2 * c->n_segments; i++) { /* as in edges.c */
+    for (int32_t i = 0; i < 2 * c->n_segments; i++) { /* grouped as in edges.c */
         if (check_is_listed_well(c, i >> 1))
             c->fan[c->fan_first[c->segments[i]]++] = i;
     }

@@ -1,13 +1,13 @@
-/* Coordinates of any size, in the range of the predicates: what is very large or very small as a whole is multiplied by
- * a power of two, and what is below 2^-216 then is rounded, in the mesh as in the input. The multiplication is exact
- * otherwise, and changes no judgement but those on areas, which bounds.c scales back. */
+/* Brings coordinates into the range of the predicates. If coordinates are very large or very small as a whole, the
+ * mesh and the input are multiplied by a power of two, and results below 2^-216 are rounded. Otherwise the
+ * multiplication is exact. It affects areas only, which bounds.c scales back. */
 #include <stdlib.h>
 
 #include "triangle/check/internal.h"
 
 struct survey {
-    bool exact, finite;
-    double largest;
+    bool exact, finite; /* all coordinates are in range; are finite */
+    double largest;     /* largest absolute coordinate */
 };
 
 static bool are_exact(const double *values, int64_t n)
@@ -19,12 +19,12 @@ static bool are_exact(const double *values, int64_t n)
     return true;
 }
 
-/* What has been found, the values in hand, and what each share finds of them. */
+/* The survey so far, the current values, and the results of the shares. */
 struct looking {
     const struct checker *c;
-    struct survey all;
-    const double *values;
-    struct survey share[CHECK_MOST_SHARES];
+    struct survey all; /* of the slices so far */
+    const double *values; /* current slice */
+    struct survey share[CHECK_MOST_SHARES]; /* of each share of the slice */
 };
 
 static const struct survey nothing = {true, true, 0};
@@ -63,18 +63,19 @@ static void judge(void *checker, int64_t first, int64_t n, const void *points)
         const double *p = (const double *)points + 2 * i;
         if (tri_is_exact_point((struct tri_point){p[0], p[1]}))
             continue;
-        c->at = 3 * c->n_triangles + first + i; /* corners come first */
+        c->at = 3 * c->n_triangles + first + i; /* keys of corners come first */
         tri_check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
                         check_number(c, first + i), check_given(c, p[0]), check_given(c, p[1]));
     }
     c->at = 0;
 }
 
-/* More, and multiples of the least double would be no coordinates any longer (triangle/geometry/point.h). */
+/* With a larger exponent, multiples of the smallest double would be outside the range of coordinates
+ * (triangle/geometry/point.h). */
 enum { MOST = 1074 - 268 };
 
-/* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1, as
- * far as may be. */
+/* Returns 0 if coordinates have ordinary size or one is not finite. Otherwise returns the exponent that scales the
+ * largest coordinate to 1, as far as possible. */
 static int choose_exponent(const struct survey *s)
 {
     double largest = s->largest;
@@ -91,7 +92,7 @@ static double *scale(const double *values, int64_t n, int exponent)
     return scaled;
 }
 
-/* Their points only. */
+/* Scales the points of the regions only. */
 static double *scale_regions(const struct tri_pslg *input, int exponent)
 {
     double *scaled = scale(input->regions, 4 * (int64_t)input->n_regions, exponent);
@@ -130,7 +131,7 @@ enum tri_status tri_check_survey(struct checker *c)
     if (!l.all.exact || (c->input != NULL && !are_exact(c->input->points, 2 * (int64_t)c->input->n_points))) {
         c->exponent = choose_exponent(&l.all);
         c->rounded = true;
-        status = scale_input(c); /* the mesh is scaled on reading */
+        status = scale_input(c); /* the mesh is scaled when it is read */
         status = status ? status : tri_check_each_slice(c, TRI_CHECK_POINTS, c->n_points, bytes, judge, c);
     }
     c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * ldexp(l.all.largest, c->exponent);

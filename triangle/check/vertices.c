@@ -1,11 +1,12 @@
-/* Markers of vertices in use; attributes of vertices are below.
+/* Markers of used vertices. Attributes of vertices follow below.
  *
- * An input point keeps its own unless that is 0. Any other vertex has the marker of a subsegment at it, or of an input
- * segment through it (of which nothing may be left there, where it was carved, and whose marker another one's may
- * precede), or 1 on the boundary; 0 only if it lies inside and on no subsegment with a marker. Which of several is the
- * mesher's choice; a crossing, and what is made on a segment, may keep the 0 of one of its segments inside the mesh.
+ * An input point keeps its marker unless that is 0. Any other vertex has the marker of a subsegment that ends at it,
+ * or of an input segment through it, or 1 on the boundary. (Nothing of that input segment may be left if it was
+ * carved, and another segment's marker may have taken precedence.) A vertex has 0 only if it lies inside and on no
+ * subsegment with a marker. If several markers are possible, the mesher may choose. Inside the mesh, a crossing or a
+ * vertex created on a segment may keep the 0 of one of its segments.
  *
- * Subsegments tell nearly always. Where they do not, all input segments are tried, for MOST_TRIALS vertices. */
+ * Subsegments nearly always decide. If they do not, all input segments are tried, for at most MOST_TRIALS vertices. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,17 +16,17 @@ enum { MOST_TRIALS = 1000 };
 
 struct markers {
     struct checker *c;
-    int32_t *own;        /* [n_frame] marker of the input point at the vertex that has one, else 0 */
-    uint8_t *from_input; /* [n_frame] is there an input point? */
-    int32_t n_trials;
-    int32_t at;          /* vertices of the frame before this one have been passed */
-    enum tri_status status; /* of reading */
+    int32_t *own;        /* [n_frame] marker of the input point at the vertex, 0: none */
+    uint8_t *from_input; /* [n_frame] 1: there is an input point at the vertex */
+    int32_t n_trials;    /* searches among all input segments so far */
+    int32_t at;          /* index of the next frame vertex */
+    enum tri_status status; /* status of reading points */
 };
 
 static void list_own(struct markers *m)
 {
     const struct checker *c = m->c;
-    for (int32_t i = c->input->n_points - 1; i >= 0; i--) { /* of several at one place the first one counts */
+    for (int32_t i = c->input->n_points - 1; i >= 0; i--) { /* if several points coincide, the first one counts */
         int32_t v = c->twin[i];
         if (v < 0)
             continue;
@@ -46,7 +47,7 @@ static bool is_on(const struct checker *c, int32_t id, struct tri_point p)
     return fabs((p.x - a[0]) * y - (p.y - a[1]) * x) <= margin && along >= -margin && along <= length * length + margin;
 }
 
-/* Does an input segment with this marker pass the place? Unknown counts as yes. */
+/* Does an input segment with this marker pass through p? Returns true if that is unknown. */
 static bool is_on_any(struct markers *m, struct tri_point p, int32_t marker)
 {
     const struct tri_pslg *input = m->c->input;
@@ -70,7 +71,7 @@ static bool may_be_zero(const struct markers *m, int32_t v, bool boundary)
     return !boundary && (n_zero == n || (n_zero > 0 && !m->from_input[v]));
 }
 
-/* A vertex of the frame. */
+/* Is the marker of frame vertex v correct? */
 static bool is_right(struct markers *m, int32_t v, int32_t marker)
 {
     const struct checker *c = m->c;
@@ -85,8 +86,8 @@ static bool is_right(struct markers *m, int32_t v, int32_t marker)
     return (marker == 1 && boundary) || is_on_any(m, check_point(c, v), marker);
 }
 
-/* A vertex of the mesh; they come in order, as those of the frame do. A vertex that is not in the frame is on no
- * subsegment, none of the boundary and not of the input. */
+/* Checks a vertex of the mesh. Vertices come in ascending order, like those of the frame. A vertex outside the frame
+ * is not on a subsegment, not on the boundary and not an input point. */
 static void check_one(struct markers *m, int64_t v, int32_t marker)
 {
     struct checker *c = m->c;
@@ -137,20 +138,21 @@ enum tri_status tri_check_vertex_markers(struct checker *c)
     return status;
 }
 
-/* Attributes of vertices: those of the input keep theirs. Those of others lie on a surface over the triangulation of
- * the input, which is not made here: so they are judged by the range of the input's alone.
+/* Attributes of vertices. Input vertices must keep theirs. Attributes of other vertices lie on a surface over the
+ * triangulation of the input, which is not rebuilt here. So they are only compared with the range of the input's
+ * attributes.
  *
- * Interpolation rounds, the more the thinner the triangle is: hence the tolerance. */
+ * The rounding error of interpolation grows as triangles become thinner, hence the tolerance. */
 
-static const double TOLERANCE = 1e-6; /* of the range of an attribute in the input */
+static const double TOLERANCE = 1e-6; /* as a fraction of the attribute's range in the input */
 
 struct range {
-    double low, high;
+    double low, high;                 /* limits including the tolerance */
 };
 
 struct judging {
     struct checker *c;
-    struct range *range; /* [attributes] */
+    struct range *range; /* [attributes] range of each attribute in the input */
 };
 
 static void find_ranges(const struct tri_pslg *input, struct range *range)

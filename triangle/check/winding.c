@@ -1,17 +1,16 @@
-/* No overlap: the boundary edges meet only at common end points, and wind 0 or 1 times around every point.
+/* No overlap: boundary edges meet only at common end points, and wind 0 or 1 times around every point.
  *
- * A plane sweep after Shamos & Hoey 1976, by exact orientations. Events are the end points in lexicographic order:
- *   1. the edges of the order that pass through the event point are found by search; each must end there;
- *   2. they are removed, and the edges that start there inserted, sorted by direction;
+ * A plane sweep (Shamos & Hoey 1976) with exact orientations. Events are the end points in lexicographic order:
+ *   1. the edges in the sweep order that pass through the event point are found by search; each must end there;
+ *   2. they are removed, and the edges that start there are inserted, sorted by direction;
  *   3. edges that have become neighbours must not meet before the earlier of their right ends;
- *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ...: then the winding number is
- *      0, 1, 0, 1 ... everywhere.
- * THEOREM. The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds
- * it. Queries (is this point inside the mesh?) ride along as events. O(b log b).
- *
- * Faces (docs/theory.md, the judge): each face outside the mesh but the outer one must have been emptied for a hole
- * point. A second sweep, with missing pieces of segments and inner subsegments, is left out where it fails by rounding
- * of the pieces. */
+ *   4. from bottom to top, edges must alternate (mesh above, mesh below, mesh above, ...), so winding numbers are 0
+ *      or 1.
+ * THEOREM. At the leftmost wrong meeting point, two of the edges were neighbours just before, so step 1 or 3 finds
+ * it. Queries (is this point inside the mesh?) are additional events. O(b log b).
+ * FACES (docs/theory.md, the judge). Each face outside the mesh, except the outer one, must contain a hole point. A
+ * second sweep includes missing pieces of segments and inner subsegments. It is skipped if rounding of the pieces
+ * makes it fail. */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -20,9 +19,9 @@
 
 struct sweep_edge {
     struct tri_point left, right;
-    int32_t vertex[2]; /* at its left and right end; -1: a place where missing pieces meet */
-    int64_t side[2];   /* half-edge whose triangle is below, above; -1: no mesh there */
-    double attribute[2]; /* of these triangles */
+    int32_t vertex[2]; /* vertices at the left and right end; -1: a point where missing pieces meet */
+    int64_t side[2];   /* half-edge of the triangle below and above; -1: no mesh there */
+    double attribute[2]; /* region attributes of these triangles */
 };
 
 enum { LEFT_END = 0, RIGHT_END = 1, BELOW = 0, ABOVE = 1 };
@@ -39,17 +38,17 @@ struct start { /* an edge that starts at the event point */
 
 struct sweep {
     struct checker *c;
-    bool again;               /* the second sweep: of faces */
+    bool again;               /* true: this is the second sweep, for faces */
     struct sweep_edge *edge;  /* [n_edges] */
     struct event *event;      /* [2 * n_edges + n_queries] */
     struct start *start;      /* [n_edges] work space */
     int32_t n_edges, n_events;
     struct tri_order order;
-    /* For each side 2 * edge + BELOW or ABOVE, and for the outer face, number 2 * n_edges: */
-    int32_t *face;    /* a forest: another side of the same face */
-    uint8_t *emptied; /* is there a hole point in the face? */
-    uint8_t *vague;   /* may a region point be in the face, within rounding? */
-    int32_t *region;  /* last one whose point is in the face, -1: none */
+    /* For each side (2 * edge + BELOW or ABOVE) and, at index 2 * n_edges, for the outer face: */
+    int32_t *face;    /* union-find forest: another side of the same face */
+    uint8_t *emptied; /* 1: there is a hole point in the face */
+    uint8_t *vague;   /* 1: a region point may be in the face, within rounding */
+    int32_t *region;  /* last region whose point is in the face, -1: none */
 };
 
 static int compare_events(const void *a, const void *b)
@@ -69,7 +68,7 @@ static bool is_meshed(const struct sweep *w, int32_t s, int side)
     return s >= 0 && w->edge[s].side[side] >= 0;
 }
 
-/* A half-edge there, that is no missing piece, for the words: it goes from one vertex to another, beside a triangle. */
+/* The half-edge and triangle of an edge that is not a missing piece, for messages. */
 struct named {
     long from, to, triangle;
 };
@@ -93,7 +92,7 @@ static bool is_below(const void *user, int32_t s)
     return side(place->sweep, s, place->at) > 0;
 }
 
-/* The edge just below p, -1: none. */
+/* Returns the edge just below p, or -1. */
 static int32_t find_below(const struct sweep *w, struct tri_point p)
 {
     struct place place = {w, p};
@@ -111,7 +110,7 @@ static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
     return false;
 }
 
-/* The face on a side of edge s, -1: the outer one (Tarjan 1975, by halving). */
+/* Returns the face on a side of edge s (-1: the outer face), by union-find with path halving (Tarjan 1975). */
 static int32_t face_of(struct sweep *w, int32_t s, int side)
 {
     int32_t f = s < 0 ? 2 * w->n_edges : 2 * s + side;
@@ -120,7 +119,8 @@ static int32_t face_of(struct sweep *w, int32_t s, int side)
     return f;
 }
 
-/* What is above a is what is below b. The lesser number is the root, but for the outer face. */
+/* Joins the face above a with the face below b. The smaller number becomes the root, except that the outer face is
+ * always a root. */
 static void join_faces(struct sweep *w, int32_t a, int32_t b)
 {
     int32_t f = face_of(w, a, ABOVE), g = face_of(w, b, BELOW), last = f > g ? f : g, first = f + g - last;
@@ -146,7 +146,7 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
     return fault(w, "the mesh covers itself between them", a >= 0 ? a : b, b >= 0 ? b : a);
 }
 
-/* Steps 1 and 2, the edges that end at p. Leaves in *below the edge under p. */
+/* Steps 1 and 2 for the edges that end at p. Sets *below to the edge below p. */
 static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending, int32_t witness, int32_t *below)
 {
     *below = find_below(w, p);
@@ -159,7 +159,7 @@ static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending,
         s = next;
         n++;
     }
-    /* An edge that ends here but is not in its place crosses another one further left. */
+    /* An edge that should end here but is not in its place crosses another edge farther left. */
     return n == n_ending || fault(w, "they meet, or one of them meets a third", witness, s >= 0 ? s : witness);
 }
 
@@ -170,7 +170,7 @@ static int compare_directions(const void *a, const void *b)
     return (turn < 0) - (turn > 0);
 }
 
-/* Steps 2, the edges that start at p, and 3 and 4. */
+/* Step 2 for the edges that start at p, then steps 3 and 4. */
 static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
 {
     qsort(w->start, (size_t)n, sizeof *w->start, compare_directions);
@@ -193,7 +193,7 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
     return true;
 }
 
-/* Within a distance of an edge's line? Not of edge -1. */
+/* Is p within this distance of the line of edge s? False if s is -1. */
 static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double distance)
 {
     if (s < 0 || !(distance > 0))
@@ -203,8 +203,8 @@ static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double
     return det * det <= distance * distance * (x * x + y * y);
 }
 
-/* Notes that the point of a hole or region is on that side of edge s, -1: outermost. A hole on an inner subsegment need
- * not empty anything. */
+/* Notes that the point of a hole or region is on this side of edge s (-1: in the outer face). A hole point on an
+ * inner subsegment need not empty a face. */
 static void note_point(struct sweep *w, struct check_query *q, int32_t s, int side, bool vague)
 {
     int32_t f = s < 0 ? 2 * w->n_edges : 2 * s + side;
@@ -218,8 +218,8 @@ static void note_point(struct sweep *w, struct check_query *q, int32_t s, int si
     }
 }
 
-/* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. Within
- * rounding of an edge, a point may mean either side. */
+/* Answers a query. On an edge, a lost vertex counts as inside, but a hole point or a point of a missing piece does
+ * not. Within rounding of an edge, a point may be on either side. */
 static void answer(struct sweep *w, int32_t number)
 {
     struct check_query *q = &w->c->queries[number];
@@ -237,8 +237,9 @@ static void answer(struct sweep *w, int32_t number)
         note_point(w, q, s, ABOVE, vague);
 }
 
-/* A point at a vertex is in every face there, and within rounding of edges that pass it, beyond them. The edges that
- * end there are no longer in the order, those that start not yet. */
+/* Notes queries at a vertex: such a point is in every face there and, within rounding of edges that pass it, beyond
+ * these edges. The edges that end at the vertex have already left the sweep order, and those that start there are
+ * not yet in it. */
 static void note_all(struct sweep *w, const struct event *event, int32_t n, int32_t below)
 {
     int32_t above = tri_order_above(&w->order, below);
@@ -266,7 +267,7 @@ static bool coincide(struct sweep *w, int32_t v, int32_t u)
     return false;
 }
 
-/* One event point with everything that happens there. */
+/* Processes all events at one point. */
 static bool process(struct sweep *w, const struct event *event, int32_t n)
 {
     int32_t n_ending = 0, n_starting = 0, vertex = -1, witness = -1;
@@ -285,7 +286,7 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
         else
             w->start[n_starting++] = (struct start){w->edge[s].left, w->edge[s].right, s};
     }
-    if (witness >= 0) { /* queries at a vertex of the boundary are not inside */
+    if (witness >= 0) { /* queries at a boundary vertex are not inside */
         int32_t below;
         if (!remove_ending(w, event->at, n_ending, witness, &below))
             return false;
@@ -297,12 +298,12 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
     return true;
 }
 
-/* What is on the left and on the right of an edge from a to b. */
+/* Adds the edge from a to b, with the data on its left and right. */
 static void add_edge(struct sweep *w, struct tri_point a, struct tri_point b, int32_t u, int32_t v,
                      struct check_side left, struct check_side right)
 {
     int32_t s = w->n_edges++;
-    bool ascends = tri_compare_places(a, b) < 0; /* what is on the left is above then */
+    bool ascends = tri_compare_places(a, b) < 0; /* then the left side is above */
     struct check_side below = ascends ? right : left, above = ascends ? left : right;
     w->edge[s] = (struct sweep_edge){ascends ? a : b, ascends ? b : a, {ascends ? u : v, ascends ? v : u},
                                      {below.half_edge, above.half_edge}, {below.attribute, above.attribute}};
@@ -364,7 +365,7 @@ static void clear(struct sweep *w)
     tri_order_clear(&w->order);
 }
 
-/* False: the sweep has found a fault. */
+/* Runs the sweep. Returns false if it found a fault. */
 static bool run(struct sweep *w)
 {
     qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
@@ -378,7 +379,7 @@ static bool run(struct sweep *w)
     return true;
 }
 
-/* Each side's marks also become its face's. */
+/* Combines the marks of all sides of a face. */
 static void gather_marks(struct sweep *w)
 {
     for (int32_t f = 0; f < 2 * w->n_edges; f++) {
@@ -389,20 +390,21 @@ static void gather_marks(struct sweep *w)
     }
 }
 
-/* Twice the area of each face, of root f at area[f], less TOLERANCES times its perimeter: what is thinner may be there
- * by rounding, between missing pieces that nearly coincide. */
+/* Computes twice the area of each face, with root f in area[f], minus TOLERANCES times its perimeter. Thinner faces
+ * may be caused by rounding, between missing pieces that nearly coincide. */
 static void measure_faces(struct sweep *w, double *area)
 {
     const double TOLERANCES = 16;
     for (int32_t f = 0; f < 2 * w->n_edges; f++) {
         struct tri_point a = w->edge[f / 2].left, b = w->edge[f / 2].right, o = w->edge[0].left;
-        double width = b.x - a.x, twice = width * (a.y - o.y + (b.y - o.y)); /* below the edge, above o */
+        double width = b.x - a.x, twice = width * (a.y - o.y + (b.y - o.y)); /* twice the area between the edge and
+                                                                                the height of o */
         area[face_of(w, f / 2, f % 2)] +=
             (f % 2 == BELOW ? twice : -twice) - TOLERANCES * w->c->tolerance * hypot(width, b.y - a.y);
     }
 }
 
-/* Faces with nothing but missing pieces around them: whole parts of the mesh that are not there. */
+/* Reports faces bounded only by missing pieces: whole parts of the mesh that are missing. */
 static enum tri_status check_lost_faces(struct sweep *w)
 {
     struct checker *c = w->c;
@@ -425,12 +427,12 @@ static enum tri_status check_lost_faces(struct sweep *w)
     return TRI_OK;
 }
 
-/* Every face outside the mesh was emptied for a hole point, or is the outer one. */
+/* Every face outside the mesh must contain a hole point or be the outer one. */
 static enum tri_status check_faces(struct sweep *w)
 {
     struct checker *c = w->c;
     tri_check_begin(c, TRI_CHECK_FACES);
-    for (int32_t f = 0; f < 2 * w->n_edges; f++) { /* told where mesh is beside it */
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) { /* reported at an edge with mesh on its other side */
         int32_t s = f / 2, root = face_of(w, s, f % 2);
         if (w->emptied[root] || root == 2 * w->n_edges || is_meshed(w, s, f % 2) || !is_meshed(w, s, 1 - f % 2))
             continue;
@@ -442,8 +444,8 @@ static enum tri_status check_faces(struct sweep *w)
     return check_lost_faces(w);
 }
 
-/* Triangles of each face in the mesh have the attribute of the last region whose point is there; that they all have the
- * same is told apart (pairs.c). */
+/* The triangles of each face must have the attribute of the last region whose point lies in the face. That all
+ * triangles of a face have the same attribute is tested in pairs.c. */
 static void check_regions(struct sweep *w)
 {
     struct checker *c = w->c;
@@ -467,7 +469,7 @@ static bool faces_count(const struct checker *c)
     return c->input != NULL && !o->any_holes && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY;
 }
 
-/* One sweep, and what it says of faces where it is the last one. *good: it has come to its end. */
+/* Runs one sweep and, if it is the last one, checks the faces. *good: it found no fault. */
 static enum tri_status sweep(struct checker *c, const struct check_pieces *missing, bool again, bool last, bool *good)
 {
     struct sweep w = {.c = c, .again = again};
@@ -494,8 +496,8 @@ static bool has_hole_inside(const struct checker *c)
     return found;
 }
 
-/* The missing pieces, cut where they meet. They stay whole if a sweep of them alone finds that they meet at their ends
- * only, which is the rule. */
+/* Lists the missing pieces, cut where they meet. First sweeps them alone. If they meet only at their ends, as they
+ * usually do, they need no cuts. */
 static enum tri_status list_missing(struct checker *c, struct check_pieces *missing)
 {
     struct checker alone = *c;
@@ -506,7 +508,7 @@ static enum tri_status list_missing(struct checker *c, struct check_pieces *miss
     enum tri_status status = whole.n > 0 ? sweep(&alone, &whole, true, false, &good) : TRI_OK;
     if (status == TRI_OK && !good)
         return tri_check_split_missing(c, missing);
-    if (status == TRI_OK) { /* they are handed over */
+    if (status == TRI_OK) { /* *missing takes ownership of the array */
         *missing = whole;
         c->missing = NULL;
     }

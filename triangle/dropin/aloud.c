@@ -1,4 +1,5 @@
-/* The one line that is printed below drivers/: old callers of triangulate() know a function that returned nothing. */
+/* The only printing function outside drivers/. Programs written for Triangle's triangulate(), which returns nothing,
+ * do not check a status. */
 #include <stdio.h>
 
 #include "triangle/dropin/call.h"

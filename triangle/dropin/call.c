@@ -1,22 +1,22 @@
-/* The stages behind triangulate(), and what is told about them. */
+/* Runs the stages of triangulate() and reports messages. */
 #include "triangle/dropin/call.h"
 
 #include <stdio.h>
 
 #include "triangle/dropin/io.h"
 
-/* The client's test for u, if it has one: found by the linker. */
+/* The client's size test for switch u; NULL if the linker finds none. */
 extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
 
 struct io_run {
-    const struct tri_switches *switches;
-    const struct triangulate_options *options;
-    bool aloud;
-    struct tri_io_input input;
-    struct tri_options how;
-    struct tri_mesh mesh;
-    struct tri_report report;
-    struct tri_error *error;
+    const struct tri_switches *switches; /* the parsed switches */
+    const struct triangulate_options *options; /* the caller's options, not NULL */
+    bool aloud;                                /* true: print messages on standard error */
+    struct tri_io_input input;                 /* the converted input */
+    struct tri_options how;                    /* options of the stages */
+    struct tri_mesh mesh;                      /* the result */
+    struct tri_report report;                  /* counts and notes of the stages */
+    struct tri_error *error;                   /* description of a failure */
 };
 
 /* --- size test */
@@ -41,9 +41,10 @@ static enum tri_status add_size_test(struct io_run *run)
     if (!run->switches->user_test)
         return TRI_OK;
     if (!run->options->unsuitable && !triunsuitable)
-        return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0, "switch u: there is no function triunsuitable to ask");
+        return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0,
+                        "switch u: there is no size test, neither in the options nor as triunsuitable");
     quality->unsuitable = run->options->unsuitable ? ask_options : ask_client;
-    quality->unsuitable_user = (void *)run->options; /* which only reads it */
+    quality->unsuitable_user = (void *)run->options; /* it is only read */
     return TRI_OK;
 }
 
@@ -57,7 +58,7 @@ static bool is_stopped(void *user)
 
 /* --- messages */
 
-/* Errors, and remarks on input that was hardly meant so. Q keeps these remarks off standard error alone. */
+/* Reports errors, and remarks on probable mistakes in the input. With Q, remarks are not printed on standard error. */
 static void tell_client(const struct io_run *run, bool is_error, const char *text)
 {
     if (run->options->message)
@@ -100,13 +101,14 @@ static void warn_of_switch(void *user, const char *text, bool misread)
 static void warn_of_input(const struct io_run *run)
 {
     const struct tri_report *report = &run->report;
-    warn_number(run, report->loose, "segment is no edge of the mesh: it is passed on, but the mesh does not keep it",
-                "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
-    warn_number(run, report->duplicates, "point lies where a point of lower number lies, and is not used",
-                "points lie where a point of lower number lies, and are not used");
+    warn_number(run, report->loose,
+                "segment is not an edge of the mesh: it is copied to the output, but the mesh may not contain it",
+                "segments are not edges of the mesh: they are copied to the output, but the mesh may not contain them");
+    warn_number(run, report->duplicates, "point coincides with a point of lower number and is not used",
+                "points coincide with points of lower number and are not used");
     tell_notes(run);
-    warn_number(run, report->carve.between, "hole point lies on a segment, and empties nothing",
-                "hole points lie on segments, and empty nothing");
+    warn_number(run, report->carve.between, "hole point lies on a segment and has no effect",
+                "hole points lie on segments and have no effect");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn_client(run, "the limit of S was reached before the mesh was conforming");
 }
@@ -144,7 +146,7 @@ static enum tri_status run_all(struct io_run *run, const struct triangulateio *i
     return status;
 }
 
-/* What a client that did not ask for errors would go by. */
+/* Sets all counts to 0, for clients that do not check the status. */
 static void zero_counts(struct triangulateio *io)
 {
     io->numberofpoints = io->numberofpointattributes = io->numberofedges = 0;
@@ -166,10 +168,10 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     s.voronoi = s.voronoi && vorout;
     struct io_run run = {.switches = &s, .options = options, .aloud = aloud, .how = tri_switches_options(&s),
                          .error = &error};
-    const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
+    const struct tri_stop stop = {is_stopped, (void *)options}; /* it is only read */
     run.how.executor = executor;
     run.how.refine_call = refine;
-    run.how.refine_user = (void *)options; /* which only reads it */
+    run.how.refine_user = (void *)options; /* it is only read */
     run.how.stop = options->stop ? &stop : NULL;
     if (switches && in && out)
         status = run_all(&run, in, out, vorout);
@@ -182,6 +184,6 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (status)
         tell_client(&run, true, error.text);
     else if (no_diagram)
-        tell_client(&run, false, "switch v: there is no struct for the Voronoi diagram");
+        tell_client(&run, false, "switch v: vorout is NULL, so there is no Voronoi diagram");
     return (int)status;
 }

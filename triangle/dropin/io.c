@@ -1,6 +1,4 @@
-/* struct triangulateio as input.
- *
- * Only the fields that the switches select are looked at: the rest may be garbage. */
+/* Reads struct triangulateio. Only the fields that the switches select are read; the others may be uninitialised. */
 #include "triangle/dropin/io.h"
 
 #include <assert.h>
@@ -11,25 +9,25 @@
 
 _Static_assert(sizeof(int) == sizeof(int32_t), "the library's int is the mesh's");
 
-/* The input on its way; after a failure nothing more is taken. */
+/* A conversion in progress. After a failure, the remaining fields are skipped. */
 struct taking {
-    struct tri_io_input *input;
-    const struct triangulateio *in;
-    bool is_mesh; /* switch r */
-    int32_t base;
-    enum tri_status status;
-    struct tri_error *error;
+    struct tri_io_input *input; /* the result */
+    const struct triangulateio *in; /* the caller's struct */
+    bool is_mesh; /* true: switch r */
+    int32_t base; /* number of the first point: 0 or 1 */
+    enum tri_status status;         /* first failure */
+    struct tri_error *error;        /* its description */
 };
 
 static void check(struct taking *t, const char *what, int n, const void *array)
 {
     if (!t->status && n < 0)
-        t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "%d for the number of %s", n, what);
+        t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "the number of %s is %d", what, n);
     if (!t->status && n > 0 && !array)
         t->status = tri_fail(t->error, TRI_BAD_INPUT, NULL, 0, "%d %s without an array", n, what);
 }
 
-/* Memory that lives as long as the input; NULL: a failure. */
+/* Allocates memory that lives as long as the input. Returns NULL on failure. */
 static void *make_copy(struct taking *t, size_t n, size_t item)
 {
     if (t->status)
@@ -43,7 +41,7 @@ static void *make_copy(struct taking *t, size_t n, size_t item)
     return copy;
 }
 
-/* n rows of numbers as double; NULL: none, or a failure. */
+/* Returns n rows of numbers as double, or NULL if there are none or after a failure. */
 static double *take_reals(struct taking *t, REAL *given, int n, int width)
 {
     if (t->status || !given || n == 0 || width == 0)
@@ -59,13 +57,14 @@ static double *take_reals(struct taking *t, REAL *given, int n, int width)
 #endif
 }
 
-/* An index from 0; what names no point becomes -1. */
+/* Converts a number to an index from 0, or to -1 if there is no such point. */
 static int32_t index_of(int number, int32_t base, int32_t n_points)
 {
     return number >= base && number - base < n_points ? number - base : -1;
 }
 
-/* With r, segments that are no edges are passed on behind the others, where `out` may name arrays of `in`. */
+/* With r, segments that are no edges are passed to the output after the others. Copies their data, since `out` may
+ * use arrays of `in`. */
 static void take_loose(struct taking *t)
 {
     const size_t n = (size_t)t->in->numberofsegments;
@@ -76,10 +75,10 @@ static void take_loose(struct taking *t)
     t->input->is_edge = make_copy(t, n, sizeof *t->input->is_edge);
 }
 
-/* Likewise, but goes on telling what it is, as far as that can be told. */
+/* Converts a number to an index from 0, but keeps invalid numbers distinguishable as far as possible. */
 static int32_t end_of(int number, int32_t base) { return number > INT32_MIN ? number - base : number; }
 
-/* Ends of segments. Without r those that name no point are skipped later. */
+/* Reads the ends of segments. Without r, segments with an invalid end are skipped later. */
 static void take_segments(struct taking *t)
 {
     const struct triangulateio *in = t->in;
@@ -114,10 +113,10 @@ static void take_points(struct taking *t)
     pslg->markers = in->pointmarkerlist;
 }
 
-/* A count that clients of Triangle may leave negative: no items. */
+/* Returns a count. Clients of Triangle may leave some counts negative, which means 0. */
 static int count_of(int given) { return given > 0 ? given : 0; }
 
-/* Holes or regions. */
+/* Reads holes or regions. */
 static double *take_places(struct taking *t, const char *what, REAL *list, int given, int width, int32_t *n)
 {
     *n = count_of(given);
@@ -125,7 +124,7 @@ static double *take_places(struct taking *t, const char *what, REAL *list, int g
     return take_reals(t, list, *n, width);
 }
 
-/* Corners, and the nodes amid edges apart from them. */
+/* Reads corners, and separately the midside nodes. */
 static void take_nodes(struct taking *t)
 {
     const struct triangulateio *in = t->in;
@@ -183,20 +182,20 @@ void tri_io_input_free(struct tri_io_input *input)
     memset(input, 0, sizeof *input);
 }
 
-/* struct triangulateio as output.
+/* Writes struct triangulateio.
  *
- * The structs are worked on as copies, and copied back when all arrays are there. INVARIANT: until then nothing that
- * the caller can see has changed, so that giving up means to free what was allocated. */
+ * The structs are changed in copies, which are copied back when all arrays have been allocated. INVARIANT. Before
+ * that, nothing visible to the caller has changed, so on failure it suffices to free the new arrays. */
 
 enum { MOST_ARRAYS = 14 };
 
 struct output {
-    const struct tri_switches *switches;
-    struct tri_grid grid, voronoi;
-    struct triangulateio out, vorout;
-    void *made[MOST_ARRAYS]; /* arrays that were allocated here */
-    int n_made;
-    bool failed;             /* one of them could not be */
+    const struct tri_switches *switches; /* select what is written */
+    struct tri_grid grid, voronoi;       /* the mesh and its Voronoi diagram */
+    struct triangulateio out, vorout;    /* copies of the caller's structs */
+    void *made[MOST_ARRAYS]; /* arrays allocated here */
+    int n_made;              /* number of new arrays */
+    bool failed;             /* true: an allocation failed */
 };
 
 static bool lists_segments(const struct output *o)
@@ -206,7 +205,7 @@ static bool lists_segments(const struct output *o)
 
 /* --- arrays */
 
-/* The caller's array, or a new one of n rows; empty ones are allocated too. */
+/* Returns the caller's array, or a new one with n rows. Empty arrays are allocated as well. */
 static void *provide(struct output *o, void *given, int n, int width, size_t item)
 {
     if (given || o->failed)
@@ -221,7 +220,7 @@ static void *provide(struct output *o, void *given, int n, int width, size_t ite
     return made;
 }
 
-/* Provides a field of out or vorout, if it is wanted. */
+/* Provides the array of a field of out or vorout if it is wanted. */
 #define PROVIDE(o, wanted, field, n, width) \
     ((field) = (wanted) ? provide(o, field, n, width, sizeof *(field)) : (field))
 
@@ -249,13 +248,13 @@ static void provide_arrays(struct output *o)
     PROVIDE(o, s->voronoi, v->normlist, v->numberofedges, 2);
 }
 
-/* --- items */
+/* --- filling */
 
-/* A number as the caller counts; -1: none. */
+/* Converts an index to the caller's numbering; -1: none. */
 static int shown(const struct output *o, int64_t index) { return (int)(index < 0 ? index : index + o->grid.base); }
 
-/* The points of the mesh or of the Voronoi diagram into these arrays, of which markers may be NULL. They may be the
- * arrays of the input: a point never moves to a higher place, so that none is read after it has been written. */
+/* Writes the points of the mesh or of the Voronoi diagram into these arrays; `markers` may be NULL. The arrays may
+ * be those of the input: a point never moves to a higher index, so each is read before it is overwritten. */
 static void fill_points(const struct tri_grid *grid, REAL *points, REAL *attributes, int *markers)
 {
     for (int64_t i = 0; i < grid->n_points; i++) {
@@ -297,7 +296,7 @@ static void fill_triangles(struct output *o)
         fill_neighbors(o, t);
 }
 
-/* n edges or segments of a grid into these arrays, of which markers and directions may be NULL. */
+/* Writes n edges or segments of a grid into these arrays; `markers` and `directions` may be NULL. */
 static void fill_edges(const struct output *o, const struct tri_grid *grid, int64_t n,
                        void (*edge_at)(const void *user, int64_t i, struct tri_grid_edge *edge), int *ends,
                        int *markers, REAL *directions)
@@ -315,9 +314,9 @@ static void fill_edges(const struct output *o, const struct tri_grid *grid, int6
     }
 }
 
-/* --- all together */
+/* --- all steps */
 
-/* All fit an int: there are at most 2^28 vertices, so less than 3 * 2^28 edges. */
+/* All counts fit an int: with at most 2^28 vertices there are fewer than 3 * 2^28 edges. */
 static void set_counts(struct output *o)
 {
     struct triangulateio *out = &o->out;
@@ -379,7 +378,7 @@ enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_i
     struct tri_grid_options options = tri_switches_grid(switches, mesh, &input->pslg, &input->elements);
     options.is_edge = input->is_edge;
     options.base = !switches->from_zero;
-    memcpy(&o.out, out, sizeof o.out); /* with the bytes between the fields */
+    memcpy(&o.out, out, sizeof o.out); /* includes the padding bytes */
     if (vorout)
         memcpy(&o.vorout, vorout, sizeof o.vorout);
     enum tri_status status = tri_grid_make(&o.grid, &options, error);

@@ -1,4 +1,4 @@
-/* The parser walks along the string once; each switch sees what is behind its letter and says where to go on. */
+/* Parses the string in one pass. Each switch reads what follows its letter and returns the next position. */
 #include "triangle/dropin/switches.h"
 
 #include <stdio.h>
@@ -8,7 +8,8 @@
 static const double DEFAULT_ANGLE = 20;
 
 enum {
-    MAX_DIGITS = 800, /* decides the rounding of every decimal number: a double's own expansion has at most 767 */
+    MAX_DIGITS = 800, /* enough to round every decimal number correctly, since the exact decimal form of a double has
+                         at most 767 digits */
     MAX_SHIFT = 100000
 };
 
@@ -16,8 +17,8 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 struct tri_switches tri_switches_none(void) { return (struct tri_switches){.max_steiner = -1, .passes = -1}; }
 
-/* The value of a run of digits and dots up to its second dot. Handed to strtod as an integer with an exponent, since
- * the character that it takes for a decimal point depends on the locale. */
+/* Returns the value of a run of digits and dots up to its second dot. The number is passed to strtod as an integer
+ * with an exponent, because strtod's decimal point depends on the locale. */
 static double value_of(const char *run, const char *end)
 {
     char text[MAX_DIGITS + 32];
@@ -39,7 +40,7 @@ static double value_of(const char *run, const char *end)
     if (n == 0)
         return 0;
     if (inexact)
-        text[n - 1] |= 1; /* 0, 2, .. become 1, 3, ..: off a tie is all that matters here */
+        text[n - 1] |= 1; /* 0, 2, .. become 1, 3, ..: this only has to break a tie */
     text[n++] = 'e';
     text[n++] = shift < 0 ? '-' : '+';
     char reversed[24];
@@ -52,7 +53,7 @@ static double value_of(const char *run, const char *end)
     return strtod(text, NULL);
 }
 
-/* Notes a number, which begins at its letter and ends at `end`, if something like an exponent follows. */
+/* Records a number, from its letter to `end`, if text like an exponent follows. */
 static void note_exponent(struct tri_switches *s, const char *letter, const char *end)
 {
     const char *digits = end + 1;
@@ -69,7 +70,7 @@ static void note_exponent(struct tri_switches *s, const char *letter, const char
     s->notes[s->n_notes++][n] = 0;
 }
 
-/* The end of the run of digits and dots that begins at `at`. */
+/* Returns the end of the run of digits and dots that begins at `at`. */
 static const char *run_end(const char *at)
 {
     while (is_digit(*at) || *at == '.')
@@ -113,7 +114,7 @@ static const char *add_limit(struct tri_switches *s, const char *letter)
     return at;
 }
 
-/* The flag of a switch that is no more than that; NULL: another letter. */
+/* Returns the flag of a switch without a value, or NULL for another letter. */
 static bool *flag_of(struct tri_switches *s, char letter)
 {
     switch (letter) {
@@ -147,7 +148,7 @@ static bool *flag_of(struct tri_switches *s, char letter)
     }
 }
 
-/* Takes one switch and what belongs to it; returns what follows. */
+/* Parses one switch with its value; returns the next position. */
 static const char *add_one(struct tri_switches *s, const char *at)
 {
     bool *flag = flag_of(s, *at);
@@ -191,7 +192,7 @@ void tri_switches_warn(const struct tri_switches *s, void (*warn)(void *user, co
         warn(user, text, true);
     }
     if (s->jettison && s->no_node)
-        warn(user, "-j and -N: vertices are renumbered, and nothing tells how", false);
+        warn(user, "-j and -N: vertices are renumbered, but their new numbers are not written", false);
     if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
         warn(user, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r: the switch is ignored",
              false);
@@ -231,8 +232,7 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     options.ignore_holes = s->ignore_holes;
     options.spread_regions = tri_switches_use_regions(s);
     options.refine = tri_switches_refine(s);
-    /* No triangle has three angles of 180 degrees; Triangle, which compares squared cosines, takes that for no
-     * bound. */
+    /* No triangle has three angles of 180 degrees. Triangle compares squared cosines, for which this means no bound. */
     options.quality.min_angle = s->angle && s->min_angle < 180 ? s->min_angle : 0;
     options.quality.max_area = s->area ? s->max_area : 0;
     options.quality.region_areas = (s->segments || s->mesh) && s->area_lists;

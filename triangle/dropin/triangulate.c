@@ -1,14 +1,14 @@
-/* triangulate() of libtriangle.a: one thread.
+/* triangulate() of libtriangle.a, which uses one thread.
  *
- * libptriangle.a has the same functions (sched/schedule/par_triangulate.c), and a linker that sees it first never comes
- * here: this file defines nothing else. */
+ * libptriangle.a defines the same functions (sched/schedule/par_triangulate.c). This file defines nothing else, so a
+ * linker that sees libptriangle.a first does not use it. */
 #include "triangle/dropin/triangle.h"
 
 #include <stddef.h>
 
 #include "triangle/dropin/call.h"
 
-/* What clients in other languages, and objects compiled against Triangle's own header, rely on. */
+/* Clients in other languages, and objects compiled with Triangle's own header, depend on this layout. */
 #define AT(field, offset) _Static_assert(offsetof(struct triangulateio, field) == (offset), #field " has moved")
 #if defined(__LP64__)
 AT(pointlist, 0);

@@ -1,4 +1,4 @@
-/* Buckets of linked blocks over one pool; a ring with a stack behind it. */
+/* Buckets are linked lists of blocks from one pool. Sizes wait in a ring buffer, with a stack for older entries. */
 #include "triangle/refine/bad_queue.h"
 
 #include <assert.h>
@@ -37,7 +37,7 @@ static int32_t take_block(struct tri_bad_queue *queue)
     return block;
 }
 
-/* Gives the bucket another block behind its last. */
+/* Appends a block to the bucket. Returns false if memory ran out. */
 static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 {
     int32_t block = take_block(queue);
@@ -96,8 +96,8 @@ static int lowest_bit(uint64_t word)
     return bit;
 }
 
-/* The entries behind one that is taken lie scattered, being in order of their edges: what the point of the next will
- * look at is fetched while that of this one is worked on, and the triangle of the one after it. */
+/* Consecutive entries of a bucket are ordered by edge length, so their triangles are scattered in memory. Prefetches
+ * the surroundings of the next triangle and, for the entry after it, the triangle alone. */
 static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_bucket *bucket, const struct tri_mesh *mesh)
 {
     const struct tri_entry *soon = &queue->block[bucket->first].entry[bucket->begin];
@@ -114,7 +114,7 @@ static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_buck
     }
 }
 
-/* Lets go of the bucket's first block, all of whose entries have been served. */
+/* Frees the bucket's first block. All its entries have been popped. */
 static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 {
     int32_t block = bucket->first;
@@ -154,7 +154,7 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struc
     return false;
 }
 
-/* Of the next entries in the window, those that are up to date. */
+/* Moves the next entries from the window to the batch, and drops stale ones. */
 static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *tri)
 {
     uint32_t waiting = queue->tail - queue->head, n = waiting < TRI_BATCH ? waiting : TRI_BATCH;
@@ -187,7 +187,7 @@ int tri_bad_queue_median(const struct tri_bad_queue *queue)
 {
     const int64_t all = queue->n_angles - queue->bucket[TRI_URGENT_BUCKET].count;
     int64_t below = 0;
-    int bucket = TRI_URGENT_BUCKET + 1; /* ends at the latest with the last entry */
+    int bucket = TRI_URGENT_BUCKET + 1; /* the loop ends at the last entry at the latest */
     while (all > 0 && 2 * (below += queue->bucket[bucket].count) < all)
         bucket++;
     return bucket;

@@ -1,4 +1,4 @@
-/* One pass over the triangles, or the subsegments, for each question. */
+/* Each question takes one pass over the triangles or the subsegments. */
 #include "triangle/refine/census.h"
 
 #include <assert.h>
@@ -20,7 +20,7 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
     enum tri_badness badness = tri_judge(c, t, &shape);
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->asked.mesh, triangle, &shape) &&
         !tri_is_too_large(&c->asked, t, &shape))
-        badness = TRI_GOOD; /* as good as it will be */
+        badness = TRI_GOOD; /* it cannot be improved */
     if (badness != TRI_GOOD)
         return true;
     if (!c->asked.quality->conforming)
@@ -80,7 +80,7 @@ int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_quality 
     return n;
 }
 
-/* May a corner of the triangle be an end of a subsegment that must not be split? */
+/* Does a subsegment that must not be split lie on the triangle or on one of its neighbours? */
 static bool is_beside_protected(const struct tri_criterion *c, const struct tri_triangle *t)
 {
     for (int e = 0; e < 3; e++) {
@@ -94,13 +94,13 @@ static bool is_beside_protected(const struct tri_criterion *c, const struct tri_
     return false;
 }
 
-/* TRI_EXCUSES: none of its own. */
+/* Returns why the triangle is bad, or TRI_EXCUSES if no reason is known. */
 static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
                                   const struct tri_shape *shape, enum tri_badness badness,
                                   const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &c->asked.mesh->tri[triangle];
-    if (!c->asked.mesh->incidence.start) /* never prepared for refinement: its features are not known */
+    if (!c->asked.mesh->incidence.start) /* the mesh was not prepared for refinement, so its features are unknown */
         return TRI_EXCUSES;
     if (tri_is_too_large(&c->asked, t, shape))
         badness = TRI_BAD_SIZE;
@@ -119,8 +119,8 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
     return TRI_EXCUSES;
 }
 
-/* Of edges that are equally short the one with the first reason, so that it does not matter at which corner a triangle
- * begins: numbering may change that. */
+/* If several edges are equally short, returns the smallest of their reasons. So the result does not depend on the
+ * order of the corners, which renumbering may change. */
 static enum tri_excuse first_excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
                                         const struct tri_shape *shape, enum tri_badness badness,
                                         const struct tri_refine_report *report)
@@ -145,7 +145,7 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
         count[k] = found[k];
     if (report->gated + report->fenced > 0)
         count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
-    else /* behind a protected one that is far away, if any is */
+    else /* its neighbourhood may depend on a protected segment farther away */
         count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }
 
@@ -160,7 +160,8 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
         return TRI_EXCUSE_LIMIT;
     struct tri_disk_split split;
     if (!tri_is_resolved_from(mesh, s, apex) || tri_is_encroached_from(mesh, s, code, &split))
-        return TRI_EXCUSE_PRECISION; /* of a split that coordinates resolve rounding left no place that can be seen */
+        return TRI_EXCUSE_PRECISION; /* coordinates resolve the split, but rounding left no place that sees the whole
+                                        cavity */
     if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
         return TRI_EXCUSE_INPUT_ANGLE;
     return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_NARROW_GAP : TRI_EXCUSE_PRECISION;
@@ -184,11 +185,11 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_quality 
     }
 }
 
-/* A count of bad triangles, in pieces. */
+/* A parallel count of bad triangles, divided into shares. */
 struct counting {
-    struct tri_criterion criterion;
-    const struct tri_refine_report *report;
-    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1];
+    struct tri_criterion criterion; /* the bounds */
+    const struct tri_refine_report *report; /* report of the refinement */
+    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1]; /* bad triangles per share and reason; last: no reason */
 };
 
 static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,
@@ -211,7 +212,7 @@ static void count_share(void *context, size_t share)
         count_triangle(&c->criterion, c->report, t, c->count[share]);
 }
 
-/* Lengths are met on the average, and bound no single triangle. */
+/* Returns the bounds without lengths. Lengths are met on average and do not bound single triangles. */
 static struct tri_criterion bounds_of(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                       struct tri_quality *bounds)
 {

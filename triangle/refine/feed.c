@@ -1,7 +1,7 @@
-/* What waits to be treated: new bad triangles are judged and queued.
+/* Judges new triangles and queues the bad ones.
  *
- * Three kinds wait, in this order (refine.c): triangles with a corner that sees the opposite subsegment under too wide
- * an angle; other triangles with bad angles, by their shortest edges; triangles that are only too large. */
+ * Three kinds wait, in this order (refine.c): triangles with a corner that encroaches the opposite subsegment; other
+ * triangles with bad angles, by their shortest edges; triangles that are only too large. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>
@@ -9,7 +9,8 @@
 #include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 
-/* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
+/* Maps a shortest squared edge length to its bucket. There are four buckets per octave, counted from the shortest
+ * edge that coordinates resolve. */
 static int bucket_of(const struct tri_refiner *r, double shortest)
 {
     int exponent, first = TRI_URGENT_BUCKET + 1;
@@ -19,7 +20,7 @@ static int bucket_of(const struct tri_refiner *r, double shortest)
     return bucket < first ? first : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 
-/* Does a corner of the triangle see the subsegment opposite to it under too wide an angle? */
+/* Does a corner of the triangle see the opposite subsegment under too wide an angle? */
 static bool encroaches_opposite(const struct tri_refiner *r, const struct tri_triangle *t)
 {
     for (int e = 0; e < 3; e++) {
@@ -52,7 +53,7 @@ static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badne
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-/* Queues the triangle if it is bad, but not if it is bad in the way that does not count. */
+/* Queues the triangle unless it is good or its only fault is `other`. */
 static bool feed_but(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badness other)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
@@ -61,7 +62,7 @@ static bool feed_but(struct tri_refiner *r, tri_triangle_id triangle, enum tri_b
     return badness == TRI_GOOD || badness == other || push(r, triangle, badness, shape.l[shape.shortest]);
 }
 
-/* Judges the new triangles where only urgent ones count (tri_refine_hooks). */
+/* Judges the new triangles if hooks->urgent selects some of them. */
 static bool judge_urgent(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < r->cavity.n_edges; i++)
@@ -70,7 +71,7 @@ static bool judge_urgent(struct tri_refiner *r)
     return true;
 }
 
-/* Judges the new triangle on an edge, by the coordinates that the search for the cavity left. */
+/* Judges the new triangle on a cavity edge, using the coordinates that the cavity search has computed. */
 static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_cavity_edge *edge)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
@@ -86,7 +87,6 @@ static inline bool judge(struct tri_refiner *r, tri_triangle_id triangle, const 
     return tri_bad_queue_push_size(&r->queue, (struct tri_entry){triangle, t->life}, is_bad);
 }
 
-/* Queues what is bad among the new triangles. */
 bool tri_feed_fan(struct tri_refiner *r)
 {
     const struct tri_cavity *c = &r->cavity;
@@ -100,7 +100,7 @@ bool tri_feed_fan(struct tri_refiner *r)
     return true;
 }
 
-/* The fan is whole, even where there is no memory for what waits. */
+/* All triangles of the fan are made even if memory for the queue runs out. */
 bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v)
 {
     if (r->hooks->urgent || r->stage == FRONT_STAGE) {
@@ -128,7 +128,7 @@ bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s)
     return true;
 }
 
-/* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
+/* For conforming meshes: the new vertex may lie in the diametral circles of the cavity's walls. */
 bool tri_feed_walls(struct tri_refiner *r)
 {
     const int32_t n = r->quality->conforming ? r->cavity.n_wall : 0;
@@ -143,7 +143,6 @@ bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool siz
     return !tri_is_live(&r->mesh->tri[triangle]) || feed_but(r, triangle, sizes ? TRI_BAD_ANGLE : TRI_BAD_SIZE);
 }
 
-/* The subsegments beside a triangle. */
 bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];

@@ -1,10 +1,12 @@
-/* A stage before the usual one: segments are divided, then all that is too large for the lengths is worked off.
+/* The front stage comes before the usual stage. It divides segments, then refines all triangles that are too large
+ * for the wanted lengths h.
  *
- * Segments are divided into equal parts of the integral of ds / h, in halves of a whole number of parts, or by shells
- * beside an acute vertex (split.h). In a block of a schedule, free vertices of the coarser mesh go then, if their star
- * lies in the fence: they stand where nobody wants them now. Each goes once, and refinement makes no more of them.
+ * A segment is divided into parts over which the integral of ds / h is the same: it is split recursively, and each
+ * half gets half of the parts. Beside an acute vertex it is split on concentric shells instead (split.h). In a block
+ * of a schedule, free vertices of the coarse mesh are then erased if their star lies in the fence, because their
+ * positions do not fit the wanted lengths. Each is erased at most once, and refinement creates no further ones.
  *
- * INVARIANT. What is too large waits in one of the two stacks, or has been deferred or given up. */
+ * INVARIANT. Each triangle that is too large waits in one of the two stacks, or has been deferred or given up. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>
@@ -22,7 +24,7 @@ void tri_front_free(struct tri_front *front)
     free(front->large);
 }
 
-/* --- what waits */
+/* --- waiting triangles */
 
 static bool is_large(const struct tri_refiner *r, tri_triangle_id triangle)
 {
@@ -39,14 +41,16 @@ static bool push(struct tri_refiner *r, struct tri_front_stack *to, tri_triangle
     return true;
 }
 
-/* A triangle that is not too large may be bad for its angle: then it waits for the usual stage. */
+/* Queues a triangle that is not too large for the usual stage if its angle is bad. a, b, c: its squared edge
+ * lengths. Returns false if memory ran out. */
 static bool push_angle(struct tri_refiner *r, tri_triangle_id id, double a, double b, double c, double area2)
 {
     return area2 * area2 >= r->criterion.bounds.sin2 * tri_longer_product(a, b, c) ||
            tri_push_angle(r, id, tri_lesser(a, tri_lesser(b, c)));
 }
 
-/* Is the new triangle on an edge of the cavity too large? *room: false if there is no memory. */
+/* Is the new triangle on cavity edge i too large? If not, queues it if its angle is bad. Sets *room to false if
+ * memory ran out. */
 static bool judge(struct tri_refiner *r, int32_t i, bool *room)
 {
     const struct tri_cavity_edge *edge = &r->cavity.edge[i];
@@ -62,7 +66,8 @@ static bool judge(struct tri_refiner *r, int32_t i, bool *room)
     return false;
 }
 
-/* What is too large waits, and so does what has come to lie on the front beside new triangles. */
+/* Pushes the new triangles that are too large, and the neighbours of new triangles that are too large and now lie on
+ * the front. */
 bool tri_front_feed(struct tri_refiner *r)
 {
     const struct tri_cavity *c = &r->cavity;
@@ -93,10 +98,10 @@ bool tri_front_next(struct tri_refiner *r)
     return true;
 }
 
-/* --- places */
+/* --- new points */
 
-/* The edge of the front on which the triangle shall stand, the one whose length is nearest to what is asked for; none:
- * -1. h: at the corners. */
+/* Returns the front edge whose length is closest to the wanted length, or -1 if no edge of the triangle is on the
+ * front. h: wanted lengths at the corners. */
 static int best_edge(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
                      const double h[3])
 {
@@ -113,13 +118,13 @@ static int best_edge(const struct tri_refiner *r, const struct tri_triangle *t, 
     return best;
 }
 
-/* A triangle with its circumcentre, as seen from the first end a of its edge ab. */
+/* A triangle and its circumcentre, in a frame whose origin is the first end a of the chosen edge ab. */
 struct stand {
-    struct tri_point a;
-    double x, y;       /* from a to b, of length 1 */
-    double length;
-    double cx, cy;     /* from a to the circumcentre, along the edge and across */
-    double ha, hb;     /* what is asked for at either end */
+    struct tri_point a; /* first end of the edge */
+    double x, y;       /* unit vector from a to b */
+    double length;     /* of the edge */
+    double cx, cy;     /* circumcentre relative to a: along the edge, and perpendicular to it */
+    double ha, hb;     /* wanted lengths at a and at b */
 };
 
 static struct stand stand_on(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
@@ -138,8 +143,8 @@ static struct tri_point point_at(const struct stand *s, double along, double up)
     return (struct tri_point){s->a.x + along * s->x - up * s->y, s->a.y + along * s->y + up * s->x};
 }
 
-/* The apex with legs of the mean of h at either end of the edge and h at the apex itself, which is found in three
- * steps. False: it does not lie well below the circumcentre. */
+/* Finds the apex over the edge in three fixed-point steps. Each leg has the mean of the wanted lengths at its end of
+ * the edge and at the apex. Returns false if the apex does not lie well below the circumcentre. */
 static bool find_apex(const struct tri_refiner *r, const struct stand *s, double *along, double *up)
 {
     const double mean = 0.5 * (s->ha + s->hb);
@@ -172,8 +177,9 @@ struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id tr
 
 /* --- segments */
 
-/* Walks along a subsegment until the integral of ds / h is `count`; returns how far it got, and where, as a fraction of
- * the whole. By so many steps at most: a longer one is halved before. */
+/* Walks along a subsegment until the integral of ds / h is `count`. Returns the integral reached, and sets *fraction
+ * to the point reached. Takes a limited number of steps; if the subsegment needs more, *fraction is 0.5, so that it
+ * is halved first. */
 static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, double count, double *fraction)
 {
     enum { MOST_STEPS = 1 << 16 };
@@ -195,7 +201,7 @@ static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, 
     return sum;
 }
 
-/* Where the subsegment is to be divided; false: it is short enough. */
+/* Finds where to divide the subsegment. Returns false if it is short enough or must not be split. */
 static bool find_division(const struct tri_refiner *r, const struct tri_subsegment *s, double *fraction)
 {
     const double all = walk(r, s, HUGE_VAL, fraction);
@@ -209,7 +215,7 @@ static bool find_division(const struct tri_refiner *r, const struct tri_subsegme
     return *fraction > 0.01 && *fraction < 0.99;
 }
 
-/* Divides the subsegments that wait, and their parts. */
+/* Divides the waiting subsegments and their parts. */
 static bool divide(struct tri_refiner *r)
 {
     while (r->n_encroached > 0) {
@@ -231,7 +237,8 @@ static bool divide(struct tri_refiner *r)
     return true;
 }
 
-/* All beside the worklist wait from the beginning: once one is divided, others lie beside other triangles. */
+/* Pushes all subsegments beside the worklist at once. They are pushed before any of them is divided, since a
+ * division changes the triangles beside them. */
 static bool list_segments(struct tri_refiner *r)
 {
     bool room = true;
@@ -240,20 +247,20 @@ static bool list_segments(struct tri_refiner *r)
     return room;
 }
 
-/* --- vertices of the coarser mesh */
+/* --- erasing vertices of the coarse mesh */
 
 enum { MOST_STAR = 64 };
 
-/* The triangles around a vertex. */
+/* The triangles around a vertex. The rim is the polygon of their outer edges. */
 struct star {
-    int n;
-    tri_triangle_id id[MOST_STAR];
-    tri_vertex_id rim[MOST_STAR];
-    tri_link outer[MOST_STAR]; /* behind the edge from rim[i] to rim[i + 1] */
-    int next[MOST_STAR], before[MOST_STAR]; /* of what is left of the rim */
+    int n;                     /* number of triangles */
+    tri_triangle_id id[MOST_STAR];          /* [n] triangles in counter-clockwise order */
+    tri_vertex_id rim[MOST_STAR];           /* [n] rim vertex at which triangle i begins */
+    tri_link outer[MOST_STAR]; /* link across the edge from rim[i] to rim[i + 1] */
+    int next[MOST_STAR], before[MOST_STAR]; /* neighbours of corner i in the rest of the rim */
 };
 
-/* DONE: all of the star of v may be changed. */
+/* Collects the star of v. DONE: all of it may be changed. */
 static enum tri_outcome find_star(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v, struct star *star)
 {
     const struct tri_mesh *m = r->mesh;
@@ -264,7 +271,7 @@ static enum tri_outcome find_star(struct tri_refiner *r, tri_triangle_id first, 
         const int k = tri_corner_of(t, v);
         if (star->n == MOST_STAR || t->region != m->tri[first].region || !tri_fence_owns(r->hooks->fence, m, at))
             return REFUSED;
-        for (int e = 0; e < 2; e++) { /* the outer edge, and the one to the next triangle */
+        for (int e = 0; e < 2; e++) { /* the outer edge, then the edge to the next triangle */
             const int edge = e == 0 ? k : tri_next[k];
             if (t->n[edge] == TRI_BEYOND)
                 return tri_wait_for(r, (tri_vertex_id[2]){t->v[tri_next[edge]], t->v[tri_prev[edge]]});
@@ -284,7 +291,7 @@ static enum tri_outcome find_star(struct tri_refiner *r, tri_triangle_id first, 
     return DONE;
 }
 
-/* Is the triangle at corner i of the rim one of its Delaunay triangulation? */
+/* Does the triangle of corner i and its two rim neighbours belong to the rim's Delaunay triangulation? */
 static bool is_ear(const struct star *s, const struct tri_point *xy, int i)
 {
     const int a = s->before[i], c = s->next[i];
@@ -295,7 +302,8 @@ static bool is_ear(const struct star *s, const struct tri_point *xy, int i)
     return is;
 }
 
-/* Cuts ears off the rim until nothing is left of it: n - 2 corners, in order. False: rounding, and there is none. */
+/* Cuts ears off the rim until it is empty, and lists the n - 2 ears in order. Returns false if rounding leaves no
+ * ear. */
 static bool find_ears(struct star *s, const struct tri_point *xy, int ear[MOST_STAR][3])
 {
     int i = 0, since = 0, n = 0;
@@ -319,7 +327,7 @@ static bool find_ears(struct star *s, const struct tri_point *xy, int ear[MOST_S
     return true;
 }
 
-/* The first triangles of the star become the ears. */
+/* Replaces the first n - 2 triangles of the star by the ears. */
 static void fill_star(struct tri_refiner *r, struct star *s, int ear[MOST_STAR][3])
 {
     struct tri_mesh *m = r->mesh;
@@ -339,7 +347,7 @@ static void fill_star(struct tri_refiner *r, struct star *s, int ear[MOST_STAR][
     }
 }
 
-/* The star of v becomes the Delaunay triangulation of its rim, if it may be changed. */
+/* Erases v: replaces its star by the Delaunay triangulation of the rim, if the star may be changed. */
 static enum tri_outcome erase(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v)
 {
     struct star star;
@@ -366,7 +374,8 @@ static enum tri_outcome erase(struct tri_refiner *r, tri_triangle_id first, tri_
     return room ? DONE : FAILED;
 }
 
-/* Erases what may go of the corners of a triangle that is too large; a call that was interrupted does the rest. */
+/* Erases those corners of a too large triangle that may be erased. Returns false on failure or a pause; call it
+ * again to resume. */
 static bool erase_corners(struct tri_refiner *r, tri_triangle_id id)
 {
     const struct tri_mesh *m = r->mesh;
@@ -393,7 +402,7 @@ static bool erase_all(struct tri_refiner *r)
 
 /* --- the stage */
 
-/* Of the worklist, what is too large. */
+/* Pushes the triangles of the worklist that are too large. */
 static bool take_all(struct tri_refiner *r)
 {
     for (int32_t i = r->n_worklist - 1; i >= 0; i--) {
@@ -403,7 +412,7 @@ static bool take_all(struct tri_refiner *r)
             continue;
         bool is_on = false;
         for (int e = 0; e < 3; e++)
-            is_on = is_on || t->n[e] < 0 || /* nobody lists a triangle with TRI_BEYOND beside it */
+            is_on = is_on || t->n[e] < 0 || /* listed triangles have no neighbour TRI_BEYOND */
                     !is_large(r, tri_of(t->n[e]));
         if (!push(r, is_on ? &r->front.on : &r->front.off, id))
             return false;

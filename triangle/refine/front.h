@@ -1,26 +1,26 @@
-/* Points over a front: near-equilateral triangles for sizes that are lengths of edges (triangle/size/quality.h).
+/* Advancing front: makes near-equilateral triangles if the wanted edge lengths are given (triangle/size/quality.h).
  *
- * The front is the edges between triangles that are too large and others, or segments. A triangle that is too large
- * proposes the apex of a triangle on its best edge of the front, with legs of the length that is asked for, where that
- * lies well below its circumcentre; else it proposes the circumcentre. So rows of near-equilateral triangles grow from
- * the segments, and meet.
+ * The front consists of the edges between a triangle that is too large and one that is not, and of segments beside
+ * triangles that are too large. A triangle that is too large proposes the apex of a triangle on its best front edge,
+ * whose legs have the wanted length. If that apex does not lie well below the triangle's circumcentre, it proposes
+ * the circumcentre instead. So rows of near-equilateral triangles grow from the segments until they meet.
  *
- * THEOREM (end; docs/theory.md, the front). No point comes nearer to a vertex than half of the lengths asked for. */
+ * THEOREM (termination; docs/theory.md, the front). No new point is closer to a vertex than half the wanted length. */
 #ifndef TRIANGLE_REFINE_FRONT_H
 #define TRIANGLE_REFINE_FRONT_H
 
 #include "triangle/refine/bad_queue.h"
 
 struct tri_front_stack {
-    struct tri_entry *item; /* [n] the last first */
-    int32_t n, capacity;
+    struct tri_entry *item; /* [n] the last entry is popped first */
+    int32_t n, capacity;    /* entries; allocated */
 };
 
-/* What waits: triangles on the front, which come first, and others that are too large. */
+/* The waiting triangles: those on the front, which are treated first, and the others that are too large. */
 struct tri_front {
-    struct tri_front_stack on, off;
-    bool *large; /* [capacity] of the new triangles, in the order of the cavity's edges */
-    int32_t capacity;
+    struct tri_front_stack on, off; /* triangles on the front; the others */
+    bool *large; /* [capacity] whether each new triangle is too large, in the order of cavity edges */
+    int32_t capacity;               /* allocated entries of `large` */
 };
 
 void tri_front_free(struct tri_front *front);

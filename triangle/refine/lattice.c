@@ -1,4 +1,4 @@
-/* Points of the lattice, and what keeps them apart from vertices and subsegments. */
+/* Finds lattice points, and tests their distance from vertices and subsegments. */
 #include "triangle/refine/lattice.h"
 
 #include "triangle/refine/place.h"

@@ -1,14 +1,16 @@
-/* Cells of the lattice, its triangles, are made many at once, where many lie side by side away from all features.
+/* Makes many lattice triangles (cells) at once, where large areas are free of features.
  *
- * The sites that are free (sites.h) are found first. A cell stands where all its three sites are free or have a vertex.
- * The rim are the sites that some cells have and that not only cells are around. They are inserted one by one, as any
- * point, until the border of the cells is a chain of edges of the mesh; what is inside is taken out, and replaced by
- * cells, which are all good. All other triangles are the refinement loop's.
+ * First the free sites are found (sites.h). A cell exists if its three sites are free or occupied by a vertex. A
+ * site belongs to the rim if some, but not all, of the six triangles around it are cells. Rim sites are inserted one
+ * by one like any other point, until the border of the cells is a chain of mesh edges. The triangles inside the
+ * border are then replaced by the cells, which are all good. All other triangles are left to the refinement loop.
  *
- * THEOREM (docs/theory.md, the lattice). The result is the constrained Delaunay triangulation of its vertices. Inside
- * the border are sites alone; and across it no vertex lies in the circle of a cell, which is_delaunay tests.
+ * THEOREM (docs/theory.md, the lattice). The result is the constrained Delaunay triangulation of its vertices:
+ * inside the border there are only sites, and is_delaunay tests that no vertex across the border lies in the
+ * circumcircle of a cell.
  *
- * INVARIANT. The mesh is in order after each point of the rim. All that may fail comes before the first cell. */
+ * INVARIANT. The mesh is valid after each rim insertion. Every step that may fail comes before the first cell is
+ * made. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>
@@ -22,44 +24,45 @@
 /* A triangle that is too large. */
 struct large {
     double area2;           /* twice the bound on its area */
-    struct tri_entry entry;
-    int32_t place;          /* in the worklist, and behind that in the queue */
+    struct tri_entry entry; /* the triangle and its generation number */
+    int32_t place;          /* index in the worklist or, after the worklist, in the queue */
 };
 
 struct place {
-    int32_t row, column;
+    int32_t row, column; /* as in struct tri_sites */
 };
 
-/* An edge of the border, as the triangles on both sides see it. */
+/* An edge of the border, as seen from the triangles on both sides. */
 struct border {
-    tri_halfedge inside;
-    tri_halfedge outside;
-    tri_region_id region; /* inside */
+    tri_halfedge inside;  /* half-edge of the triangle inside */
+    tri_halfedge outside; /* half-edge of the triangle outside */
+    tri_region_id region; /* region on the inside */
 };
 
 struct tri_fill {
-    struct large *large;   /* [n_large] by bound, then by place */
-    int32_t n_large, large_capacity;
-    int32_t done;          /* the sites at work are those of the bound of large[done] */
-    double cells;          /* that all these triangles ask for */
-    struct tri_sites sites;
-    bool has_sites;        /* they have been found */
-    struct place *check;   /* [n_check] sites to look at: what is around them has changed */
-    int32_t n_check, check_capacity;
-    struct border *border; /* [n_border] in the order of cells */
-    int32_t n_border, border_capacity;
+    struct large *large;   /* [n_large] sorted by bound, then by place */
+    int32_t n_large, large_capacity; /* entries of `large`; allocated */
+    int32_t done;          /* the current sites are those for the bound of large[done] */
+    double cells;          /* number of cells that fit into these triangles */
+    struct tri_sites sites;          /* the sites of the current bound */
+    bool has_sites;        /* true: the sites for the current bound have been found */
+    struct place *check;   /* [n_check] sites whose neighbourhood has changed, to be looked at */
+    int32_t n_check, check_capacity; /* entries of `check`; allocated */
+    struct border *border; /* [n_border] border edges in the order of the cells */
+    int32_t n_border, border_capacity; /* entries of `border`; allocated */
     int32_t n_new, n_cells;  /* sites without a vertex; cells */
-    tri_triangle_id *number; /* [n_numbers] of triangles, for cells: first those that are taken out */
-    int32_t n_numbers, number_capacity;
+    tri_triangle_id *number; /* [n_numbers] triangle numbers for the cells, those of replaced triangles first */
+    int32_t n_numbers, number_capacity; /* entries of `number`; allocated */
 };
 
-/* The link of a triangle inside across the border, while the inside is walked through: no subsegment has this id. */
+/* Marks the links from triangles inside to the outside during the walk over the inside. No subsegment has this
+ * number. */
 static const tri_link CUT = TRI_BEYOND + 1;
 
 /* --- sites and cells */
 
-/* The neighbours of a site, counter-clockwise from the one on the right. Above and below they are one column farther
- * where the row is odd. */
+/* The neighbours of a site, counter-clockwise from the right. In an odd row, the upper and lower neighbours are one
+ * column farther to the right than in an even row. */
 enum { RIGHT, UP_RIGHT, UP_LEFT, LEFT, DOWN_LEFT, DOWN_RIGHT, AROUND };
 
 static struct place next_to(struct place at, int k)
@@ -75,7 +78,7 @@ static bool is_in(const struct tri_fill *f, struct place at)
     return f->sites.at[site_at(f, at)] != TRI_SITE_OUT;
 }
 
-/* Bit k: the neighbour k is in. */
+/* Returns a bit mask: bit k is set if neighbour k is not TRI_SITE_OUT. */
 static unsigned neighbours_in(const struct tri_fill *f, struct place at)
 {
     unsigned in = 0;
@@ -86,17 +89,17 @@ static unsigned neighbours_in(const struct tri_fill *f, struct place at)
 
 enum { ALL_IN = (1 << AROUND) - 1 };
 
-/* Is one of the cells around a site there? */
+/* Does at least one cell around the site exist? in: its neighbours as returned by neighbours_in. */
 static bool has_cell(unsigned in) { return in & (in >> 1 | in << (AROUND - 1)); }
 
-/* A cell: its sites counter-clockwise, and the third ones of the cells across its edges; edge k is opposite site k. */
+/* A cell: its sites counter-clockwise. across[k] is the third site of the cell across the edge opposite to site k. */
 struct cell {
-    struct place at[3];
-    int32_t site[3], across[3];
+    struct place at[3]; /* positions of the sites */
+    int32_t site[3], across[3]; /* indices of sites */
 };
 
-/* Finds the cell that stands on a site by its edge to the right, or else by its lowest corner. False: it is not
- * there. */
+/* Finds the cell whose lower edge starts at this site (by_edge), or the cell whose lowest corner is this site.
+ * Returns false if it does not exist. */
 static bool find_cell(const struct tri_fill *f, struct place at, bool by_edge, struct cell *c)
 {
     const struct place right = next_to(at, RIGHT), up_right = next_to(at, UP_RIGHT), up_left = next_to(at, UP_LEFT);
@@ -111,7 +114,7 @@ static bool find_cell(const struct tri_fill *f, struct place at, bool by_edge, s
     return true;
 }
 
-/* Calls `visit` for each cell, row by row, from left to right, as long as it says DONE. */
+/* Calls `visit` for each cell, row by row from left to right, until a call does not return DONE. */
 static enum tri_outcome each_cell(struct tri_refiner *r,
                                   enum tri_outcome (*visit)(struct tri_refiner *r, const struct cell *c, bool by_edge))
 {
@@ -128,7 +131,7 @@ static enum tri_outcome each_cell(struct tri_refiner *r,
     return DONE;
 }
 
-/* --- the rim, point by point */
+/* --- inserting the rim */
 
 static bool check(struct tri_fill *f, struct place at)
 {
@@ -138,7 +141,7 @@ static bool check(struct tri_fill *f, struct place at)
     return true;
 }
 
-/* What is around a site has changed. FAILED: no memory. */
+/* Pushes the neighbours of a site onto the list of sites to look at. Returns FAILED if memory ran out. */
 static enum tri_outcome check_around(struct tri_fill *f, struct place at)
 {
     for (int k = 0; k < AROUND; k++)
@@ -153,12 +156,12 @@ static enum tri_outcome leave_out(struct tri_fill *f, struct place at)
     return check_around(f, at);
 }
 
-/* Sites whose vertex is a corner of the last fan learn a triangle that they have now. */
+/* Updates the `near` triangles of sites whose vertices are corners of the last fan. */
 static void note_fan(const struct tri_refiner *r)
 {
     const struct tri_sites *s = &r->fill->sites;
     for (int32_t i = 0; i < r->cavity.n_edges; i++)
-        for (int k = 1; k < 3; k++) { /* corner 0 is new */
+        for (int k = 1; k < 3; k++) { /* corner 0 is the new vertex */
             const tri_vertex_id v = r->mesh->tri[r->cavity.tri[i]].v[k];
             const int32_t site = tri_site_of(s, r->mesh->xy[v]);
             if (site != TRI_NONE && s->at[site] == v)
@@ -166,7 +169,7 @@ static void note_fan(const struct tri_refiner *r)
         }
 }
 
-/* Walks to the triangle that holds p, *t. REFUSED: a subsegment or the fence is in the way. */
+/* Walks from *t to the triangle that contains p. REFUSED: a subsegment or the fence is in the way. */
 static enum tri_outcome walk_to(struct tri_refiner *r, struct tri_point p, tri_triangle_id *t)
 {
     const struct tri_mesh *m = r->mesh;
@@ -186,14 +189,14 @@ static enum tri_outcome walk_to(struct tri_refiner *r, struct tri_point p, tri_t
     return REFUSED;
 }
 
-/* Inserts the point of a site of the rim. */
+/* Inserts a rim site. */
 static enum tri_outcome insert(struct tri_refiner *r, struct place at)
 {
     struct tri_sites *s = &r->fill->sites;
     const int32_t site = site_at(r->fill, at);
     const struct tri_point p = tri_site_place(s, at.row, at.column);
     for (;;) {
-        tri_triangle_id t = s->near[site]; /* found anew after a split: the same whether or not there was a pause */
+        tri_triangle_id t = s->near[site]; /* determined anew after each split, so that a pause does not change it */
         for (int k = 0; k < AROUND; k++)
             if (s->at[site_at(r->fill, next_to(at, k))] >= 0)
                 t = s->near[site_at(r->fill, next_to(at, k))];
@@ -211,8 +214,8 @@ static enum tri_outcome insert(struct tri_refiner *r, struct place at)
     }
 }
 
-/* Looks at a site. One with cells all around waits for them; one with some cells is of the rim, and is inserted; one
- * without cells is left out. */
+/* Looks at a site. If all triangles around it are cells, it waits to be filled. If only some are, it is a rim site
+ * and is inserted. If none is, it is left out. */
 static enum tri_outcome look_at(struct tri_refiner *r, struct place at)
 {
     struct tri_fill *f = r->fill;
@@ -231,7 +234,7 @@ static enum tri_outcome look_at(struct tri_refiner *r, struct place at)
     return outcome == DONE ? check_around(f, at) : leave_out(f, at);
 }
 
-/* FAILED: the site that could not be looked at is still to be checked. */
+/* Looks at all sites in the list. FAILED: the current site is still in the list. */
 static enum tri_outcome look_at_all(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -240,7 +243,7 @@ static enum tri_outcome look_at_all(struct tri_refiner *r)
             return FAILED;
         const struct place at = f->check[--f->n_check];
         if (look_at(r, at) == FAILED) {
-            check(f, at); /* there is room: it has just been there, or there is no memory at all */
+            check(f, at); /* this cannot fail for lack of room, because the entry was just popped */
             return FAILED;
         }
     }
@@ -249,14 +252,15 @@ static enum tri_outcome look_at_all(struct tri_refiner *r)
 
 /* --- the border */
 
-/* Finds edge ab as the triangle on its left sees it; TRI_NONE in *edge: it is no edge of the mesh, or a subsegment. t:
- * a triangle at a. */
+/* Finds the half-edge ab in the triangle on its left. Sets *edge to TRI_NONE if ab is not an edge of the mesh. t: a
+ * triangle at a. */
 static enum tri_outcome find_edge(struct tri_refiner *r, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
                                   tri_halfedge *edge)
 {
     const struct tri_triangle *tri = r->mesh->tri;
     *edge = TRI_NONE;
-    for (int turn = 0; turn < 2; turn++) { /* about a, counter-clockwise; where something is in the way, clockwise */
+    for (int turn = 0; turn < 2; turn++) { /* around a, counter-clockwise first, then clockwise if a subsegment
+                                              blocks the way */
         const int *side = turn == 0 ? tri_next : tri_prev;
         for (tri_triangle_id at = t;;) {
             const int k = tri_corner_of(&tri[at], a);
@@ -277,7 +281,7 @@ static enum tri_outcome find_edge(struct tri_refiner *r, tri_triangle_id t, tri_
     return DONE;
 }
 
-/* Is the corner across the border out of the circle of the cell? */
+/* Is the apex across the border not inside the circumcircle of the cell? */
 static bool is_delaunay(const struct tri_refiner *r, const struct cell *c, tri_halfedge outside)
 {
     const struct tri_sites *s = &r->fill->sites;
@@ -287,13 +291,13 @@ static bool is_delaunay(const struct tri_refiner *r, const struct cell *c, tri_h
     return tri_incircle(p[0], p[1], p[2], r->mesh->xy[tri_apex(r->mesh, outside)]) <= 0;
 }
 
-/* Lists the edges of a cell that are of the border. Where one is not to be had, its sites are left out. */
+/* Lists the border edges of a cell. If an edge is missing or does not qualify, its two sites are left out. */
 static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c, bool by_edge)
 {
     struct tri_fill *f = r->fill;
     const struct tri_sites *s = &f->sites;
     const tri_vertex_id v[3] = {s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]};
-    (void)by_edge; /* as make_cell has it */
+    (void)by_edge; /* parameter of the callback, used by make_cell only */
     f->n_cells++;
     for (int e = 0; e < 3; e++) {
         const int a = tri_next[e], b = tri_prev[e];
@@ -320,7 +324,7 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
     return DONE;
 }
 
-/* Inserts the rim, and lists the border of the cells and the sites that have no vertex. */
+/* Inserts the rim, lists the border of the cells, and counts the sites without a vertex. */
 static enum tri_outcome settle(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -334,9 +338,9 @@ static enum tri_outcome settle(struct tri_refiner *r)
     return DONE;
 }
 
-/* --- the inside is taken out */
+/* --- removing the triangles inside */
 
-/* Puts back what walk_inside has changed. */
+/* Reverts the changes of walk_inside. */
 static void put_back(const struct tri_refiner *r)
 {
     const struct tri_fill *f = r->fill;
@@ -346,7 +350,8 @@ static void put_back(const struct tri_refiner *r)
         *tri_link_at(r->mesh, f->border[i].inside) = f->border[i].outside;
 }
 
-/* Notes the number of a triangle inside, and marks the triangle; false: there are too many, or regions meet. */
+/* Marks a triangle as inside and lists its number. Returns false if there are too many triangles, or if regions
+ * meet. */
 static bool note_inside(const struct tri_refiner *r, tri_triangle_id t, tri_region_id region)
 {
     struct tri_fill *f = r->fill;
@@ -360,7 +365,7 @@ static bool note_inside(const struct tri_refiner *r, tri_triangle_id t, tri_regi
     return true;
 }
 
-/* Notes what is beyond the edges of a triangle inside. */
+/* Marks the neighbours of a triangle inside as inside. */
 static enum tri_outcome walk_on(struct tri_refiner *r, tri_triangle_id inside)
 {
     const struct tri_triangle *t = &r->mesh->tri[inside];
@@ -373,8 +378,8 @@ static enum tri_outcome walk_on(struct tri_refiner *r, tri_triangle_id inside)
     return DONE;
 }
 
-/* Lists the triangles inside the border, which are marked by their regions, and cuts them off. REFUSED: inside is
- * something else than sites, and nothing has changed. */
+/* Lists the triangles inside the border, marks them by inverting their regions, and cuts their links to the outside.
+ * REFUSED: not only sites are inside; the mesh is unchanged. */
 static enum tri_outcome walk_inside(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -386,7 +391,8 @@ static enum tri_outcome walk_inside(struct tri_refiner *r)
         outcome = note_inside(r, tri_of(f->border[i].inside), f->border[i].region) ? DONE : REFUSED;
     for (int32_t i = 0; outcome == DONE && i < f->n_numbers; i++)
         outcome = walk_on(r, f->number[i]);
-    if (outcome == DONE && f->n_numbers + 2 * f->n_new != f->n_cells) /* Euler: there are other vertices inside */
+    if (outcome == DONE && f->n_numbers + 2 * f->n_new != f->n_cells) /* by Euler's formula, there are other vertices
+                                                                         inside */
         outcome = REFUSED;
     if (outcome != DONE)
         put_back(r);
@@ -395,7 +401,7 @@ static enum tri_outcome walk_inside(struct tri_refiner *r)
 
 /* --- cells */
 
-/* Vertices for the sites that have none, and numbers for all cells: each point makes two triangles. There is room. */
+/* Adds vertices at the sites that have none, and allocates two triangle numbers for each of them. There is room. */
 static void place_vertices(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -423,8 +429,9 @@ static void join(const struct tri_mesh *m, tri_halfedge a, tri_halfedge b)
     *tri_link_at(m, b) = a;
 }
 
-/* Makes a cell, with links to what is across the border and to cells that have been made: one before it in the row at
- * edge 1; one below at edge 2 if it stands on an edge, which is found by the site on the left. */
+/* Makes a cell and links it across the border and to the cells that already exist: across edge 1 the previous cell
+ * in the row, and across edge 2 of a cell that stands on an edge the cell below, which `near` of the left site
+ * holds. */
 static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, bool by_edge)
 {
     struct tri_fill *f = r->fill;
@@ -451,7 +458,7 @@ static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, b
     return DONE;
 }
 
-/* Puts the cells in the place of what is inside their border. */
+/* Replaces the triangles inside the border by the cells. */
 static enum tri_outcome put_cells(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -472,9 +479,10 @@ static enum tri_outcome put_cells(struct tri_refiner *r)
     return DONE;
 }
 
-/* --- bounds, one after the other */
+/* --- one bound after another */
 
-/* Twice the bound on the area of a triangle if it breaks that, which sets *area2; else 0. */
+/* Returns twice the area bound of a triangle if it exceeds that bound; otherwise 0. Sets *area2 to twice its area if
+ * the triangle exists and may be changed. */
 static double broken_bound(const struct tri_refiner *r, tri_triangle_id t, double *area2)
 {
     const struct tri_triangle *at = &r->mesh->tri[t];
@@ -493,7 +501,7 @@ static int by_bound(const void *left, const void *right)
     return (a->place > b->place) - (a->place < b->place);
 }
 
-/* Lists a triangle if it is too large. False: no memory. */
+/* Lists a triangle if it is too large. Returns false if memory ran out. */
 static bool list_large(struct tri_refiner *r, tri_triangle_id t, int32_t place)
 {
     struct tri_fill *f = r->fill;
@@ -508,7 +516,7 @@ static bool list_large(struct tri_refiner *r, tri_triangle_id t, int32_t place)
     return true;
 }
 
-/* Lists the triangles of the worklist and of the queue that are too large. False: no memory. */
+/* Lists the triangles of the worklist and of the queue that are too large. Returns false if memory ran out. */
 static bool list_all_large(struct tri_refiner *r)
 {
     struct tri_entry entry;
@@ -521,7 +529,7 @@ static bool list_all_large(struct tri_refiner *r)
     return room;
 }
 
-/* Puts back into the queue what has been taken from it, and is too large still. False: no memory. */
+/* Puts the triangles that came from the queue back, if they are unchanged. Returns false if memory ran out. */
 static bool queue_again(struct tri_refiner *r)
 {
     const struct tri_fill *f = r->fill;
@@ -534,7 +542,7 @@ static bool queue_again(struct tri_refiner *r)
     return room;
 }
 
-/* Where cells are not worth it, there are none to be made. False: no memory. */
+/* Starts a fill. If cells are not worthwhile, the fill has nothing to do. Returns false if memory ran out. */
 static bool begin(struct tri_refiner *r)
 {
     assert(r->queue.n_angles == 0);
@@ -548,7 +556,8 @@ static bool begin(struct tri_refiner *r)
     return true;
 }
 
-/* Checks the sites that are not inside cells. Where these are many, cells are not worth it. False: no memory. */
+/* Lists the sites at the rim of the cells, to be looked at. If there are too many of them, cells are not worthwhile
+ * and all sites are dropped. Returns false if memory ran out. */
 static bool check_all(struct tri_fill *f)
 {
     struct tri_sites *s = &f->sites;
@@ -564,7 +573,7 @@ static bool check_all(struct tri_fill *f)
     return true;
 }
 
-/* Finds the sites of the next bound, and those that are not inside cells. False: no memory. */
+/* Finds the sites for the next bound, and lists the rim. Returns false if memory ran out. */
 static bool find_sites(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
@@ -572,7 +581,8 @@ static bool find_sites(struct tri_refiner *r)
     double area2 = 0, cells = 0;
     f->n_numbers = 0;
     for (int32_t i = f->done; i < f->n_large && f->large[i].area2 == f->large[f->done].area2; i++)
-        if (broken_bound(r, f->large[i].entry.t, &area2) == f->large[i].area2) { /* it may have become another one */
+        if (broken_bound(r, f->large[i].entry.t, &area2) == f->large[i].area2) { /* the number may belong to another
+                                                                                    triangle by now */
             if (!tri_grow(&f->number, &f->number_capacity, f->n_numbers + 1, sizeof *f->number))
                 return false;
             f->number[f->n_numbers++] = f->large[i].entry.t;

@@ -1,5 +1,5 @@
-/* Walks through the part of the Voronoi diagram that lies in the petal and hangs together with the triangle's own
- * circumcentre. That is a tree: a cycle would go around a vertex in the petal, and there is none. */
+/* Walks through the connected part of the Voronoi diagram inside the petal that contains the triangle's
+ * circumcentre. This part is a tree: a cycle would surround a vertex inside the petal, and there is none. */
 #include "triangle/refine/petal.h"
 
 #include <assert.h>
@@ -7,28 +7,29 @@
 #include "triangle/mesh/cavity.h"
 #include "triangle/tunables.h"
 
-/* The most edges of the diagram that wait, and triangles that are walked through. Larger trees are left unsearched
- * behind these; a hundred triangles were never seen. Rounding can make a ring of circumcentres around a corner where
- * vertices lie a few units in the last place apart, so only the second ends the walk for sure. */
+/* Limits on the waiting edges of the diagram and on the triangles visited. Larger trees are searched only in part;
+ * trees of a hundred triangles have not been observed. If vertices around a corner are only a few ulps apart,
+ * rounding can turn the tree into a ring of circumcentres; MOST_WALKED guarantees that the walk ends. */
 enum { MOST_PENDING = 64, MOST_WALKED = 1024 };
 
-/* Flatter triangles have no circumcentre to rely on: twice the area over the longest squared edge. */
+/* The circumcentres of flatter triangles are unreliable. Flatness: twice the area over the longest squared edge. */
 static const double FLAT = 1e-12;
 
 struct petal {
-    const struct tri_mesh *mesh;
-    struct tri_point a;     /* coordinates below are relative to this end of the edge */
-    struct tri_point b;     /* the other end */
-    struct tri_point o;     /* centre of the disk, */
-    double r2;              /* and its squared radius */
-    struct tri_point best;
-    double best2;           /* squared distance of the best point from the vertices nearest to it */
+    const struct tri_mesh *mesh; /* borrowed */
+    struct tri_point a;     /* one end of the shortest edge; the coordinates below are relative to it */
+    struct tri_point b;     /* the other end of the edge */
+    struct tri_point o;     /* centre of the petal's disk */
+    double r2;              /* squared radius of the disk */
+    struct tri_point best;  /* best point so far */
+    double best2;           /* squared distance from `best` to its nearest vertices */
 };
 
-/* An edge of the diagram: from the circumcentre c of a triangle, across an edge of that triangle. */
+/* A half-edge of the diagram: starts at the circumcentre c of a triangle and crosses the edge `code` of that
+ * triangle. */
 struct pending {
-    tri_halfedge code;
-    struct tri_point c;
+    tri_halfedge code; /* the edge of the triangle that is crossed */
+    struct tri_point c; /* circumcentre at which the half-edge starts */
 };
 
 static struct tri_point relative(const struct petal *petal, tri_vertex_id v)
@@ -50,7 +51,7 @@ static bool circumcentre(const struct petal *petal, tri_triangle_id t, struct tr
     return true;
 }
 
-/* On the triangle's side of the edge? */
+/* Is q on the triangle's side of the edge? */
 static bool is_above(const struct petal *petal, struct tri_point q)
 {
     return petal->b.x * q.y - petal->b.y * q.x > 0;
@@ -58,7 +59,7 @@ static bool is_above(const struct petal *petal, struct tri_point q)
 
 static bool is_in_disk(const struct petal *petal, struct tri_point q) { return tri_distance2(petal->o, q) < petal->r2; }
 
-/* A point of the diagram, on the edge or corner that belongs to vertex v among others. */
+/* Makes q the best point if it is better. q lies on the boundary of the Voronoi cell of v. */
 static void consider(struct petal *petal, struct tri_point q, tri_vertex_id v)
 {
     double distance2 = tri_distance2(q, relative(petal, v));
@@ -68,7 +69,7 @@ static void consider(struct petal *petal, struct tri_point q, tri_vertex_id v)
     petal->best = q;
 }
 
-/* Where the way from c, in the disk, to d leaves it. */
+/* Finds the point where the path from c, inside the disk, to d leaves the disk. Returns false if it does not. */
 static bool leave_disk(const struct petal *petal, struct tri_point c, struct tri_point d, struct tri_point *at)
 {
     double x = d.x - c.x, y = d.y - c.y, cx = c.x - petal->o.x, cy = c.y - petal->o.y;
@@ -81,7 +82,7 @@ static bool leave_disk(const struct petal *petal, struct tri_point c, struct tri
     return share >= 0 && share <= 1;
 }
 
-/* The disk through a and b whose top lies at this height over them, in units of their distance. */
+/* Sets the disk whose boundary passes through a and b. height: of its top over ab, in units of the length of ab. */
 static void set_disk(struct petal *petal, double height)
 {
     double centre = 0.5 * (height - 0.25 / height);
@@ -90,8 +91,8 @@ static void set_disk(struct petal *petal, double height)
     petal->r2 = petal->o.x * petal->o.x + petal->o.y * petal->o.y;
 }
 
-/* Follows an edge of the diagram. Returns the triangle at its end, if that has its circumcentre, *d, in the petal and
- * is the caller's to read on from; else TRI_NONE. */
+/* Follows an edge of the diagram to the next triangle. Returns that triangle if it lies inside the fence and its
+ * circumcentre *d inside the petal; otherwise TRI_NONE. */
 static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence, const struct pending *edge,
                               struct tri_point *d)
 {
@@ -107,7 +108,8 @@ static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence
     return inside && is_above(petal, *d) ? tri_of(across) : TRI_NONE;
 }
 
-/* Walks on from triangle t with circumcentre c, in the petal, which is not left by edge `from`. */
+/* Searches the diagram from triangle t, whose circumcentre c lies in the petal. The edge `from` is not crossed.
+ * Returns false if the search reached TRI_BEYOND at the edge `beyond`. */
 static bool walk_diagram(struct petal *petal, const struct tri_fence *fence, tri_triangle_id t, int from,
                          struct tri_point c, tri_vertex_id beyond[2])
 {

@@ -1,4 +1,4 @@
-/* The usual new point, and that of a triangle which is too large where the usual one cannot be had. */
+/* The standard point of a bad triangle, and the fallback for sizes. */
 #include "triangle/refine/place.h"
 
 #include <assert.h>
@@ -15,7 +15,7 @@ struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3],
     double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
     double l = shape->l[s], lc = cx * cx + cy * cy;
     double scale = 0.5 / shape->area2;
-    double x = (cy * l - by * lc) * scale, y = (bx * lc - cx * l) * scale; /* circumcentre from a */
+    double x = (cy * l - by * lc) * scale, y = (bx * lc - cx * l) * scale; /* circumcentre relative to a */
     double mx = 0.5 * bx, my = 0.5 * by, hx = x - mx, hy = y - my;
     if (hx * hx + hy * hy > reach * reach) {
         double height = reach / sqrt(l);
@@ -25,19 +25,20 @@ struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3],
     return (struct tri_point){tri_round_coordinate(a.x + x), tri_round_coordinate(a.y + y)};
 }
 
-/* Points for triangles that are too large, whatever stands in the way.
+/* Points for triangles that are too large and whose standard point cannot be inserted.
  *
- * The usual point of such a triangle may be out of reach: beyond a wall that cannot be split, farther away than
- * coordinates go, on a vertex. Then the triangle's own longest subsegment is split, if it is among the longer edges. If
- * it cannot be split, the centroid is inserted. Nothing can refuse the centroid: it lies in its triangle, hence in the
- * circumdisk, and sees its whole cavity (cavity.h).
+ * The standard point may be impossible: it may lie beyond a wall that must not be split, outside the range of
+ * coordinates, or on a vertex. Then the triangle's longest subsegment is split, if it is at least half as long as
+ * the longest edge. If there is no such subsegment, the centroid is inserted. The centroid is always possible: it
+ * lies in its triangle, hence in the circumdisk, and sees its whole cavity (cavity.h).
  *
- * THEOREM (docs/theory.md, areas). Both are done finitely many times, whatever the rest of refinement does. So the
- * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps.
+ * THEOREM (docs/theory.md, areas). Both steps happen finitely often, however the rest of refinement proceeds. So
+ * every triangle whose smallest height is more than three shortest edges (some 100 ulps) meets the bound on areas.
  *
- * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
- * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that edge. For
- * lengths none gets one there that is smaller than an equilateral one with edges of h. */
+ * RULE. Beside walls that must not be split (-Y), some triangles get no centroid, because a centroid would not
+ * shorten the wall's edge. This holds for triangles at least 4,096 times as long as high that only the caller's size
+ * test rejects, if the test also rejects the lowest possible triangle on the same longest edge. If wanted lengths
+ * are given, it holds for triangles smaller than an equilateral triangle with edges h. */
 
 tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *quality,
                          tri_triangle_id triangle, const struct tri_shape *shape)
@@ -55,7 +56,7 @@ tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_quality *
     return found;
 }
 
-/* The apex of a triangle on the same edge ab that is as low as one with a centroid may be. */
+/* Returns the apex of the lowest triangle on edge ab that may still get a centroid. */
 static struct tri_point lowest_apex(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b,
                                     struct tri_point apex, double height)
 {

@@ -1,15 +1,17 @@
-/* The refinement loop: takes the worst bad triangle, treats it (treat.c), queues the new bad triangles (feed.c).
+/* The refinement loop: removes the most urgent bad triangle from the queue, treats it (treat.c), and queues the new
+ * bad triangles (feed.c).
  *
- * ORDER. Under -D, subsegments whose diametral circle is not empty are split before anything else (split.c). Then come
- * triangles with a corner that encroaches the opposite subsegment: while it is encroached, the corner may hide it from
- * the cavity of another point (cavity.h), which would come to lie anywhere near it. Then come the triangles with the
- * shortest edges (bad_queue.h), and at last those that are only too large.
+ * ORDER. Under -D, subsegments with a vertex in their diametral circle are split first (split.c). Next are triangles
+ * with a corner that encroaches the opposite subsegment. While the subsegment is encroached, the corner may hide it
+ * from the cavity of another point (cavity.h), and that point could be placed arbitrarily close to it. Next are
+ * triangles with bad angles, those with the shortest edges first (bad_queue.h). Triangles that are only too large
+ * come last.
  *
- * COST. A triangle costs what its cavity has: O(1) on average, but up to n beside n points at a wall that must not be
- * split (-Y).
+ * COST. Treating a triangle costs as much as searching its cavity: O(1) on average, but up to O(n) beside n points
+ * at a wall that must not be split (-Y).
  *
- * THEOREM (end). Points for angles are finitely many by hopeless.c and feature_size.c; those for sizes and circles,
- * whatever the others do, by place.c and split.c. */
+ * THEOREM (termination). hopeless.c and feature_size.c bound the number of points inserted for angles. place.c and
+ * split.c bound the number inserted for sizes and diametral circles, however many points the other rules insert. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>
@@ -20,7 +22,8 @@
 #include "triangle/size/estimate.h"
 #include "triangle/tunables.h"
 
-/* In the first pass only triangles with short edges are taken, see refine_worklist. */
+/* Sets r->hand to the next triangle; returns false if there is none. In the first pass only triangles with short
+ * edges are next, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
     if (r->stage == FRONT_STAGE)
@@ -35,7 +38,7 @@ static bool work_off(struct tri_refiner *r)
     for (;;) {
         if (tri_refiner_must_stop(r))
             return false;
-        if (!r->in_hand && !tri_split_encroached(r)) /* after a pause the triangle in hand goes on first */
+        if (!r->in_hand && !tri_split_encroached(r)) /* after a pause, the interrupted triangle comes first */
             return false;
         if (!r->in_hand && !next_entry(r))
             return true;
@@ -46,7 +49,7 @@ static bool work_off(struct tri_refiner *r)
     }
 }
 
-/* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
+/* Queues the bad angles of the next chunk of the worklist. The median of the waiting entries then becomes the limit. */
 static bool queue_chunk(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < TRI_WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
@@ -59,12 +62,12 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
-/* Passes over the worklist twice. The first pass takes, chunk by chunk, the bad angles beside the shorter half of the
- * edges: the order by shortest edge (bad_queue.h) then nearly holds for the whole mesh, and the work stays in the
- * cache, if neighbours in the list are neighbours in the plane. The second pass takes the other bad angles, in the same
- * order, and then, place by place, triangles that are only too large. Cells of a lattice come before these, once no
- * angle is bad any more: by then triangles beside small features are small. Resumable: false means that something
- * failed, or that there was no room. */
+/* Passes over the worklist twice. The first pass goes chunk by chunk and treats the bad angles whose shortest edges
+ * are below the median. So the order by shortest edge (bad_queue.h) nearly holds for the whole mesh, and the work
+ * stays in the cache if neighbours in the list are neighbours in the plane. The second pass treats the other bad
+ * angles in the same order, then the triangles that are only too large, in the order of the worklist. Lattice cells
+ * are made before those, when no angle is bad any more: by then the triangles beside small features are small.
+ * Returns false on failure or if there is no room; call it again to resume. */
 static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
@@ -102,9 +105,9 @@ static bool refine_worklist(struct tri_refiner *r)
     return true;
 }
 
-/* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
- * (tri_sizes_come_first). A call with a fence or a worklist has one stage: triangles that the first stage makes bad for
- * the second would not be in its list. */
+/* If area bounds determine most of the mesh and the angle bound is above TRI_EASY_ANGLE, a first stage refines for
+ * sizes with an easy angle bound (tri_sizes_come_first). A call with a fence or a worklist has only one stage,
+ * because its list would lack the triangles that the first stage makes bad for the second. */
 static void begin_stages(struct tri_refiner *r)
 {
     bool easy = !r->hooks->fence && !r->hooks->worklist && tri_sizes_come_first(r->mesh, r->quality, NULL);
@@ -113,7 +116,7 @@ static void begin_stages(struct tri_refiner *r)
     r->criterion.bounds = tri_bounds_of(r->quality, easy ? TRI_SIZES_ANGLE : tri_worked_angle(r->quality));
 }
 
-/* Resumable, as refine_worklist. */
+/* Runs all stages. Resumable like refine_worklist. */
 static bool refine_in_stages(struct tri_refiner *r)
 {
     for (; r->stage != LAST_STAGE; r->stage = r->stage == USUAL_STAGE ? LAST_STAGE : USUAL_STAGE) {
@@ -125,7 +128,8 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
-/* A call for part of the work is not checked again. */
+/* Checks that the mesh can hold the triangles which the sizes require. Calls for part of the work are not checked
+ * again. */
 static enum tri_status check_sizes(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                    const struct tri_refine_hooks *hooks, struct tri_error *error)
 {
@@ -167,7 +171,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 
 enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
 {
-    r->error = (struct tri_error){.status = TRI_OK}; /* the caller's stays as it is where nothing fails */
+    r->error = (struct tri_error){.status = TRI_OK}; /* without a failure, the caller's error stays unchanged */
     if (refine_in_stages(r)) {
         assert(!r->in_hand && r->n_encroached == 0);
         return TRI_OK;
@@ -201,7 +205,7 @@ enum tri_status tri_refine_with(struct tri_mesh *mesh, const struct tri_quality 
     status = status ? status : tri_refiner_new(&refiner, mesh, quality, hooks, report, error);
     status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
-    assert(hooks->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
+    assert(hooks->more_room || tri_mesh_is_sound(mesh)); /* the counts of a view are not those of the mesh */
     return status;
 }
 

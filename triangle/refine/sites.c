@@ -1,20 +1,21 @@
-/* Triangles are painted row by row; then sites near to corners and subsegments are wiped out. */
+/* Rasterises the triangles row by row, then removes the sites that are too close to vertices and subsegments. */
 #include "triangle/refine/sites.h"
 
 #include <stdlib.h>
 
 #include "triangle/tunables.h"
 
-/* What is nearer than this, in edges, to the border of a triangle counts as inside: no site between two is lost by
- * rounding. One that is outside the mesh lies too near to its boundary. */
+/* Tolerance in edge lengths: points this close to a triangle's border count as inside, so rounding loses no site
+ * between two triangles. A site outside the mesh that passes is removed later, since it is too close to the
+ * boundary. */
 static const double SLACK = 1e-6;
 
-/* Columns first .. last, as whole numbers. */
+/* The columns (or rows) from first to last, as whole numbers. */
 struct span {
-    double first, last;
+    double first, last; /* none if first > last */
 };
 
-/* The columns of a row whose points lie between two abscissae. */
+/* Returns the columns of a row whose points have x coordinates between `from` and `to`. */
 static struct span columns_between(const struct tri_lattice *lattice, double row, double from, double to)
 {
     const double shift = tri_lattice_shift(row);
@@ -25,7 +26,7 @@ static double lowest(const struct tri_point p[3]) { return tri_lesser(p[0].y, tr
 
 static double highest(const struct tri_point p[3]) { return tri_larger(p[0].y, tri_larger(p[1].y, p[2].y)); }
 
-/* The columns of a row in a triangle, whose corners reach to the row's height, but for SLACK. */
+/* Returns the columns of a row inside a triangle. The row must intersect the triangle, within SLACK. */
 static struct span columns_in(const struct tri_lattice *lattice, const struct tri_point p[3], double row)
 {
     const double y = tri_lesser(tri_larger(row * lattice->rise, lowest(p)), highest(p));
@@ -57,13 +58,13 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
         p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* The lattice's rows and the leftmost column; false: there are more than `most`, triangles have more, or coordinates
- * are too coarse for them. */
+/* Computes the range of rows and the leftmost column. Returns false if there are more than `most` rows, if the
+ * triangles together cover more rows than that, or if coordinates are too coarse for the lattice. */
 static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
                        int32_t most)
 {
     struct span rows = {HUGE_VAL, -HUGE_VAL}, columns = rows;
-    double painted = 0; /* rows of all triangles */
+    double painted = 0; /* rows summed over all triangles */
     for (int32_t i = 0; i < n; i++) {
         struct tri_point p[3];
         corners_of(mesh, triangle[i], p);
@@ -87,7 +88,7 @@ static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const t
     return true;
 }
 
-/* Calls `paint` for each row of each triangle with its columns. */
+/* Calls `paint` for each row of each triangle, with the columns inside the triangle. */
 static void paint_all(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
                       void (*paint)(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t))
 {
@@ -123,7 +124,7 @@ static void paint_row(struct tri_sites *s, int32_t row, struct span columns, tri
     }
 }
 
-/* Where rows begin; s->n stays 0 where there are more than `most` sites. */
+/* Computes the index at which each row starts. s->n stays 0 if there are more than `most` sites. */
 static void lay_out(struct tri_sites *s, int32_t most)
 {
     int64_t n = 0;
@@ -135,7 +136,7 @@ static void lay_out(struct tri_sites *s, int32_t most)
     s->n = n <= most ? (int32_t)n : 0;
 }
 
-/* The index of the site in a row and column; TRI_NONE: there is none. */
+/* Returns the index of the site in a row and column, or TRI_NONE. */
 static int32_t find_site(const struct tri_sites *s, double row, double column)
 {
     if (!(row >= 0 && row < s->n_rows))
@@ -145,7 +146,7 @@ static int32_t find_site(const struct tri_sites *s, double row, double column)
 }
 
 struct segment {
-    struct tri_point a, b; /* may be the same */
+    struct tri_point a, b; /* ends, may be equal */
 };
 
 static double distance2_to(const struct segment *s, struct tri_point p)
@@ -156,11 +157,11 @@ static double distance2_to(const struct segment *s, struct tri_point p)
     return tri_distance2(p, (struct tri_point){s->a.x + at * x, s->a.y + at * y});
 }
 
-/* The columns of a row in which lie all sites nearer than `distance` to a segment. */
+/* Returns columns of a row that contain all sites closer than `distance` to a segment. */
 static struct span columns_near(const struct tri_lattice *lattice, const struct segment *s, double row, double distance)
 {
     const double x = s->b.x - s->a.x, y = s->b.y - s->a.y, height = row * lattice->rise - s->a.y;
-    double from = 0, to = 1; /* what of the segment is so near to the row, in its lengths */
+    double from = 0, to = 1; /* range of the segment that is close enough to the row, as fractions of its length */
     if (y != 0) {
         from = tri_larger(0, tri_lesser((height - distance) / y, (height + distance) / y));
         to = tri_lesser(1, tri_larger((height - distance) / y, (height + distance) / y));
@@ -170,7 +171,7 @@ static struct span columns_near(const struct tri_lattice *lattice, const struct 
     return columns_between(lattice, row, left - distance, right + distance);
 }
 
-/* Wipes out the sites nearer than `distance` to a segment. */
+/* Removes the sites closer than `distance` to a segment. */
 static void wipe_out(struct tri_sites *s, struct segment segment, double distance)
 {
     const struct tri_lattice *lattice = &s->lattice;
@@ -195,7 +196,7 @@ int32_t tri_site_of(const struct tri_sites *s, struct tri_point p)
     return at.x == p.x && at.y == p.y ? find_site(s, row - s->bottom, column - s->left) : TRI_NONE;
 }
 
-/* A vertex stands on its site, or wipes out those near to it. */
+/* If the vertex is exactly on a site, records it there. Otherwise removes the sites close to the vertex. */
 static void note_vertex(struct tri_sites *s, const struct tri_mesh *mesh, tri_vertex_id v, tri_triangle_id t)
 {
     const struct tri_point p = mesh->xy[v];

@@ -1,10 +1,11 @@
-/* One pass of smoothing: a vertex goes to where the sum of 1 / q over its triangles is least, and edges are flipped
- * until they are Delaunay (star.h has q and the place). From the second pass on, flips by degree come first
- * (degrees.h).
+/* One smoothing pass moves each vertex to the point that minimises the sum of 1 / q over its triangles, and flips
+ * edges until they are Delaunay. star.h defines the quality q and derives the point. From the second pass on, flips
+ * that improve the degrees of vertices come first (degrees.h).
  *
- * INVARIANT. Input vertices and those on segments stay. A move is made only if all triangles keep their orientation
- * (exactly), none of them breaks the bound on angles, the sum gets less, and the worst q not lower, or stays good.
- * Flips to Delaunay make the least angle of two triangles larger (Lawson 1977). So bounds on angles are kept. */
+ * INVARIANT. Input vertices and vertices on segments do not move. A move is made only if all triangles keep their
+ * orientation (tested exactly), none violates the angle bound, the sum decreases, and the smallest q does not
+ * decrease or stays good. Delaunay flips increase the smallest angle of two triangles (Lawson 1977), so angle bounds
+ * stay satisfied. */
 #include "triangle/refine/smooth.h"
 
 #include <assert.h>
@@ -66,7 +67,7 @@ void tri_smooth_free(struct tri_smooth *smooth)
 
 bool tri_flips_degrees(const struct tri_quality *quality, int pass) { return quality->passes > 1 && pass > 0; }
 
-/* Counts what becomes of it. False: no memory. */
+/* Smooths one vertex and counts the outcome. Returns false if memory ran out. */
 static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here,
                        struct tri_smooth_count *count)
 {
@@ -84,7 +85,7 @@ static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_
     return tri_flip_legalise(flips);
 }
 
-/* False: no memory. */
+/* Improves the degrees around one vertex. Returns false if memory ran out. */
 static bool flip_at(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here)
 {
     struct tri_star star;

@@ -1,15 +1,18 @@
-/* Places of split points.
+/* Positions of split points.
  *
- * A split point is rounded, so it lies beside its subsegment. Errors would add up from split to split, and a boundary
- * subsegment that moves outwards might meet another part of the boundary. RULE. The place is the one on the parent's
- * line, rounded once, or a neighbour of it or of the place on the subsegment. A neighbour is a unit away in each
- * coordinate's own measure, or else in the measure of the larger coordinate, and at most TRI_SPLIT_ASTRAY resolutions
- * of the parent's largest coordinate away from the line (TRI_CHAIN_ASTRAY in a mesh that was read): a part that begins
- * near a coarse end is as far off. The first place from which all of the cavity can be seen is taken.
+ * A split point is rounded, so it lies beside its subsegment. Without a rule, errors would add up over repeated
+ * splits, and a boundary subsegment that moves outwards might touch another part of the boundary.
  *
- * THEOREM (boundary; docs/theory.md, split points). Each parent on the boundary has an empty triangle of its own
- * outside: its ends and its guard. If every split point of a boundary subsegment lies on its inner side, in that
- * triangle, or between it and the parent's line, the boundary never meets itself, and passes no vertex not its own. */
+ * RULE. The candidates are the point on the parent's line, rounded once, the neighbours of that point, and the
+ * neighbours of the point on the subsegment. A neighbour differs by one unit in the precision of each coordinate, or
+ * by one unit of the larger coordinate's precision. It is at most TRI_SPLIT_ASTRAY resolutions of the parent's
+ * largest coordinate off the line (TRI_CHAIN_ASTRAY in a mesh read from files), because a subsegment whose end has
+ * large coordinates is off by as much. The first candidate that sees its whole cavity is used.
+ *
+ * THEOREM (boundary; docs/theory.md, split points). Each parent on the boundary has an empty triangle outside the
+ * mesh: its ends and its guard. Let every split point of a boundary subsegment lie on its inner side, in that
+ * triangle, or between it and the parent's line. Then the boundary never touches itself or a vertex that is not its
+ * own. */
 #include "triangle/refine/split.h"
 
 #include <assert.h>
@@ -40,8 +43,8 @@ bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_p
     return tri_distance2(a, b) > 4 * mesh->limits.shortest2;
 }
 
-/* Is p on the line of the parent, or on the side of it that is left of the way from `from` to `to`? (Subsegments are
- * far longer than their distance from the line.) */
+/* Is p on the line of the parent, or on the side of it that is to the left of the direction from `from` to `to`?
+ * (Subsegments are far longer than their distance from the line.) */
 static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_point from, struct tri_point to,
                            struct tri_point p)
 {
@@ -49,13 +52,14 @@ static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_po
     return (along ? tri_orient2d(a, b, p) : tri_orient2d(b, a, p)) >= 0;
 }
 
-/* Was the parent a straight line from the start? Else it belongs to a mesh that was read, and was found as a chain. */
+/* Is the parent a straight input segment? If not, it was found as a chain of edges in a mesh that was read. */
 static bool began_as_line(const struct tri_mesh *mesh, const struct tri_parent *parent)
 {
     return tri_compare_places(parent->guard, mesh->xy[parent->v[0]]) != 0;
 }
 
-/* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
+/* May a boundary subsegment from `from` to `to`, with the mesh on its left, be split at p without touching the rest
+ * of the boundary? */
 static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent *parent, struct tri_point from,
                             struct tri_point to, struct tri_point p)
 {
@@ -74,10 +78,10 @@ static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment 
     return !boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, p);
 }
 
-/* Is this choice a place on the parent's line? Else it is one on the subsegment, which lies inside by now. */
+/* Does this candidate lie on the parent's line? If not, it lies on the subsegment, which may be off the line. */
 static bool is_on_line(int choice) { return choice / TRI_PLACES % 2 == 0; }
 
-/* How far a neighbour lies from the rounded place in each coordinate. */
+/* Returns the offset of neighbour candidates from the rounded point, in each coordinate. */
 static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point rounded,
                              int choice)
 {
@@ -87,7 +91,7 @@ static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subse
     return choice < 2 * TRI_PLACES ? grain : (struct tri_point){coarse, coarse};
 }
 
-/* Does a split of s at p keep within TRI_SPLIT_ASTRAY resolutions of its parent's line, and the boundary to itself? */
+/* Is p within TRI_SPLIT_ASTRAY resolutions of the line of s's parent, and allowed by the boundary? */
 static bool may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     const tri_vertex_id *end = mesh->parents[s->parent].v;
@@ -103,7 +107,7 @@ struct tri_split_base tri_split_base(const struct tri_mesh *mesh, const struct t
     return (struct tri_split_base){tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], between), between};
 }
 
-/* At the foot of the perpendicular from `at`. */
+/* Returns the ideal split point at the foot of the perpendicular from `at`. */
 static struct tri_split_base split_base_level(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                                               struct tri_point at)
 {
@@ -126,21 +130,23 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
 }
 
-/* Diametral circles: where a subsegment with a vertex in its circle is split.
+/* Diametral circles: where to split a subsegment e with a vertex v in its diametral circle.
  *
- * RULE. The point of a subsegment e level with a vertex v is that at the distance of v from o, where e and v lie on two
- * parents with the common end o; else the foot of the perpendicular from v. Let e have length l, v distance h from it,
- * and the level point distance d from the nearer end a. Then e is split
+ * RULE. The point of e that is level with v is defined in two cases. If e and v lie on two parents with a common end
+ * o, it is the point of e that is as far from o as v is. Otherwise it is the foot of the perpendicular from v. Let l
+ * be the length of e, h the distance of v from it, and d the distance of the level point from the nearer end a. Then
+ * e is split
  *   - level with v, if 0.9 h <= d and h < l / TRI_NARROW;
- *   - d + h^2 / d from a, if 0.9 h > d and that is less than
- *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
- * It is not split if rounding would undo that. Let g be the rounding error of a place along e. Then e stays if no place
- * is level and g * l > TRI_NARROW * h^2. It also stays if v lies across a space that is not filled (gap.h), and if that
- * space is longer than (TRI_NARROW * h)^2 / g.
+ *   - at distance d + h^2 / d from a, if 0.9 h > d and this is less than the distance of the usual point
+ *     (tri_split_fraction);
+ *   - at the usual point in all other cases.
+ * A split that rounding would undo is not made. Let g be the rounding error of a point along e. Then e is not split
+ * if no candidate is level and g * l > TRI_NARROW * h^2. It is also not split if v lies across a gap that is not
+ * filled (gap.h), and if the gap is longer than (TRI_NARROW * h)^2 / g.
  *
- * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
- * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
- * shortest edge. */
+ * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Level vertices separate two parents
+ * permanently: two parallel parents need about as many points as they have vertices, and no part is shorter than
+ * half the shortest edge. */
 
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
 {
@@ -149,12 +155,12 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
     return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
 }
 
-/* A unit in the last place of the largest coordinate, in shortest edges. */
+/* A unit in the last place of the largest coordinate, as a multiple of the shortest edge. */
 static const double ULP = 0x1p-5;
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
-/* The fraction of the subsegment at which the point level with v lies. */
+/* Returns the fraction of the subsegment at which its point level with v lies. */
 static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
@@ -168,11 +174,11 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
     return ((at.x - a.x) * x + (at.y - a.y) * y) / (x * x + y * y);
 }
 
-/* The l, h and d of the rule, for one vertex and one subsegment. */
+/* The quantities l, h and d of the rule, for one vertex and one subsegment. */
 struct sight {
-    double l, h, d;
-    bool from_end; /* d is measured from the subsegment's second end */
-    bool far;      /* d reaches 0.9 h. With h as the bound, rounding made two parents split each other for ever */
+    double l, h, d; /* length; distance of v; distance of the level point from the nearer end */
+    bool from_end; /* true: d is measured from the subsegment's second end */
+    bool far;      /* true: d >= 0.9 h. With the bound h, rounding could make two parents split each other endlessly */
 };
 
 static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
@@ -183,7 +189,7 @@ static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subse
     return (struct sight){l, h, d, level >= 0.5, d >= 0.9 * h};
 }
 
-/* Where to split for vertex v, by the rule. A d below the shortest edge is rounding. */
+/* Returns where to split for vertex v, by the rule. A distance d below the shortest edge is a rounding error. */
 static struct tri_disk_split split_for(const struct sight *s, tri_vertex_id v, double usual, double shortest)
 {
     double from_nearer = s->from_end ? 1 - usual : usual, far = (s->d + s->h * (s->h / s->d)) / s->l;
@@ -193,7 +199,7 @@ static struct tri_disk_split split_for(const struct sight *s, tri_vertex_id v, d
     return (struct tri_disk_split){s->from_end ? 1 - fraction : fraction, s->far ? v : TRI_NONE};
 }
 
-/* A unit in the last place. */
+/* Returns the unit in the last place of x. */
 static double unit_of(double x)
 {
     int exponent;
@@ -201,7 +207,8 @@ static double unit_of(double x)
     return x == 0 ? 0 : ldexp(1, exponent - DBL_MANT_DIG);
 }
 
-/* How far from its level rounding leaves a place: along the line, that coordinate counts whose unit moves it less. */
+/* Returns how far rounding may move a split point along the subsegment. The coordinate whose unit moves it less
+ * counts. */
 static double grain_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
@@ -209,7 +216,7 @@ static double grain_at(const struct tri_mesh *mesh, const struct tri_subsegment 
     return fmin(x * unit_of(at.x), y * unit_of(at.y)) / sqrt(x * x + y * y);
 }
 
-/* Has the subsegment a place that is level with v in spite of rounding? */
+/* Does the subsegment have a candidate that is level with v in spite of rounding? */
 static bool has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
                       const struct sight *sight)
 {
@@ -224,7 +231,7 @@ static bool has_level(const struct tri_mesh *mesh, const struct tri_subsegment *
     return false;
 }
 
-/* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
+/* Should vertex v in its circle cause a split of the subsegment, and where? */
 static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
                          struct tri_disk_split *split)
 {
@@ -255,9 +262,9 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
     return is;
 }
 
-/* A place at the fraction, which is level with a vertex. If it lies within an ulp or two of the foot of the
- * perpendicular (ulps of the end from which the fraction was worked out), the foot is taken: it is level as well, and
- * has been rounded once. */
+/* If a split point level with a vertex lies within an ulp or two of the foot of the perpendicular, the foot is used:
+ * it is level as well, and has been rounded only once. (These are ulps of the end from which the fraction was
+ * computed.) */
 struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                                     const struct tri_disk_split *split)
 {
@@ -271,15 +278,15 @@ struct tri_split_base tri_disk_base(const struct tri_mesh *mesh, const struct tr
                                          : tri_split_base(mesh, s, split->fraction);
 }
 
-/* Of the two coordinates that lie next to a + d, the nearest, or the one on its other side. */
+/* Returns the representable coordinate closest to a + d or, if `other`, the one on the opposite side of a + d. */
 static double coordinate_beside(double a, double d, bool other)
 {
     double x = a + d;
     return tri_round_coordinate(other ? nextafter(x, x - a > d ? -HUGE_VAL : HUGE_VAL) : x);
 }
 
-/* In each column of coordinates one place is nearest to the line on which all is level with `at` (docs/theory.md). q:
- * the rounded place; end: the common end of the parents, or TRI_NONE. Is it level, and may it be there? */
+/* In each column of coordinates one point is closest to the line of points level with `at` (docs/theory.md). q: the
+ * rounded point; end: the common end of the parents, or TRI_NONE. Returns whether the point is level and allowed. */
 static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point q,
                             struct tri_point at, tri_vertex_id end, int i, struct tri_point *p)
 {

@@ -48,7 +48,7 @@ struct tri_worth tri_star_worth(const struct tri_smooth *r, const struct tri_sta
     return w;
 }
 
-/* The weighted mean of the ideal apexes over the rim, for a vertex that is at x. */
+/* Returns the weighted mean of the ideal apexes over the rim edges, for a vertex at x. */
 static struct tri_point better_place(const struct tri_star *s, struct tri_point x)
 {
     const double HALF_ROOT_3 = 0.8660254037844386;
@@ -58,7 +58,7 @@ static struct tri_point better_place(const struct tri_star *s, struct tri_point 
         const double weight = 1 / (e.x * (x.y - a.y) - e.y * (x.x - a.x)); /* 1 / (l t) */
         struct tri_point apex = {a.x + 0.5 * e.x - HALF_ROOT_3 * e.y, a.y + 0.5 * e.y + HALF_ROOT_3 * e.x};
         const double dx = x.x - apex.x, dy = x.y - apex.y, shift = 0.5 * weight * (dx * dx + dy * dy);
-        sum_x += weight * (apex.x + shift * e.y); /* what t adds: along the normal, away from the edge .. */
+        sum_x += weight * (apex.x + shift * e.y); /* gradient with respect to t: along the normal, away from the edge */
         sum_y += weight * (apex.y - shift * e.x);
         sum += weight;
     }

@@ -1,16 +1,16 @@
-/* What is done about one bad triangle.
+/* Treats one bad triangle.
  *
- * The triangle proposes a point (petal.h, place.h). The point's cavity is searched completely. Every subsegment that
- * the point encroaches is a wall of the cavity (cavity.h): if there is one, it is split instead, and the triangle, if
- * it still stands, proposes again. Else the point is inserted. Nothing is changed before everything is known, so
- * nothing is undone.
+ * The triangle proposes a point (petal.h, place.h), and the point's cavity is searched completely. Every subsegment
+ * that the point encroaches is a wall of the cavity (cavity.h). If there is one, it is split instead, and the
+ * triangle proposes again if it still exists. Otherwise the point is inserted. The mesh changes only after all tests
+ * have succeeded, so no change has to be undone.
  *
- * INVARIANT. A triangle is refined for its angle unless its shortest edge is shorter than s(v) / 6 (feature_size.c),
- * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can
- * afford (hopeless.c). Sizes are never given up: see place.c.
+ * INVARIANT. A triangle is refined for its angle with three exceptions: its shortest edge is shorter than s(v) / 6
+ * (feature_size.c), joins two segments that meet at an acute vertex (shell, spike), or bridges a gap that would need
+ * more points than the mesh can afford (hopeless.c). Refinement for sizes is never given up: see place.c.
  *
- * A subsegment that must not be split (-Y) tolerates points in its lens that are TRI_CLEARANCE times the shortest edge
- * away: docs/theory.md, protected walls. */
+ * A subsegment that must not be split (-Y) tolerates points in its lens at a distance of at least TRI_CLEARANCE
+ * times the shortest edge: docs/theory.md, protected walls. */
 #include "triangle/refine/refiner.h"
 
 #include <assert.h>
@@ -24,10 +24,11 @@
 #include "triangle/size/hopeless.h"
 #include "triangle/tunables.h"
 
-/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. */
+/* 4 / sqrt(3): the squared edge of an equilateral triangle is this times its area. */
 static const double EQUILATERAL = 2.3094010767585030580;
 
-/* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
+/* The predicates cannot handle points farther out. They occur if rounding has reduced a triangle's area to nearly
+ * zero. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
 static enum tri_status find_room(struct tri_refiner *r, int32_t points)
@@ -70,7 +71,7 @@ static void tell_changes(const struct tri_refiner *r)
         r->hooks->part->changed(r->hooks->part->user, r->cavity.tri, r->cavity.n_edges);
 }
 
-/* Inserts p, whose cavity has been found, for the sake of a triangle; the features around are no larger than `most`. */
+/* Inserts p, whose cavity has been found, on behalf of a triangle. most: upper bound on the feature size at p. */
 static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
                                 const struct tri_shape *shape, double most)
 {
@@ -97,7 +98,7 @@ static bool at_limit(struct tri_refiner *r)
     return r->report->hit_limit = true;
 }
 
-/* TRI_NONE: a point that stands for no triangle. */
+/* Defers the triangle and counts it. TRI_NONE: there is no triangle to defer. */
 static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
 {
     *counter += triangle != TRI_NONE;
@@ -106,7 +107,7 @@ static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, i
     return DEFERRED;
 }
 
-/* Nothing has been changed; the same is tried again when there is more of the mesh. */
+/* Changes nothing. The step is tried again when more of the mesh is available. */
 enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2])
 {
     assert(r->hooks->part);
@@ -122,7 +123,7 @@ static enum tri_outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
     return REFUSED;
 }
 
-/* A triangle, or, where it is TRI_NONE, a subsegment. */
+/* Gives up a triangle or, if `triangle` is TRI_NONE, a subsegment. */
 static enum tri_outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enum tri_excuse excuse)
 {
     r->report->given_up[excuse]++;
@@ -136,7 +137,7 @@ static bool is_in_circle(const struct tri_mesh *m, tri_sub_id s, struct tri_poin
     return tri_dot(m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]], p) < 0;
 }
 
-/* A wall of the cavity found that has vertex `level` as an end and the new point in its circle; else TRI_NONE. */
+/* Returns a wall of the cavity that has `level` as an end and the new point in its circle, or TRI_NONE. */
 static tri_sub_id wall_out_of_level(const struct tri_refiner *r, tri_vertex_id level)
 {
     const struct tri_mesh *m = r->mesh;
@@ -149,14 +150,14 @@ static tri_sub_id wall_out_of_level(const struct tri_refiner *r, tri_vertex_id l
     return TRI_NONE;
 }
 
-/* The cavity of the first place level with the vertex that shall be level in spite of rounding: it and the new point
- * are out of the circles of each other's subsegments. The walls in which one place lay are tested before the next one
- * is searched. */
+/* Finds the cavity of the first candidate level with split->level. Level in spite of rounding means: neither the
+ * vertex nor the new point lies in the diametral circle of a subsegment of the other. Walls that contained an
+ * earlier candidate are tested before the next search. */
 static enum tri_search find_level_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
                                         const struct tri_split_base *base, int32_t *n_left)
 {
     const struct tri_mesh *m = r->mesh;
-    tri_sub_id known[2] = {s, s}; /* s: none yet */
+    tri_sub_id known[2] = {s, s}; /* two walls that contained candidates; s: none yet */
     for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
         struct tri_point p;
         if (!tri_place_disk_split(m, &m->sub[s], split, base, choice, &p) ||
@@ -175,8 +176,8 @@ static enum tri_search find_level_split(struct tri_refiner *r, tri_sub_id s, con
     return TRI_SEARCH_OUTSIDE;
 }
 
-/* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
- * outside the disk of a triangle beside s, or behind one of its edges. */
+/* Finds the cavity of the first usable candidate for splitting subsegment s. Rounding may move a candidate out of
+ * the circumdisk of a triangle beside s, or behind one of its edges. */
 static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
                                   int32_t *n_left)
 {
@@ -194,7 +195,7 @@ static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const str
     return found;
 }
 
-/* Splits subsegment s for the sake of a triangle. */
+/* Splits subsegment s on behalf of a triangle. */
 static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split split,
                                  tri_triangle_id triangle)
 {
@@ -238,7 +239,7 @@ static enum tri_outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_
     return split_at(r, s, usual, triangle);
 }
 
-/* May the new point see this wall under any angle? */
+/* May the new point see this wall under any angle? True for a protected wall that is far enough away. */
 static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
 {
     const struct tri_cavity *c = &r->cavity;
@@ -249,13 +250,13 @@ static bool tolerates(const struct tri_refiner *r, int32_t i, double shortest)
     return area2 * area2 > TRI_CLEARANCE * TRI_CLEARANCE * shortest * (x * x + y * y);
 }
 
-/* Does the new point, for a triangle with this shortest edge, squared, lie on the wrong side of a wall, or see it under
- * too wide an angle? Sets *behind. */
+/* Does the new point lie on the wrong side of wall i (then sets *behind), or see it under too wide an angle?
+ * shortest: shortest squared edge of the bad triangle. */
 static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, bool *behind)
 {
     const struct tri_cavity *c = &r->cavity;
     const struct tri_cavity_corner *a = c->edge[i].a, *b = c->edge[i + 1].a;
-    assert(i >= 0 && i < c->n_edges && c->edge[i].outer < 0); /* a wall */
+    assert(i >= 0 && i < c->n_edges && c->edge[i].outer < 0); /* it is a wall */
     double cross = c->edge[i].area2, dot = a->r.x * b->r.x + a->r.y * b->r.y;
     *behind = false;
     if (dot >= 0 && cross > 0)
@@ -267,8 +268,8 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, double shortest, 
     return *behind;
 }
 
-/* The subsegment to split instead of inserting the new point for a triangle with this shortest edge, squared: one that
- * hides it, else the first that it encroaches. */
+/* Returns the subsegment to split instead of inserting the new point: a wall that hides the point if there is one,
+ * otherwise the first wall that it encroaches. shortest: shortest squared edge of the bad triangle. */
 static tri_sub_id find_encroached(const struct tri_refiner *r, double shortest)
 {
     tri_sub_id found = TRI_NONE;
@@ -284,7 +285,7 @@ static tri_sub_id find_encroached(const struct tri_refiner *r, double shortest)
     return found;
 }
 
-/* How far from its shortest edge may the new point of this triangle lie? */
+/* Returns the largest height at which the new point may lie over the triangle's shortest edge. */
 static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
                        enum tri_badness badness)
 {
@@ -301,7 +302,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* The cavity of a new point for a triangle: DONE where it is found and is ours. */
+/* Finds the cavity of a new point for a triangle. DONE: it is found, and the call may change it. */
 static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
 {
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
@@ -311,7 +312,7 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
         if (!r->hooks->gate(r->hooks->gate_user, at))
             return defer(r, triangle, &r->report->gated);
     }
-    if (r->hooks->fence && !tri_fence_holds(r->hooks->fence, p)) /* then its cavity reaches beyond, too */
+    if (r->hooks->fence && !tri_fence_holds(r->hooks->fence, p)) /* its cavity would cross the fence as well */
         return defer(r, triangle, &r->report->fenced);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
@@ -322,7 +323,7 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
     }
 }
 
-/* The cavity of the best point for a bad angle, *p; REFUSED: the usual one is to be had. */
+/* Finds the best point *p for a bad angle, and its cavity. REFUSED: use the standard point. */
 static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                                   struct tri_point *p)
 {
@@ -334,7 +335,7 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
     }
 }
 
-/* The cavity of the lattice point for a triangle, *p; sets *most as insert_free has it. REFUSED: there is none. */
+/* Finds the lattice point *p for a triangle, and its cavity. Sets *most for insert_free. REFUSED: there is none. */
 static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                                         struct tri_point *p, double *most)
 {
@@ -352,8 +353,8 @@ static enum tri_outcome find_in_lattice(struct tri_refiner *r, tri_triangle_id t
     return outcome;
 }
 
-/* Inserts p, whose cavity has been found, or splits a subsegment that it encroaches: AGAIN. most: as insert_free has
- * it; bad: the triangle, or TRI_NONE if it is not for its sake. */
+/* Inserts p, whose cavity has been found, or splits a subsegment that p encroaches (AGAIN). most: as in insert_free;
+ * bad: the triangle to defer if necessary, or TRI_NONE. */
 static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
                                         const struct tri_shape *shape, double most, tri_triangle_id bad)
 {
@@ -367,7 +368,7 @@ static enum tri_outcome insert_or_split(struct tri_refiner *r, struct tri_point 
     return outcome == DONE ? AGAIN : outcome;
 }
 
-/* The best or the usual point, or the split of a subsegment that it encroaches. */
+/* Inserts the lattice point, the best or the standard point, or splits a subsegment that this point encroaches. */
 static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                                 enum tri_badness badness)
 {
@@ -403,7 +404,7 @@ enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id tr
     return insert_or_split(r, p, triangle, &shape, lattice->feature, TRI_NONE);
 }
 
-/* For sizes, where the usual point is refused: see place.c. */
+/* The fallback for sizes if the standard point is refused: see place.c. */
 static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     tri_sub_id s = tri_long_wall(r->mesh, r->quality, triangle, shape);
@@ -419,7 +420,7 @@ static enum tri_outcome propose_inside(struct tri_refiner *r, tri_triangle_id tr
     return outcome == DONE ? insert_free(r, p, triangle, shape, HUGE_VAL) : outcome;
 }
 
-/* Somebody asks for the end: between two points the mesh is in order. */
+/* Called between two insertions, when the mesh is valid. */
 bool tri_refiner_must_stop(struct tri_refiner *r)
 {
     if (r->hooks->told && r->step_of_stop % TRI_STOP_STEPS == 0)
@@ -427,7 +428,6 @@ bool tri_refiner_must_stop(struct tri_refiner *r)
     return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
 }
 
-/* Treats one bad triangle until it is gone, given up or deferred. */
 enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {
@@ -460,7 +460,6 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
-/* Splits subsegments until no vertex lies in the circle of one that waits. */
 bool tri_split_encroached(struct tri_refiner *r)
 {
     while (r->n_encroached > 0) {
@@ -478,7 +477,7 @@ bool tri_split_encroached(struct tri_refiner *r)
         const tri_triangle_id beside = tri_of(sub->side[0] == TRI_NONE ? sub->side[1] : sub->side[0]);
         enum tri_outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
-            if (r->n_encroached < r->encroached_capacity) /* else it was split, and memory ran out for what waits */
+            if (r->n_encroached < r->encroached_capacity) /* otherwise s was split, and queueing ran out of memory */
                 r->encroached[r->n_encroached++] = s;
             return false;
         }

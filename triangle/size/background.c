@@ -1,21 +1,21 @@
 /* Lengths at the vertices of a background mesh, linear in its triangles.
  *
- * The triangles compete for a place by their distance from it (candidates.h): inside it is 0, outside the nearest
- * place of the nearest triangle counts. So they may leave gaps, overlap, be flat, and turn either way. The lengths are
- * limited along the edges (spread.c). */
+ * The triangles compete for each point by their distance from it (candidates.h). Inside a triangle the distance is
+ * 0; outside all triangles, the nearest point of the nearest triangle counts. So triangles may overlap, leave gaps,
+ * be flat, and have either orientation. Gradients are limited along the edges (spread.c). */
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
 #include "triangle/base/heap_sort.h"
 
-/* In cells with a side of this much of h, the nearest triangle may be so much of h too far off. */
+/* In cells with sides up to SMALL * h, the chosen triangle may be TOLERANCE * h farther away than the nearest one. */
 static const double SMALL = 0.5, TOLERANCE = 0.01;
 
-/* The nearest place so far. */
+/* The nearest point found so far. */
 struct nearest {
-    double distance2; /* infinite: there is none yet */
-    double length;    /* there */
-    struct tri_point away; /* how far that is */
+    double distance2; /* squared distance from the query; infinite: none yet */
+    double length;    /* length at that point */
+    struct tri_point away; /* vector from the query to that point */
 };
 
 static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, struct tri_point p, struct nearest *near)
@@ -23,7 +23,7 @@ static void ask_edge(const struct tri_background *b, int32_t from, int32_t to, s
     const struct tri_point a = b->at[from], along = {b->at[to].x - a.x, b->at[to].y - a.y};
     const double l2 = along.x * along.x + along.y * along.y;
     const double dot = (p.x - a.x) * along.x + (p.y - a.y) * along.y;
-    const double t = dot > 0 ? tri_lesser(dot / l2, 1) : 0; /* l2 is above 0 then */
+    const double t = dot > 0 ? tri_lesser(dot / l2, 1) : 0; /* l2 is above 0 if dot is */
     const struct tri_point away = {a.x + t * along.x - p.x, a.y + t * along.y - p.y};
     const double d2 = away.x * away.x + away.y * away.y;
     if (d2 < near->distance2)
@@ -35,7 +35,7 @@ static double twice_area(struct tri_point a, struct tri_point b, struct tri_poin
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
 }
 
-/* *near becomes the nearest place in a triangle, if that is nearer. */
+/* Updates *near if a point of the triangle is nearer. */
 static void ask_triangle(const struct tri_background *b, int32_t t, struct tri_point p, struct nearest *near)
 {
     const int32_t *v = b->corner + 3 * (size_t)t;
@@ -66,7 +66,7 @@ static double allowed(const void *user, int32_t winner, double distance, double 
     return side <= SMALL * least ? TOLERANCE * least : 0;
 }
 
-/* Leaves out triangles where no data could reach, and turns the others counter-clockwise. */
+/* Drops triangles that data cannot reach, and makes the others counter-clockwise. */
 static void settle_triangles(struct tri_background *b)
 {
     int32_t n = 0;
@@ -96,7 +96,7 @@ static bool take(struct tri_background *b, const struct tri_size_field *f, const
         b->length[v] = tri_size_of(frame, f->values.at[v * f->values.stride]);
     }
     for (int64_t t = 0; t < b->n_triangles; t++)
-        for (int k = 0; k < 3; k++) /* points alone: flat triangles */
+        for (int k = 0; k < 3; k++) /* points without triangles become flat triangles */
             b->corner[3 * t + k] = f->triangles.n > 0 ? f->triangles.at[t * f->triangles.stride + k] : (int32_t)t;
     return true;
 }
@@ -108,8 +108,8 @@ static bool is_before(const void *background, int32_t v, int32_t w)
     return order < 0 || (order == 0 && v < w);
 }
 
-/* Points at one place become one corner, with the least length: triangles of some formats share none, and lengths must
- * spread between them. */
+/* Merges points at the same position into one corner with the smallest length. Some formats do not share points
+ * between triangles, and lengths must propagate between them. Returns false if memory ran out. */
 static bool weld(struct tri_background *b)
 {
     int32_t *order = malloc(2 * (size_t)b->n * sizeof *order), *first = order + b->n;
@@ -130,7 +130,7 @@ static bool weld(struct tri_background *b)
     return memory;
 }
 
-/* The lengths of vertices that no triangle has say nothing. */
+/* Clears the lengths of vertices that belong to no triangle. Returns false if memory ran out. */
 static bool forget_unused(struct tri_background *b)
 {
     bool *used = calloc((size_t)b->n, sizeof *used);
@@ -158,7 +158,7 @@ enum tri_status tri_background_make(struct tri_background *background, const str
     if (!status)
         status = tri_spread_lengths(&cells, b->length, frame->gradation, &has_data, stop, error);
     if (!status && !has_data)
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value of a triangle is a length");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no vertex of a triangle has a length above 0");
     if (!status) {
         settle_triangles(b);
         status = tri_candidates_make(&b->candidates, &contest, b->n_triangles, frame, error);

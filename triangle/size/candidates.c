@@ -1,54 +1,55 @@
-/* Lists of candidates for the cells of a quadtree.
+/* Candidate lists for the cells of a quadtree.
  *
- * INVARIANT. The list of a cell holds every item that wins anywhere in it. Keys are convex, so that from the centre of
- * a part of the cell each is bounded from below by its gradient, and the winner's from above by its gradient and bend:
- * an item whose lower bound is above that all over the part, or above what some item's key is at most, wins nowhere in
- * it. What is no candidate in a cell is none in its parts, so that a list is chosen from that of the cell around. A
- * cell is cut until its list is short. Where many items tie - inside a circle, at the tips of a fan - it is not for
- * long: there a small cell keeps those who win at nine places, if with these keys are nearly right at 16 others. */
+ * INVARIANT. The list of a cell contains every item that wins anywhere in the cell. Keys are convex. So, from the
+ * centre of a part of the cell, the gradient bounds each key from below, and gradient and bend bound the winner's
+ * key from above. An item wins nowhere in the part if its lower bound exceeds the winner's upper bound everywhere,
+ * or exceeds another item's largest key. The list of a cell is chosen from the list of its parent cell. A cell is
+ * divided until its list is short. Where many items tie (at the centre of a circle, at the tips of a fan), lists
+ * stay long. There a small cell keeps only the winners at nine points, if the keys of these items are nearly right
+ * at 16 other points. */
 #include "triangle/size/candidates.h"
 
 enum { SHORT = 8, LONG = 32, PLACES = 9, QUARTERS = 4, CHECKS = 16 };
 
-/* Of many items the cells of this depth are left to tasks. */
+/* If there are many items, the cells of depth AHEAD are left to parallel tasks. */
 enum { AHEAD = 3, PORTIONS = 64, MANY = 4096 };
 
-/* Rounding must not lose a candidate at the border of two cells. */
+/* Enlarges parts, so that rounding does not lose a candidate on the border of two cells. */
 static const double CUSHION = 1 + 0x1p-20;
 
-/* An item from the centre of a quarter of a cell. */
+/* The key of an item, from the centre of a part of a cell. */
 struct sight {
-    double value;
+    double value; /* lower bound of the key is value + gradient * displacement */
     struct tri_point gradient;
 };
 
 /* A cell that is left to a task, with its candidates. */
 struct portion {
-    int32_t at; /* where it is in the tree */
-    struct tri_cell cell;
+    int32_t at; /* index in the tree */
+    struct tri_cell cell;      /* the cell */
     int32_t *list; /* [n] */
-    int64_t n;
-    struct tri_candidates out; /* what becomes of it, for itself: child[0] stands for it */
-    enum tri_status status;
+    int64_t n;     /* number of candidates */
+    struct tri_candidates out; /* its own result, in which child[0] stands for this cell */
+    enum tri_status status;    /* of the task */
 };
 
 struct making {
-    struct tri_candidates *out;
-    const struct tri_contest *contest;
-    const struct tri_stop *stop;
-    int32_t *stack; /* the lists of the cells around the one that is worked on, the outermost first */
-    int64_t n, capacity;
-    struct sight *sight; /* [QUARTERS] for each in a list */
-    struct portion *portion; /* [n_portions] in the order of the tree; NULL: nothing is left to others */
-    size_t n_portions;
-    uint32_t steps;
+    struct tri_candidates *out; /* the result */
+    const struct tri_contest *contest; /* borrowed */
+    const struct tri_stop *stop;       /* borrowed; NULL: cannot be stopped */
+    int32_t *stack; /* lists of the cells on the path from the root to the current cell */
+    int64_t n, capacity; /* numbers on the stack; allocated */
+    struct sight *sight; /* [QUARTERS] keys for each item of a list */
+    struct portion *portion; /* [n_portions] cells left to tasks, in the order of the tree; NULL: no tasks */
+    size_t n_portions;       /* number of cells left to tasks */
+    uint32_t steps;          /* counter of tri_stop_is_due */
     enum tri_status status; /* the first failure */
 };
 
-/* Of a cell's list. */
+/* Summary of a cell's list. */
 struct verdict {
-    int32_t winner;    /* who has the least key at the centres of the quarters */
-    double key, slope; /* that; the steepest slope */
+    int32_t winner;    /* the item with the smallest key at the centres of the parts */
+    double key, slope; /* the smallest key; the steepest slope */
 };
 
 static bool reserve(struct making *m, int64_t more)
@@ -58,7 +59,7 @@ static bool reserve(struct making *m, int64_t more)
     return !m->status;
 }
 
-/* Who has the least key at a place, and that. */
+/* Returns the item with the smallest key at p, and sets *least to the key. */
 static int32_t winner_at(const struct making *m, const int32_t *list, int64_t n, struct tri_point p, double *least)
 {
     int32_t winner = list[0];
@@ -71,14 +72,15 @@ static int32_t winner_at(const struct making *m, const int32_t *list, int64_t n,
     return winner;
 }
 
-/* Place number k of a lattice of so many a side, which begins at `from` times its step. */
+/* Returns point k of a square grid with a_side points per side, whose first point lies at `from` steps. */
 static struct tri_point lattice_place(struct tri_point low, double step, double from, int a_side, int k)
 {
     const int x = k % a_side, y = k / a_side;
     return (struct tri_point){low.x + (from + x) * step, low.y + (from + y) * step};
 }
 
-/* Those who win at the corners of a cell, amid its sides and at its centre: each once, in their order. */
+/* Lists the winners at the corners, the midpoints of the sides and the centre of a cell, each once and in ascending
+ * order. */
 static int winners_of(const struct making *m, const int32_t *list, int64_t n, struct tri_point low, double side,
                       int32_t kept[PLACES])
 {
@@ -98,7 +100,7 @@ static int winners_of(const struct making *m, const int32_t *list, int64_t n, st
     return n_kept;
 }
 
-/* Shortens the list to the winners, if these will do; false: they do not. */
+/* Shortens the list to these winners if they suffice; otherwise returns false. */
 static bool keep_winners(const struct making *m, int32_t *list, int64_t *n, struct tri_cell cell, double allowed)
 {
     const struct tri_point low = tri_cell_low(&m->out->tree, cell);
@@ -118,7 +120,7 @@ static bool keep_winners(const struct making *m, int32_t *list, int64_t *n, stru
     return true;
 }
 
-/* Is the list short enough for a leaf, or can it be made so? */
+/* Is the list short enough for a leaf, or can it be shortened? */
 static bool settle(const struct making *m, int32_t *list, int64_t *n, struct tri_cell cell, const struct verdict *v)
 {
     if (*n <= SHORT)
@@ -143,11 +145,11 @@ static void make_leaf(struct making *m, int32_t at, const int32_t *list, int64_t
     out->n += (int32_t)n;
 }
 
-/* A square part of a cell: the whole, or a quarter. */
+/* A square part of a cell: the whole cell or a quarter. */
 struct part {
-    struct tri_point centre;
-    struct tri_key winner; /* who wins at the centre; value: infinite as long as there is none */
-    double most;           /* somebody's key is no larger anywhere in it */
+    struct tri_point centre; /* centre of the part */
+    struct tri_key winner; /* key of the winner at the centre; its value is infinite before there is one */
+    double most;           /* upper bound on the smallest key anywhere in the part */
 };
 
 static struct verdict ask_all(const struct making *m, int64_t from, int64_t to, struct part *parts, int n_parts,
@@ -170,7 +172,7 @@ static struct verdict ask_all(const struct making *m, int64_t from, int64_t to, 
     return v;
 }
 
-/* Can an item win in a part, whose sides are this far from its centre? */
+/* Can an item win in the part? half: distance of the sides from the centre. */
 static inline bool can_win(const struct sight *s, const struct part *part, double half, double radius)
 {
     const double x = s->gradient.x - part->winner.gradient.x, y = s->gradient.y - part->winner.gradient.y;
@@ -178,8 +180,8 @@ static inline bool can_win(const struct sight *s, const struct part *part, doubl
            s->value - part->winner.value - half * (fabs(x) + fabs(y)) <= part->winner.bend * radius * radius;
 }
 
-/* Puts onto the stack, from `at` on, those of a list, `from` to `to` in it, that can win in one of the parts of a cell;
- * a_side is 1 or 2. */
+/* Pushes the items of the list from .. to that can win in a part of the cell onto the stack, starting at index `at`.
+ * a_side: 1 (the whole cell) or 2 (quarters). */
 static struct verdict choose(struct making *m, int64_t from, int64_t to, int64_t at, struct tri_cell cell, int a_side)
 {
     const struct tri_point low = tri_cell_low(&m->out->tree, cell);
@@ -217,7 +219,7 @@ static void put_off(struct making *m, int32_t at, struct tri_cell cell, const in
 
 static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to);
 
-/* Makes the quarters of the cell that child[at] stands for; its list is in the stack. */
+/* Makes the four children of the cell at child[at]. Its list is on the stack. */
 static void quarter(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to)
 {
     struct tri_quadtree *tree = &m->out->tree;
@@ -232,7 +234,7 @@ static void quarter(struct making *m, int32_t at, struct tri_cell cell, int64_t 
         divide(m, four + (int32_t)k, tri_cell_child(cell, k), from, to);
 }
 
-/* Makes the cell that child[at] stands for; its candidates are among those of the list. */
+/* Makes the cell at child[at]. Its candidates are among the items of the list. */
 static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t from, int64_t to)
 {
     const int64_t first = m->n;
@@ -241,7 +243,8 @@ static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t f
     if (m->status || !reserve(m, to - from))
         return;
     struct verdict v = choose(m, from, to, first, cell, 1);
-    if (m->n - first > SHORT && m->n - first <= LONG) /* it may become short; else its parts are seen to anyway */
+    if (m->n - first > SHORT && m->n - first <= LONG) /* its list may become short; longer lists are chosen again for
+                                                         the quarters anyway */
         v = choose(m, first, m->n, first, cell, 2);
     int64_t n = m->n - first;
     if (settle(m, m->stack + first, &n, cell, &v))
@@ -274,7 +277,7 @@ static void do_portion(void *making, size_t i)
     free(m.sight);
 }
 
-/* Puts behind what is there what has become of a portion. */
+/* Appends the result of a task to the tree. */
 static void join(struct making *m, const struct portion *portion)
 {
     struct tri_candidates *out = m->out;

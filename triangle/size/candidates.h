@@ -1,4 +1,4 @@
-/* Which of many items can win at a place: those lists are made once, for the cells of a quadtree. */
+/* For each cell of a quadtree, lists which of many items can win inside the cell. The lists are made once. */
 #ifndef TRIANGLE_SIZE_CANDIDATES_H
 #define TRIANGLE_SIZE_CANDIDATES_H
 
@@ -7,14 +7,15 @@
 #include "triangle/mesh/mesh.h"
 #include "triangle/size/quadtree.h"
 
-/* What is known of an item about a place p: q from there, its key is at least value + gradient * q, as of a convex
- * function, and at most value + slope * |q|, and value + gradient * q + bend * |q|^2. */
+/* The key of an item around a point p. For a displacement q from p, the key is at least value + gradient * q, since
+ * keys are convex functions. It is at most value + slope * |q|, and at most value + gradient * q + bend * |q|^2. */
 struct tri_key {
     double value, slope, bend; /* bend may be infinite */
-    struct tri_point gradient;
+    struct tri_point gradient; /* of the key at p */
 };
 
-/* Of a key that is `length` more than `growth` times the distance from a convex set, whose nearest place is `away`. */
+/* Returns the key `length` + `growth` * distance from a convex set. away: vector from the point to the nearest point
+ * of the set. */
 static inline struct tri_key tri_key_of_distance(double length, double growth, struct tri_point away)
 {
     const double d = sqrt(away.x * away.x + away.y * away.y), steep = d > 0 ? growth / d : 0;
@@ -22,36 +23,37 @@ static inline struct tri_key tri_key_of_distance(double length, double growth, s
                             {-steep * away.x, -steep * away.y}};
 }
 
-/* The item with the least key at a place wins there; of several the first. */
+/* The contest: at each point, the item with the smallest key wins; among equal keys, the first item. */
 struct tri_contest {
-    struct tri_key (*key)(const void *user, int32_t item, struct tri_point p);
-    /* By how much may keys be too large in a cell with this side, in which this is the least one? 0: not at all; so it
-     * should be in cells that are not small against what is asked for. */
+    struct tri_key (*key)(const void *user, int32_t item, struct tri_point p); /* returns an item's key at p */
+    /* Returns the tolerated error of keys in a cell with this side, if `winner` has the smallest key `key` there.
+     * Must be 0 in cells that are not small compared with the wanted accuracy. */
     double (*allowed)(const void *user, int32_t winner, double key, double side);
-    const void *user;
+    const void *user; /* passed to both functions */
 };
 
 struct tri_candidates {
-    struct tri_quadtree tree; /* the number of a leaf is where its list begins */
-    int32_t *list;            /* [n] how many items, and then these, in their order */
-    int32_t n, capacity;
+    struct tri_quadtree tree; /* the number of a leaf is the index of its list */
+    int32_t *list;            /* [n] for each leaf: the number of items, then the items in ascending order */
+    int32_t n, capacity;      /* numbers in list; allocated */
 };
 
-/* What all sources are made for. */
+/* Common data for all sources. */
 struct tri_size_frame {
-    const struct tri_mesh *mesh;
-    struct tri_point low, high; /* the box of its vertices */
-    double gradation;           /* above 0, or infinite */
-    const struct tri_executor *executor;
+    const struct tri_mesh *mesh; /* the mesh; borrowed */
+    struct tri_point low, high; /* bounding box of the mesh */
+    double gradation;           /* largest slope; above 0, may be infinite */
+    const struct tri_executor *executor; /* runs parallel tasks; NULL: none */
 };
 
-/* The lists of n >= 1 items for places in the frame's box; for others they are those of the nearest place in it. In
- * about n log n; contest is asked by several threads. TRI_NO_MEMORY, TRI_STOPPED: *candidates is empty. */
+/* Makes the lists of n >= 1 items for points in the frame's box. A point outside the box uses the list for the
+ * nearest point of the box. Takes about n log n time; several threads call the contest. After TRI_NO_MEMORY or
+ * TRI_STOPPED, *candidates is empty. */
 enum tri_status tri_candidates_make(struct tri_candidates *candidates, const struct tri_contest *contest, int32_t n,
                                     const struct tri_size_frame *frame, struct tri_error *error);
 void tri_candidates_clear(struct tri_candidates *candidates);
 
-/* The items that can win at a place, *n >= 1 of them. */
+/* Returns the items that can win at p, and sets *n >= 1 to their number. */
 static inline const int32_t *tri_candidates_at(const struct tri_candidates *candidates, struct tri_point p, int32_t *n)
 {
     struct tri_cell cell;

@@ -1,8 +1,8 @@
-/* h(x) is the least of
- *   - s(v) + TRI_CROWD_SLOPE * |xv| for the corners v of the triangle, s being the size of the features around v
- *     (feature_size.h): the corners are about the nearest vertices to x in a Delaunay triangulation;
- *   - between a subsegment that is an edge of the triangle and one that ends at the corner opposite to it, the sum of
- *     the distances of x from both: the width of a gap that vertices at its ends alone would not tell. */
+/* The size h(x) is the minimum of
+ *   - s(v) + TRI_CROWD_SLOPE * |xv| for the corners v of the triangle, with the feature size s (feature_size.h),
+ *     since the corners are about the nearest vertices to x in a Delaunay triangulation;
+ *   - the sum of the distances from x to two subsegments, one an edge of the triangle, the other ending at the
+ *     opposite corner. This is the width of a gap, which the vertices at its ends alone would not show. */
 #include "triangle/size/crowd.h"
 
 #include "triangle/geometry/shape.h"
@@ -12,19 +12,19 @@
 
 enum { STRIPS = 6, MOST_TURNS = 32 };
 
-/* A line, and the part of it on which a subsegment lies. */
+/* A subsegment on its line. */
 struct wall {
-    struct tri_point from, direction; /* of length 1 */
-    double length;
+    struct tri_point from, direction; /* start of the subsegment; unit vector along it */
+    double length;                    /* length of the subsegment */
 };
 
-/* What decides on h in a triangle. */
+/* The data that determine h in a triangle. */
 struct field {
-    struct tri_point corner[3];
-    double size[3];
-    struct wall strip[STRIPS][2]; /* gaps, by their two sides */
-    int n_strips;
-    double least; /* h is no less, so that the integral is finite where walls meet */
+    struct tri_point corner[3];   /* corners of the triangle */
+    double size[3];               /* feature sizes at the corners */
+    struct wall strip[STRIPS][2]; /* the two sides of each gap */
+    int n_strips;                 /* number of gaps */
+    double least; /* lower limit on h, which keeps the integral finite where walls meet */
 };
 
 static struct wall wall_of(const struct tri_mesh *mesh, const struct tri_subsegment *sub)
@@ -34,7 +34,7 @@ static struct wall wall_of(const struct tri_mesh *mesh, const struct tri_subsegm
     return (struct wall){a, {x / length, y / length}, length};
 }
 
-/* How far it is to the wall; infinity where q does not lie beside it. */
+/* Returns the distance of q from the wall; infinity if q does not project onto it. */
 static double distance_from(const struct wall *wall, struct tri_point q)
 {
     double x = q.x - wall->from.x, y = q.y - wall->from.y;
@@ -53,8 +53,8 @@ static double size_at(const void *field, struct tri_point q)
     return tri_larger(h, f->least);
 }
 
-/* The subsegment that comes first when one turns around corner k of the triangle, one way or the other; TRI_NONE where
- * that takes too long, or the mesh ends. */
+/* Returns the first subsegment found by turning around corner k of the triangle in one direction; TRI_NONE if that
+ * takes too long or the mesh ends. */
 static tri_sub_id wall_around(const struct tri_mesh *mesh, tri_triangle_id t, int k, const int way[3])
 {
     for (int i = 0; i < MOST_TURNS; i++) {
@@ -86,33 +86,33 @@ static void find_strips(struct field *f, const struct tri_mesh *mesh, tri_triang
     }
 }
 
-/* The integral of 1 / h^2 - 1 / most^2 over those places where h is below `most`. */
+/* Returns the integral of 1 / h^2 - 1 / most^2 over the points with h below `most`. */
 static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, double most)
 {
     const double LEAST = 0.05, FEW = 0.3;
-    const int DEEPEST = 128; /* h is smooth, and bounded from below */
+    const int DEEPEST = 128; /* sufficient, since h is smooth and bounded from below */
     const tri_vertex_id *v = mesh->tri[triangle].v;
     struct field f = {.least = HUGE_VAL};
     const struct tri_integrand field = {.at = size_at, .user = &f, .over = 1 / (most * most), .large = HUGE_VAL,
                                          .few = FEW, .deepest = DEEPEST};
     for (int k = 0; k < 3; k++) {
         f.corner[k] = mesh->xy[v[k]];
-        f.size[k] = tri_larger(mesh->feature[v[k]], sqrt(mesh->limits.shortest2)); /* shorter edges stay */
+        f.size[k] = tri_larger(mesh->feature[v[k]], sqrt(mesh->limits.shortest2)); /* shorter edges are not refined */
         f.least = tri_lesser(f.least, LEAST * f.size[k]);
     }
     find_strips(&f, mesh, triangle);
     return tri_integral(&field, f.corner);
 }
 
-/* How many times its shortest edge has to be doubled until it is as long as its longest, or as `most`. */
+/* Returns how many times the shortest edge must be doubled to reach the longest edge or `most`. */
 static double octaves_of(const struct tri_shape *shape, double most)
 {
     double ratio2 = fmin(tri_longest2(shape), most * most) / shape->l[shape->shortest];
     return ratio2 > 1 ? 0.5 * tri_rough_log2(ratio2) : 0;
 }
 
-/* How many times a gap between segments that the shortest edge of the triangle bridges is longer than wide, as far as
- * the triangle reaches; 0 where there is none, or it is wider than `most`. */
+/* Returns the ratio of length to width of the gap between segments that the shortest edge of the triangle bridges,
+ * within the triangle; 0 if there is none or it is wider than `most`. */
 static double gap_of(const struct tri_mesh *mesh, tri_triangle_id t, const struct tri_shape *shape, double most)
 {
     double longest2 = tri_longest2(shape), width2 = shape->l[shape->shortest];
@@ -126,10 +126,10 @@ struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_qua
                               angle > 0 ? TRI_FINENESS / (TRI_NEVER - angle) : 0};
 }
 
-/* The number of squares of the feature size that fill the triangle, where features ask for smaller ones than sizes do.
- * A bad triangle takes a few for each octave between its shortest edge and its longest however small it is; between two
- * walls it takes more, since no size can grow there. A good one stays, unless sizes around do not let it; so does a
- * hopeless one. */
+/* Counts the squares of the feature size that fill the triangle, where features need smaller triangles than sizes
+ * do. A bad triangle adds a few for each octave between its shortest and longest edge, regardless of its size.
+ * Between two walls it adds more, since sizes cannot grow there. A good triangle adds nothing unless surrounding
+ * sizes require it, and a hopeless triangle adds nothing. */
 double tri_crowd_work(const struct tri_crowd *c, tri_triangle_id t, double asked)
 {
     const struct tri_mesh *mesh = c->mesh;
@@ -144,15 +144,15 @@ double tri_crowd_work(const struct tri_crowd *c, tri_triangle_id t, double asked
     return fmin(c->fineness * fmax(grown, filled), 1e15);
 }
 
-/* A part is halved across its longest edge until h is about linear in it. Of a linear h the mean of 1 / h^2 between two
- * places is 1 over the product of both: so a part counts by its corners. */
+/* A part is halved across its longest edge until h is nearly linear in it. For linear h, the mean of 1 / h^2 between
+ * two points is 1 over the product of both values of h. So a part is integrated from its corners. */
 
 struct place {
-    struct tri_point at;
-    double h;
+    struct tri_point at; /* position */
+    double h;            /* size there */
 };
 
-/* Index of the corner opposite the longest edge. */
+/* Returns the index of the corner opposite the longest edge. */
 static int opposite_longest(const struct place p[3])
 {
     double a = tri_distance2(p[1].at, p[2].at), b = tri_distance2(p[2].at, p[0].at);
@@ -170,7 +170,7 @@ static double count_by_corners(const struct tri_integrand *f, const struct place
     return mean > f->over ? area * (mean - f->over) : 0;
 }
 
-/* Is h nearly linear between these, or is the part worth nothing? */
+/* Is h nearly linear between these points, or is the part negligible? */
 static bool is_simple(const struct tri_integrand *f, const struct place p[3], int k, const struct place *middle,
                       double area)
 {

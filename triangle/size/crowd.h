@@ -1,4 +1,4 @@
-/* How many triangles angles ask for, from how crowded the features around a triangle are. */
+/* Estimates how many triangles the angle bound needs, from the density of the features around a triangle. */
 #ifndef TRIANGLE_SIZE_CROWD_H
 #define TRIANGLE_SIZE_CROWD_H
 
@@ -10,33 +10,33 @@
 #include "triangle/size/quality.h"
 
 struct tri_crowd {
-    const struct tri_mesh *mesh;
-    double sin2;     /* square of the sine of the angle bound */
-    double fineness; /* triangles for each square of the size of features; 0: there is no bound */
+    const struct tri_mesh *mesh; /* borrowed */
+    double sin2;     /* squared sine of the angle bound */
+    double fineness; /* triangles per square of the feature size; 0: no angle bound */
 };
 
-/* The mesh has been made ready for refinement (feature_size.h). Borrowed. */
+/* The mesh must have been prepared for refinement (feature_size.h). Borrowed. */
 struct tri_crowd tri_crowd_for(const struct tri_mesh *mesh, const struct tri_quality *quality);
 
-/* Triangles that angles make of one, beside itself and those that sizes ask for in it, `asked`. Cost:
- * logarithmic in the ratio of sizes, about that of one point. */
+/* Returns how many triangles the angle bound adds to one triangle, besides itself and the triangles needed for sizes
+ * (`asked`). The cost is logarithmic in the ratio of sizes, about as much as one insertion. */
 double tri_crowd_work(const struct tri_crowd *crowd, tri_triangle_id t, double asked);
 
-/* The integral of 1 / h^2 over a triangle: how many squares of the size h fill it. A mesh graded by h has that many
- * triangles, to a constant (Ruppert 1995, theorem 4). */
+/* The integrand 1 / h^2: its integral over a triangle is the number of squares of side h that fill it. A mesh graded
+ * by h has that many triangles, up to a constant (Ruppert 1995, theorem 4). */
 
 struct tri_integrand {
-    double (*at)(const void *user, struct tri_point q); /* h, above 0 and below 1e100 */
-    const void *user;
-    double over;  /* what counts is 1 / h^2 beyond this */
-    double large; /* parts of a larger area are divided in any case: h may vary inside them unseen */
-    double few;   /* parts that hold no more squares than this are not divided */
-    int deepest;  /* so many times a part is halved at most, whatever h does */
-    const int64_t *left; /* parts are halved while this is above 0; NULL: always */
-    bool at_least; /* parts in which h may vary count by their largest h */
+    double (*at)(const void *user, struct tri_point q); /* returns h, above 0 and below 1e100 */
+    const void *user;                                   /* passed to at */
+    double over;  /* only the part of 1 / h^2 above this value counts */
+    double large; /* parts with a larger area are always divided, because h may vary inside unnoticed */
+    double few;   /* parts with fewer squares than this are not divided */
+    int deepest;  /* maximum number of times a part is halved */
+    const int64_t *left; /* parts are only divided while this is above 0; NULL: no limit */
+    bool at_least; /* true: a part in which h may vary counts with its largest h */
 };
 
-/* Where h is smooth, O(log of the ratios of sizes) places are looked at. */
+/* Integrates over the triangle. If h is smooth, this evaluates O(log of the ratio of sizes) points. */
 double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3]);
 
 #endif

@@ -1,6 +1,6 @@
-/* The work of a triangle has two parts: triangles that sizes ask for inside it, and the rest, which angles ask for and
- * itself. Samples of the first part are taken from small pieces of large triangles, so that each lies where its
- * triangles will be; the rest lies at the shortest edge. */
+/* The work of a triangle has two parts: the triangles needed for sizes inside it, and the rest, which is the
+ * triangle itself and what the angle bound adds. Samples of the first part come from small pieces of large
+ * triangles, so that each lies where its triangles will be. Samples of the rest lie at the shortest edge. */
 #include "triangle/size/estimate.h"
 
 #include <assert.h>
@@ -14,17 +14,18 @@
 
 enum { DEEPEST_CUT = 12 };
 
-/* Calls of the caller's functions beside four for each triangle, and the factor by which samples of work take more. */
+/* The limit on calls of the caller's functions, besides four per triangle; the factor by which sampling work may
+ * exceed it. */
 enum { MOST_ASKED = 1 << 20, SAMPLES_ASKED = 8 };
 
-/* More than anybody will have, and no infinity: bounds may ask for any number. */
+/* More than any mesh has, but finite, since bounds may ask for any number. */
 static const double MOST_WORK = 1e15;
 
-/* How often the caller's functions are asked. */
+/* Limits the calls of the caller's functions. */
 struct budget {
-    int64_t left;  /* places that may be looked at before parts are taken as they are */
-    uint32_t step; /* see tri_stop_is_due */
-    bool stopped;  /* nothing is asked any more */
+    int64_t left;  /* points that may still be evaluated before parts are no longer divided */
+    uint32_t step; /* counter of tri_stop_is_due */
+    bool stopped;  /* true: a stop was requested; the functions are no longer called */
 };
 
 static struct budget budget_for(const struct tri_mesh *mesh, int64_t most)
@@ -32,14 +33,14 @@ static struct budget budget_for(const struct tri_mesh *mesh, int64_t most)
     return (struct budget){.left = 4 * (int64_t)mesh->n_triangles + most};
 }
 
-/* What work is estimated from. */
+/* The data from which work is estimated. */
 struct estimator {
-    struct tri_asked asked;
-    struct tri_crowd crowd;
-    struct budget *budget;
-    bool at_least; /* of what the caller's functions ask for, what is certain counts */
-    double large; /* the caller's functions are asked in pieces no larger than this */
-    double *known; /* [n_triangles] what sizes ask for in each; NULL: to be asked for */
+    struct tri_asked asked; /* the wanted sizes */
+    struct tri_crowd crowd; /* the angle bound */
+    struct budget *budget;  /* limit on calls */
+    bool at_least; /* true: only the certain part of the caller's sizes counts */
+    double large; /* largest area of a piece for which the caller's functions are evaluated */
+    double *known; /* [n_triangles] triangles needed for sizes in each; NULL: computed on request */
 };
 
 static struct tri_point middle(struct tri_point a, struct tri_point b)
@@ -47,7 +48,7 @@ static struct tri_point middle(struct tri_point a, struct tri_point b)
     return (struct tri_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
 }
 
-/* Piece i of a triangle in four. */
+/* Computes piece i of a triangle divided into four. */
 static void quarter(const struct tri_point p[3], int i, struct tri_point piece[3])
 {
     for (int k = 0; k < 3; k++)
@@ -60,12 +61,11 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
         p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* The caller's functions in a piece of a triangle, as a size h of which 1 / h^2 is the number of triangles on a unit of
- * area. */
+/* The caller's sizes in a piece of a triangle, as a size h with 1 / h^2 triangles per unit of area. */
 struct wish {
-    const struct tri_asked *asked;
+    const struct tri_asked *asked; /* the wanted sizes */
     const struct tri_point *piece; /* [3] */
-    struct budget *budget;
+    struct budget *budget;         /* limit on calls */
 };
 
 static double wished_at(const void *user, struct tri_point q)
@@ -79,7 +79,7 @@ static double wished_at(const void *user, struct tri_point q)
     return budget->stopped ? ANY : sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
 }
 
-/* Triangles that the caller's functions ask for in a piece. */
+/* Returns the number of triangles that the caller's functions need in a piece. */
 static double wished_in(const struct estimator *e, const struct tri_point p[3])
 {
     const struct wish wish = {&e->asked, p, e->budget};
@@ -90,7 +90,7 @@ static double wished_in(const struct estimator *e, const struct tri_point p[3])
     return tri_integral(&field, p);
 }
 
-/* Triangles that sizes ask for in a piece of a triangle of this region. */
+/* Returns the number of triangles needed for sizes in a piece of a triangle of this region. */
 static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3])
 {
     const double mean = tri_mean_over_bound(e->asked.quality);
@@ -100,7 +100,7 @@ static double asked_in(const struct estimator *e, tri_region_id region, const st
     return work < MOST_WORK ? work : MOST_WORK;
 }
 
-/* Of a triangle; 0 where its number is free. */
+/* The same for a triangle; 0 if its number is free. */
 static double asked_work(const struct estimator *e, tri_triangle_id t)
 {
     struct tri_point p[3];
@@ -118,7 +118,7 @@ static double rest_work(const struct estimator *e, tri_triangle_id t)
     return tri_is_live(&e->asked.mesh->tri[t]) ? fmax(1 - asked, 0) + tri_crowd_work(&e->crowd, t, asked) : 0;
 }
 
-/* What angles alone would make of it. */
+/* Returns the number of triangles that the angle bound alone would make of it. */
 static double angle_work(const struct estimator *e, tri_triangle_id t)
 {
     return tri_is_live(&e->asked.mesh->tri[t]) ? 1 + tri_crowd_work(&e->crowd, t, 0) : 0;
@@ -148,14 +148,14 @@ double tri_work_of(const struct tri_mesh *mesh, const struct tri_quality *qualit
     return asked_work(&here, t) + TRI_BAD_WORK * (1 + octaves);
 }
 
-/* What each n-th triangle adds to the work. */
+/* The work added by every step-th triangle. */
 struct works {
-    const struct estimator *e;
-    double (*of)(const struct estimator *e, tri_triangle_id t);
-    int32_t step, n; /* triangle step * i, i < n */
-    double *known;   /* [n] each, looked up by all threads; NULL: to be asked for */
-    double sum[TRI_MOST_SHARES];    /* of each share .. */
-    double urgent[TRI_MOST_SHARES]; /* .. and of triangles that break their bounds */
+    const struct estimator *e; /* the data */
+    double (*of)(const struct estimator *e, tri_triangle_id t); /* returns the work of a triangle */
+    int32_t step, n; /* triangles step * i for i < n */
+    double *known;   /* [n] the work of each, computed by all threads; NULL: computed on request */
+    double sum[TRI_MOST_SHARES];    /* [shares] the sum of each share */
+    double urgent[TRI_MOST_SHARES]; /* [shares] the same for triangles that violate their bounds */
 };
 
 static struct works asked_works(const struct estimator *e)
@@ -163,7 +163,7 @@ static struct works asked_works(const struct estimator *e)
     return (struct works){.e = e, .of = asked_work, .step = 1, .n = e->asked.mesh->n_triangles};
 }
 
-/* Triangles lie along a curve, so that every n-th is a fair sample. */
+/* Triangles are sorted along a curve, so every step-th triangle is a representative sample. */
 static struct works sampled_works(const struct estimator *e, double (*of)(const struct estimator *, tri_triangle_id))
 {
     const int32_t n = e->asked.mesh->n_triangles;
@@ -191,13 +191,13 @@ static void sum_share(void *context, size_t share)
     w->urgent[share] = urgent;
 }
 
-/* The caller's functions: whether threads may ask them at once is not known here. */
+/* Returns NULL if the work depends on the caller's functions, which may not be safe to call from several threads. */
 static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
 {
     return tri_asks_caller(w->e->asked.quality) ? NULL : executor;
 }
 
-/* In shares that the mesh decides: the same for any number of threads. */
+/* Sums over shares that depend on the mesh only, so the result does not depend on the number of threads. */
 static double sum_of(struct works w, const struct tri_executor *executor, double *urgent)
 {
     double sum = 0;
@@ -217,7 +217,8 @@ static void know_share(void *context, size_t share)
         w->known[i] = w->of(w->e, w->step * i);
 }
 
-/* All of them; to be freed. NULL where there is no memory: each is asked for when it is needed. */
+/* Computes the work of all triangles. The caller frees the result. NULL if memory ran out: each is then computed on
+ * request. */
 static double *know_all(struct works w, const struct tri_executor *executor)
 {
     w.known = malloc(((size_t)w.n + 1) * sizeof *w.known);
@@ -226,13 +227,13 @@ static double *know_all(struct works w, const struct tri_executor *executor)
     return w.known;
 }
 
-/* Are there sizes, beside a bound on angles that is dear to mend? */
+/* Are there sizes, and an angle bound that is expensive to reach? */
 static bool may_come_first(const struct tri_quality *quality)
 {
     return tri_worked_angle(quality) > TRI_EASY_ANGLE && tri_has_sizes(quality);
 }
 
-/* Is what sizes ask for far more than what angles would make? */
+/* Do sizes need far more triangles than angles? */
 static bool outweighs_angles(const struct estimator *e, double asked, const struct tri_executor *executor)
 {
     double ignored = 0;
@@ -249,7 +250,8 @@ bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_quality 
     return outweighs_angles(&e, sum_of(asked_works(&e), executor, &ignored), executor);
 }
 
-/* Where sizes come first, angles are mended in a mesh that is there already, which takes TRI_AGAIN more of it. */
+/* If sizes come first, angles are fixed in a mesh that is already fine. This adds a share of triangles that depends
+ * on TRI_AGAIN. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality,
                     const struct tri_executor *executor, double *sure)
 {
@@ -267,7 +269,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
     return (1 + again * again) * (asked + rest);
 }
 
-/* Of functions a rough look will do: parts may be larger than for the estimate. */
+/* For functions a rough estimate suffices, so the pieces may be larger than in tri_estimate. */
 double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *quality,
                        const struct tri_executor *executor)
 {
@@ -297,13 +299,14 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_q
                     tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
-/* Who is given the samples. */
+/* The receiver of the samples. */
 struct receiver {
-    tri_take_work *take;
-    void *user;
+    tri_take_work *take; /* called for each sample */
+    void *user;          /* passed to take */
 };
 
-/* Samples a triangle's work, cut into four as long as a piece holds more than `grain`; depth bounds the recursion. */
+/* Samples the work of a triangle, dividing it into four while a piece holds more than `grain`. depth: limit on the
+ * recursion. */
 static bool sample_triangle(const struct receiver *to, const struct estimator *e, tri_region_id region,
                             const struct tri_point p[3], double work, double grain, int depth)
 {
@@ -322,7 +325,7 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
     return true;
 }
 
-/* Small pieces of work are gathered until they are worth a sample. */
+/* Small amounts of work are accumulated until they are worth a sample. */
 static bool sample_rest(const struct receiver *to, const struct works *rest, double grain)
 {
     const struct tri_mesh *mesh = rest->e->asked.mesh;

@@ -1,18 +1,16 @@
-/* The size of features, and why points for angles cannot run away.
+/* Feature sizes, and why refinement for angles terminates.
  *
  * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995):
- *   - a vertex of the input: its distance from the vertices and segments that its triangles reach;
- *   - a point p for a triangle with shortest edge ab: the lesser of s(a) + TRI_SLOPE * |ap| and s(b) + TRI_SLOPE *
- *     |bp|, inherited as insertion radii are (Shewchuk 2002);
- *   - a split point: the same from all vertices around it, but no more than its distance from other features;
- *   - a point inserted because of sizes: no more than its distance from its neighbours.
- * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches). Neither are widths of
- * spaces that are not filled (gap.h), nor those of their ends.
- *
+ *   - an input vertex: its distance from the vertices and segments of its triangles;
+ *   - a point p for a triangle with shortest edge ab: the smaller of s(a) + TRI_SLOPE * |ap| and s(b) + TRI_SLOPE *
+ *     |bp|, inherited like insertion radii (Shewchuk 2002);
+ *   - a split point: the same from all vertices around it, but at most its distance from other features;
+ *   - a point inserted for sizes: at most its distance from its neighbours.
+ * Distances that coordinates do not resolve are not features (limits.shortest2, tri_touches). Neither are the widths
+ * of unfilled gaps (gap.h) and of their ends.
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / TRI_SHRINK is not refined for its angle.
- *
- * THEOREM (docs/theory.md, sizes). Points for angles are no more than C * integral of dx / s(x)^2, C independent of the
- * bound and of the order of insertion: to a constant as many as Ruppert's algorithm inserts. */
+ * THEOREM (docs/theory.md, sizes). At most C * integral of dx / s(x)^2 points are inserted for angles, with C
+ * independent of the bound and of the insertion order. Up to a constant, Ruppert's algorithm inserts as many. */
 #include "triangle/size/feature_size.h"
 
 #include <assert.h>
@@ -23,15 +21,15 @@
 #include "triangle/size/gap.h"
 #include "triangle/tunables.h"
 
-/* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
+/* Does the corner project onto the opposite edge rather than beyond one of its ends? Arguments are squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
 
-/* Estimates in shares of the triangles. Each share owns a range of vertices: triangles are sorted along a curve by
- * their vertices, so each share begins with a higher vertex than the last one. Corners that another share owns are
- * looked at afterwards; the least of all estimates is the same in any order. */
+/* Parallel estimation over shares of the triangles. Each share owns a range of vertices: triangles are sorted along
+ * a curve by their vertices, so each share begins with a higher vertex than the previous one. Corners owned by
+ * another share are processed afterwards; the minimum of all estimates does not depend on the order. */
 struct estimate {
-    struct tri_mesh *mesh;
-    tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
+    struct tri_mesh *mesh;                  /* sizes go into mesh->feature */
+    tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i owns the vertices own[i] .. own[i + 1] - 1 */
 };
 
 static void divide_vertices(struct estimate *e)
@@ -46,7 +44,8 @@ static void divide_vertices(struct estimate *e)
     e->own[shares] = e->mesh->n_vertices;
 }
 
-/* The least of its distances from the other corners, and from the wall opposite to it, that are features. */
+/* Lowers the size of corner k to its smallest distance from the other corners and from the opposite wall, as far as
+ * these distances are features. */
 static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
 {
     double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
@@ -64,7 +63,7 @@ static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
     return v >= e->own[share] && v < e->own[share + 1];
 }
 
-/* The share's triangles at its own vertices, or at those of other shares. */
+/* Processes the share's triangles at its own vertices, or (`own` false) at vertices of other shares. */
 static void estimate_share(const struct estimate *e, size_t share, bool own)
 {
     struct tri_mesh *mesh = e->mesh;
@@ -89,7 +88,7 @@ static void estimate_own(void *context, size_t share)
     estimate_share(e, share, true);
 }
 
-/* Vertices of which no distance can be resolved. */
+/* Sets the size of vertices that have no resolvable distance. */
 static void settle_own(void *context, size_t share)
 {
     const struct estimate *e = context;
@@ -117,7 +116,7 @@ double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
     return sized ? tri_lesser(tri_lesser(from_a, from_b), inherited) : inherited;
 }
 
-/* What vertex v, at `distance` from a point on parent p, says about the size there. */
+/* Returns the size at point `at` on parent p that follows from vertex v at this distance. */
 static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, tri_vertex_id v,
                         double distance)
 {
@@ -130,8 +129,8 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
     return is_feature ? distance : inherited;
 }
 
-/* The distance of the new point from a subsegment on its cavity's boundary; infinity where the point does not lie
- * beside the subsegment, or the space between is not filled. */
+/* Returns the distance of the new point from a subsegment on its cavity's boundary; infinity if the point does not
+ * project onto the subsegment or the gap between them is not filled. */
 static double size_from_wall(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, int32_t wall)
 {
     const struct tri_subsegment *sub = &mesh->sub[wall];
@@ -167,29 +166,30 @@ bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_i
     return size * size > TRI_SHRINK * TRI_SHRINK * l2;
 }
 
-/* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
+/* tri_refine_prepare computes, before the first insertion and in this order:
  *
- *   surface     of the attributes of vertices (surface.h)
- *   acute       input vertices at which two subsegments meet at less than 60 degrees
- *   incidence   the parents that end at each vertex, in order of direction where they are many
- *   limits      the shortest edge that coordinates can carry
- *   gaps        the dearest narrow space that will be filled, by all of the above (gap.h)
- *   features    how far each vertex is from what is around it, by all of the above
+ *   surface: of the attributes of vertices (surface.h)
+ *   acute: input vertices at which two subsegments meet at less than 60 degrees
+ *   incidence: the parents that end at each vertex, sorted by direction if there are many
+ *   limits: the shortest edge that coordinates can resolve
+ *   gaps: the most expensive narrow gap that will be filled, from all of the above (gap.h)
+ *   features: the distance of each vertex from its surroundings, from all of the above
  *
- * RULE (rounding). Distances of 32 to 256 resolutions are features if at most TRI_FEW_BLURRED vertices are so near to
- * another one or to a segment. If more are, lines were computed twice, or points that belong on them: then such
- * distances are rounding. Each that counts as a feature takes some 100 to 400 triangles.
+ * RULE (rounding). Distances of 32 to 256 resolutions are features if at most TRI_FEW_BLURRED vertices are that
+ * close to another vertex or a segment. If there are more, the input probably contains lines or points that were
+ * computed twice, and such distances are rounding errors. Each one that counts as a feature needs some 100 to 400
+ * triangles.
  *
- * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
+ * INVARIANT. Refinement only reads these values. The only exception: it sets the sizes of vertices that it adds. */
 
 static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
 
-/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
- * the outside comes first. */
+/* Returns the next subsegment counter-clockwise after s around its end k, inside the mesh; TRI_NONE if the outside
+ * comes first. */
 static tri_sub_id next_around(const struct tri_mesh *mesh, tri_sub_id s, int k)
 {
     tri_halfedge code = mesh->sub[s].side[k];
-    while (code != TRI_NONE) { /* edge `code` starts at the vertex, counter-clockwise in its triangle */
+    while (code != TRI_NONE) { /* edge `code` starts at the vertex and is counter-clockwise in its triangle */
         tri_link link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
         if (link < 0)
             return ~link;
@@ -223,8 +223,8 @@ static double largest_coordinate(const struct tri_mesh *mesh)
     return size;
 }
 
-/* Gaps and sizes, if what is nearer than this is no feature. Returns how many vertices have features up to TRI_BLUR
- * times as far (what no triangle uses has the least size). */
+/* Computes gaps and sizes; distances below `rounding` are not features. Returns the number of vertices with sizes
+ * above `rounding` and below TRI_BLUR times that. (Vertices without triangles have the smallest size.) */
 static int32_t find_features(struct tri_mesh *mesh, double rounding, const struct tri_executor *executor)
 {
     int32_t n = 0;

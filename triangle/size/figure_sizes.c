@@ -1,17 +1,17 @@
-/* Lengths that the figure itself asks for: bounds on the areas of regions, curves, channels.
+/* Lengths that follow from the shape of the input: area bounds of regions, curves, channels.
  *
- * CURVES. The circle through three vertices in a row has their Menger curvature (K. Menger, Untersuchungen über
+ * CURVES. The circle through three consecutive vertices gives their Menger curvature (K. Menger, Untersuchungen über
  * allgemeine Metrik, Mathematische Annalen 103, 1930).
  *
- * CHANNELS. How wide it is before a wall is the diameter of the largest ball that touches the wall there and has none
- * in it: local thickness (Hildebrand & Rüegsegger, Journal of Microscopy 185, 1997). It is found by shrinking: while a
- * place of a wall lies in the ball, that becomes the one which touches there too (Ma, Bae & Choi, The Visual Computer
- * 28, 2012). Once it has touched a wall across, it must not shrink into the roughness of its own or into a corner: it
- * ends where the next place is beside it (Peters & Ledoux, Computers & Geosciences 90, 2016), and what is near along
- * the boundary, too, is not across. */
+ * CHANNELS. The width at a wall is the diameter of the largest ball that touches the wall there and contains no
+ * wall: local thickness (Hildebrand & Rüegsegger, Journal of Microscopy 185, 1997). The ball is found by shrinking:
+ * while it contains a point of a wall, it is replaced by the ball that touches that point as well (Ma, Bae & Choi,
+ * The Visual Computer 28, 2012). Once it touches a wall across, it must not shrink further into a corner or into the
+ * roughness of its own wall. So it stops when the next point lies beside it (Peters & Ledoux, Computers &
+ * Geosciences 90, 2016). Walls that are near along the boundary do not count as across. */
 #include "triangle/size/sources.h"
 
-static const double USUAL_GROWTH = 0.2; /* if there is no limit */
+static const double USUAL_GROWTH = 0.2; /* the growth if there is no limit */
 
 static double growth_of(const struct tri_size_frame *frame)
 {
@@ -25,7 +25,7 @@ static enum tri_status no_memory(struct tri_error *error)
 
 /* --- regions */
 
-/* The bound of the region of a triangle; of none: infinite. */
+/* Returns the area bound of the triangle's region; infinite if it has none. */
 static double area_in(const struct tri_mesh *mesh, tri_triangle_id t)
 {
     const double area = mesh->regions[mesh->tri[t].region].max_area;
@@ -51,7 +51,7 @@ enum tri_status tri_near_regions(struct tri_near *near, const struct tri_size_fr
 
 /* --- curves */
 
-/* The length asked for at b; infinite where the curve is straight, or has a corner. */
+/* Returns the wanted length at b; infinite if the curve is straight or has a corner there. */
 static double length_by_circle(struct tri_point a, struct tri_point b, struct tri_point c, double n)
 {
     const double TWICE_PI = 6.283185307179586, CORNER = 0.5; /* cosine of 60 degrees */
@@ -61,7 +61,8 @@ static double length_by_circle(struct tri_point a, struct tri_point b, struct tr
     return cross > 0 && ux * vx + uy * vy >= CORNER * u * v ? TWICE_PI * (u * v * w / (2 * cross)) / n : HUGE_VAL;
 }
 
-/* The vertices before and behind each on the curve through it, TRI_NONE twice where no single one goes through. */
+/* Returns for each vertex its two neighbours on the curve through it, or TRI_NONE twice if there is not exactly one
+ * such curve. */
 static tri_vertex_id (*chains_of(const struct tri_mesh *mesh))[2]
 {
     tri_vertex_id(*chain)[2] = malloc(((size_t)mesh->n_vertices + 1) * sizeof *chain);
@@ -103,43 +104,44 @@ enum tri_status tri_near_curves(struct tri_near *near, const struct tri_size_fra
 
 /* --- channels */
 
-/* A wall that is no farther away along the boundary than so many times straight across is the same one, if rough. */
+/* A wall whose distance along the boundary is at most FAR times the straight distance counts as the same, rough
+ * wall. */
 static const double FAR = 1.5;
 
 enum { MOST_SHRINKINGS = 40, DEEPEST = 12, MOST_UNSEEN = 2 };
 
-/* Where a wall is on a chain of them. */
+/* The position of a wall in its chain of walls. */
 struct along {
-    int32_t chain;
-    double place; /* of its first end .. */
-    double sign;  /* .. and -1 where it runs against the chain, else 1 */
+    int32_t chain; /* number of the chain */
+    double place; /* of its first end, along the chain */
+    double sign;  /* 1; -1: the wall runs against the chain */
 };
 
 struct channels {
-    const struct tri_size_frame *frame;
-    struct tri_near walls; /* of length 0 and growth 1 */
-    tri_sub_id *sub;       /* [walls.n] */
-    struct along *along;   /* [walls.n] */
-    double *around;        /* [walls.n] of a chain that is closed, its length; else infinite */
-    struct tri_near *near; /* where the lengths go */
-    double n;
-    uint32_t steps;
-    enum tri_status status;
+    const struct tri_size_frame *frame; /* data common to all sources */
+    struct tri_near walls; /* segments with length 0 and growth 1, for distances */
+    tri_sub_id *sub;       /* [walls.n] subsegment of each wall */
+    struct along *along;   /* [walls.n] position in its chain */
+    double *around;        /* [walls.n] length of each closed chain; infinite for open ones */
+    struct tri_near *near; /* receives the lengths */
+    double n;              /* wanted number of edges across */
+    uint32_t steps;        /* counter of tri_stop_is_due */
+    enum tri_status status; /* first failure */
 };
 
-/* Is it a boundary, or the border of two regions? */
+/* Is the subsegment on the boundary, or between two regions? */
 static bool is_wall(const struct tri_mesh *mesh, const struct tri_subsegment *s)
 {
     return tri_is_boundary(s) || mesh->tri[tri_of(s->side[0])].region != mesh->tri[tri_of(s->side[1])].region;
 }
 
-/* The wall that goes on from wall `at` at its end v, if one alone does; -1: none. */
+/* Returns the wall that continues wall `at` at its end v, or -1 if there is none or more than one. */
 static int32_t wall_behind(const int32_t (*wall)[3], int32_t at, tri_vertex_id v)
 {
     return wall[v][2] != 2 ? -1 : wall[v][0] == at ? wall[v][1] : wall[v][0];
 }
 
-/* Goes along the chain of a wall, from its end v on, and gives all walls their places on it. */
+/* Walks along the chain of a wall, starting from its end v, and sets the positions of all walls in it. */
 static void follow(struct channels *c, const int32_t (*wall)[3], int32_t first, tri_vertex_id v, int32_t chain)
 {
     const struct tri_subsegment *sub = c->frame->mesh->sub;
@@ -157,11 +159,12 @@ static void follow(struct channels *c, const int32_t (*wall)[3], int32_t first, 
     c->around[chain] = at == first ? place : HUGE_VAL;
 }
 
-/* Puts all walls into chains. */
+/* Assigns all walls to chains. Returns false if memory ran out. */
 static bool find_chains(struct channels *c)
 {
     const struct tri_mesh *mesh = c->frame->mesh;
-    int32_t(*wall)[3] = calloc((size_t)mesh->n_vertices + 1, sizeof *wall); /* two at each vertex, and how many */
+    int32_t(*wall)[3] = calloc((size_t)mesh->n_vertices + 1, sizeof *wall); /* two walls at each vertex, and the
+                                                                               number of walls */
     for (int32_t k = 0; wall && k < c->walls.n; k++)
         for (int end = 0; end < 2; end++) {
             int32_t *at = wall[mesh->sub[c->sub[k]].v[end]];
@@ -169,7 +172,7 @@ static bool find_chains(struct channels *c)
             c->along[k].chain = -1;
         }
     int32_t chains = 0;
-    for (int closed = 0; wall && closed < 2; closed++) /* open ones from their ends */
+    for (int closed = 0; wall && closed < 2; closed++) /* open chains from their ends first */
         for (int32_t k = 0; k < c->walls.n; k++)
             for (int end = 0; end < 2; end++) {
                 const tri_vertex_id v = mesh->sub[c->sub[k]].v[end];
@@ -180,14 +183,15 @@ static bool find_chains(struct channels *c)
     return wall;
 }
 
-/* Are they on one segment, or on two with a common end? */
+/* Are the subsegments on the same segment, or on two with a common end? */
 static bool meet(const struct tri_mesh *mesh, tri_sub_id a, tri_sub_id b)
 {
     const tri_vertex_id *v = mesh->parents[mesh->sub[a].parent].v, *w = mesh->parents[mesh->sub[b].parent].v;
     return v[0] == w[0] || v[0] == w[1] || v[1] == w[0] || v[1] == w[1];
 }
 
-/* How far is it along the chain from a place of a wall to one of another, each by its distance from the first end? */
+/* Returns the distance along the chain between points on two walls. at_a, at_b: distance of each point from its
+ * wall's first end. */
 static double way_between(const struct channels *c, int32_t a, double at_a, int32_t b, double at_b)
 {
     const struct along *p = &c->along[a], *q = &c->along[b];
@@ -195,8 +199,8 @@ static double way_between(const struct channels *c, int32_t a, double at_a, int3
     return p->chain == q->chain ? tri_lesser(way, c->around[p->chain] - way) : HUGE_VAL;
 }
 
-/* The radius of the ball that touches a wall at x, with this normal inwards, and another one across, seen from the
- * centre; infinite: there is none. */
+/* Returns the radius of the ball that touches the wall at x and another wall across from it, as seen from its
+ * centre; infinite if there is none. normal: inward unit normal at x. */
 static double shrink(const struct channels *c, int32_t wall, struct tri_point x, struct tri_point normal)
 {
     const double ACROSS = -0.5, BESIDE = 0.5; /* cosines of 120 and 60 degrees */
@@ -216,14 +220,15 @@ static double shrink(const struct channels *c, int32_t wall, struct tri_point x,
         if (next - ahead <= ACROSS * next && !meet(c->frame->mesh, c->sub[wall], c->sub[other]) &&
             way_between(c, wall, at_x, other, at_q) > FAR * sqrt(l2))
             found = next;
-        else if (next > found / 2) /* that was on the way to a corner */
+        else if (next > found / 2) /* the found ball was only a step towards a corner */
             found = HUGE_VAL;
     }
     return found;
 }
 
-/* Lengths before a piece of a wall: by the ball amid it, and by those of its halves if it is long against that. Where
- * nothing is across, something may be beside that place: `unseen` pieces around were in vain. */
+/* Adds lengths in front of a piece of a wall: from the ball at its middle and, if the piece is long compared with
+ * the ball, from balls at its halves. If nothing is across from the middle, the halves are still tried. unseen:
+ * number of successive pieces without a ball. */
 static void measure(struct channels *c, int32_t wall, struct tri_point a, struct tri_point b, struct tri_point normal,
                     int depth, int unseen)
 {
@@ -247,7 +252,7 @@ static void measure_sides(struct channels *c, int32_t wall)
     const struct tri_subsegment *sub = &c->frame->mesh->sub[c->sub[wall]];
     const struct tri_point a = c->frame->mesh->xy[sub->v[0]], b = c->frame->mesh->xy[sub->v[1]];
     const double l = sqrt(tri_distance2(a, b));
-    for (int side = 0; side < 2; side++) { /* the left one first */
+    for (int side = 0; side < 2; side++) { /* the left side first */
         const double turn = (side ? -1 : 1) / l;
         if (sub->side[side] != TRI_NONE)
             measure(c, wall, a, b, (struct tri_point){(a.y - b.y) * turn, (b.x - a.x) * turn}, 0, 0);

@@ -1,4 +1,4 @@
-/* Narrow spaces between two segments, and which of them are filled. */
+/* Narrow gaps between two segments, and the decision which of them are filled. */
 #include "triangle/size/gap.h"
 
 #include <assert.h>
@@ -6,9 +6,9 @@
 #include "triangle/mesh/parents.h"
 #include "triangle/tunables.h"
 
-/* The integral of 1 / width along the shorter one. If they spread by no more than the width they have, that is about
- * length / width; else each octave of width takes about length / spread. Widths that coordinates do not resolve count
- * as the least one that they do. */
+/* Approximates the integral of 1 / width along the shorter segment. If the width grows by at most itself, this is
+ * about length / width. Otherwise each octave of width needs about length / spread. Unresolved widths are replaced
+ * by the smallest resolved width. */
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v)
 {
@@ -34,7 +34,8 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
 }
 
-/* The cost of the dearest space between the parent, which runs through u, and one that bounds triangle v, u, w at v. */
+/* Returns the cost of the most expensive gap between the parent, which passes through u, and a parent that bounds
+ * triangle v, u, w at v. */
 static double dearest_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id w,
                              tri_vertex_id v, bool apart)
 {
@@ -62,7 +63,7 @@ bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
 
-/* Does q lie beside the parent, rather than before its start or beyond its end? */
+/* Does q project onto the parent, rather than before its start or beyond its end? */
 static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id q)
 {
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], at = mesh->xy[q];
@@ -70,10 +71,10 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
     return along >= 0 && along <= x * x + y * y;
 }
 
-/* Does triangle u, v, w lie on one side of the parent through u? Amid the parent it does, since triangles cross none.
- * At an end it may lie behind that end, or go round it with v and w on different sides, so that no more than its corner
- * touches the space on either. What is nearer to the parent's line than an edge may be short counts as on it: split
- * points lie beside it by rounding. w == u or w == v: there is no triangle to ask about. */
+/* Does triangle u, v, w lie on one side of the parent through u? In the parent's interior it always does, since
+ * triangles cross no segment. At the parent's end u, the triangle may lie beyond the end, or around it with v and w
+ * on different sides, so that it only touches the gap with its corner. Points closer to the parent's line than the
+ * shortest edge count as on it, because rounded split points lie beside it. w == u or w == v: no triangle is tested. */
 static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
                        tri_vertex_id w)
 {
@@ -86,15 +87,15 @@ static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, 
     return x * (b.x - o.x) + y * (b.y - o.y) > 0 && !goes_round;
 }
 
-/* What an edge bridges: the cost of filling the dearest space, 0 where there is none; is there a spike among them? */
+/* What an edge bridges: the cost of the most expensive gap (0: none), and whether one of the gaps is a spike. */
 struct gap {
-    double cost;
-    bool spike;
+    double cost; /* of the most expensive gap; 0: none */
+    bool spike;  /* true: one of the gaps is a spike */
 };
 
-/* Does filling the space between p and another parent, which an edge uv bridges, cost less than this? A sufficient
- * test, true is certain, false is not: see tri_filling_cost, where the shorter one is no longer than p and log2(1 + x)
- * < 1.5 x. */
+/* Does filling any gap between p and another parent that edge uv bridges cost less than this? If it returns true,
+ * this is certain; false may be wrong. Uses the formula of tri_filling_cost with the shorter segment no longer than
+ * p, and log2(1 + x) < 1.5 x. */
 static bool is_cheaper(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
                        double cost)
 {
@@ -103,8 +104,8 @@ static bool is_cheaper(const struct tri_mesh *mesh, const struct tri_parent *p, 
     return 2 * (x * x + y * y) < cost * fabs(x * (to.y - from.y) - y * (to.x - from.x));
 }
 
-/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in, or any that it bridges,
- * if w == v; what costs less than `least` need not be among them. */
+/* Returns the gaps between two parents that edge uv bridges and that contain the triangle with apex w, or (w == v)
+ * all gaps that it bridges. Gaps with a cost below `least` may be omitted. */
 static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w,
                               double least)
 {
@@ -124,7 +125,7 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
             if (pu[i] == pv[k] || is_end(q, u) || !lies_aside(mesh, p, u, v, w) || !lies_aside(mesh, q, v, u, w))
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
-                continue; /* one behind the other, as in a smooth curve */
+                continue; /* one lies behind the other, as in a smooth curve */
             double cost = tri_filling_cost(mesh, pu[i], pv[k], mesh->xy[u], mesh->xy[v]);
             gap.cost = cost > gap.cost ? cost : gap.cost;
             gap.spike |= tri_corner_between(mesh, pu[i], pv[k]) == TRI_SPIKE;
@@ -165,9 +166,9 @@ bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, co
 
 enum { OCTAVES = 64 };
 
-/* About so many points it takes to fill the space that a triangle of the input lies in, where it is dear. Where other
- * vertices lie between its two sides, as on the one that closes its end, no edge bridges it: so the apexes on the two
- * sides of each edge count, too. */
+/* Returns the approximate number of points needed to fill the gap that contains a triangle of the input, if it is
+ * expensive. If other vertices lie between the gap's two sides, for example at its closed end, no edge bridges it.
+ * Therefore the pairs of apexes on both sides of each edge are tested as well. */
 static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
     const double LEAST = 1 << TRI_CHEAP_GAP;
@@ -186,7 +187,7 @@ static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
     return demand;
 }
 
-/* 2^(octave - 1) <= cost < 2^octave; beyond the last one, the last one. */
+/* Returns the octave with 2^(octave - 1) <= cost < 2^octave, limited to the last one. */
 static int octave_of(double cost)
 {
     int octave;
@@ -194,14 +195,15 @@ static int octave_of(double cost)
     return octave < OCTAVES ? octave : OCTAVES - 1;
 }
 
-/* Costs and numbers of the triangles that are not cheap, by octave of their cost, in a share of the mesh. */
+/* Costs and numbers of the triangles that are not cheap in a share of the mesh, by octave of their cost. */
 struct demand {
-    double cost[OCTAVES], count[OCTAVES];
+    double cost[OCTAVES], count[OCTAVES]; /* sum of costs; number of triangles */
 };
 
 struct demands {
-    const struct tri_mesh *mesh;
-    struct demand share[TRI_MOST_SHARES]; /* added up in their order: the same for any number of threads */
+    const struct tri_mesh *mesh;          /* borrowed */
+    struct demand share[TRI_MOST_SHARES]; /* summed in this order, so the result does not depend on the number of
+                                             threads */
 };
 
 static void demand_share(void *context, size_t index)
@@ -222,7 +224,7 @@ static void demand_share(void *context, size_t index)
 
 static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    struct demands d; /* each task clears its own share: all would take longer than a small mesh */
+    struct demands d; /* each task clears its own share, since clearing all would take too long for a small mesh */
     d.mesh = mesh;
     tri_execute(executor, tri_shares(mesh->n_triangles), demand_share, &d);
     for (size_t i = 1; i < tri_shares(mesh->n_triangles); i++)
@@ -233,14 +235,14 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
     return d.share[0];
 }
 
-/* Chooses the narrow spaces that are filled, by their cost.
+/* Decides by cost which narrow gaps are filled.
  *
- * The demand counts a space once for every triangle in it. If all demands come to at most TRI_ALL_GAPS, every space
- * is filled: thin layers and slits of ordinary parts. Else there are spikes of no width, or lines a few units in the
- * last place apart, and the cheap spaces are filled: those up to the largest power of two, 2^TRI_CHEAP_GAP or more,
- * for which filling every space as far as this cost goes takes at most TRI_GAP_ALLOWANCE points and
- * TRI_GAP_PER_VERTEX for each vertex of the input (or each end of a segment if these are fewer). A dearer space is
- * still filled where it is wide. Vertices in a space may hide it here; whether hidden or not, no space takes more
+ * The demand counts a gap once for every triangle in it. If the total demand is at most TRI_ALL_GAPS, every gap is
+ * filled: these are thin layers and slits of ordinary parts. Otherwise there are spikes of nearly zero width, or
+ * lines a few ulps apart, and only cheap gaps are filled. The cost limit is the largest power of two, at least
+ * 2^TRI_CHEAP_GAP, for which filling every gap up to this cost takes at most TRI_GAP_ALLOWANCE points plus
+ * TRI_GAP_PER_VERTEX for each input vertex (or each segment end, if these are fewer). A more expensive gap is still
+ * filled in its wide part. Vertices inside a gap may hide it from this estimate. In any case no gap takes more
  * points than limits.gap_points. */
 void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {

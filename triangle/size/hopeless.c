@@ -1,21 +1,22 @@
-/* Rules that make refinement end on any PSLG, beside the order of the loop (refine.c).
+/* Rules that make refinement terminate on any PSLG, in addition to the order of the loop (refine.c).
  *
- * THEOREM (Chew 1993; Shewchuk 2002; Rand 2011). Refinement with bounds up to 28.6 degrees ends where segments meet at
- * 60 degrees or more. RULE. A triangle stays if its shortest edge is of one of these kinds (docs/theory.md, the rule):
- *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
- *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the angle of the input dictates its length;
- *   - it joins the sides of a spike, two segments that meet at less than 1 / TRI_SHARP;
- *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
- *     width each (tri_choose_gaps), inside or at its end;
- *   - it is shorter than limits.shortest2 says: rounding;
- *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles.
- * Triangles that stay are counted by reason (tri_count_bad). */
+ * THEOREM (Chew 1993; Shewchuk 2002; Rand 2011). Refinement for bounds up to 28.6 degrees terminates if segments
+ * meet at 60 degrees or more. RULE. A triangle is not refined for its angle if its shortest edge (docs/theory.md,
+ * the rule)
+ *   - joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
+ *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the input angle dictates its length;
+ *   - joins the sides of a spike, two segments that meet at less than 1 / TRI_SHARP;
+ *   - bridges a gap between two segments, or the end of a gap, and filling it (about length / width points) would
+ *     take more points than the mesh can afford (tri_choose_gaps);
+ *   - is below limits.shortest2 and may be a rounding error;
+ *   - has run away (feature_size.c): above 28.6 degrees, new points may create ever smaller bad triangles.
+ * Such triangles are counted by reason (tri_count_bad). */
 #include "triangle/size/hopeless.h"
 
 #include "triangle/size/feature_size.h"
 #include "triangle/size/gap.h"
 
-/* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
+/* Returns the common vertex of the parents on which u and v lie; TRI_NONE if they do not meet or are the same. */
 static tri_vertex_id apex_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
 {
     tri_parent_id pu = mesh->on[u], pv = mesh->on[v];
@@ -26,8 +27,8 @@ static tri_vertex_id apex_between(const struct tri_mesh *mesh, tri_vertex_id u, 
     return TRI_NONE;
 }
 
-/* Do u and v lie on two segments that meet at a vertex, at the same distance from it? Then the angle there dictates how
- * far apart they are (Miller, Pav & Walkington 2003). */
+/* Do u and v lie at the same distance from the common vertex of two segments? Then the angle there dictates their
+ * distance (Miller, Pav & Walkington 2003). */
 static bool on_one_shell(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, double uv2)
 {
     tri_vertex_id apex = apex_between(mesh, u, v);

@@ -1,4 +1,4 @@
-/* How long edges shall be: the sources (sources.h), each limited in its gradient, and the least of what they say. */
+/* Wanted edge lengths: makes the sources (sources.h) and takes their minimum. */
 #include "triangle/size/lengths.h"
 
 #include <stdio.h>
@@ -11,17 +11,17 @@ enum { NOTE = 256 };
 static const double USUAL_GRADATION = 0.2;
 
 struct tri_lengths {
-    double number;         /* the least that holds everywhere; infinity: none */
+    double number;         /* smallest length that holds everywhere; infinity: none */
     double min_size;       /* 0: none */
-    struct tri_near near;  /* all segments that have lengths */
+    struct tri_near near;  /* all segments and points with lengths */
     struct tri_raster *raster; /* [n_rasters] */
     struct tri_background *background; /* [n_backgrounds] */
     struct tri_sampled *sampled; /* [n_sampled] */
-    int64_t n_rasters, n_backgrounds, n_sampled;
-    char note[NOTE];
+    int64_t n_rasters, n_backgrounds, n_sampled; /* numbers of sources */
+    char note[NOTE];                             /* warning for the user; "": none */
 };
 
-/* --- checks */
+/* --- validation */
 
 static bool is_finite_above(double x, double least) { return x > least && x < HUGE_VAL; }
 
@@ -82,7 +82,7 @@ static enum tri_status check_field(const struct tri_size_field *f, struct tri_er
     return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "its kind is %d", (int)f->kind);
 }
 
-/* What is wrong with a field, with its number and kind. */
+/* Reports the error of a field, with the field's index and kind. */
 static enum tri_status blame(const struct tri_sizes *sizes, int64_t k, const struct tri_error *own,
                              struct tri_error *error)
 {
@@ -117,21 +117,21 @@ enum tri_status tri_sizes_check(const struct tri_sizes *s, struct tri_error *err
     return TRI_OK;
 }
 
-/* Sources that are no number. */
+/* Returns the number of sources whose length is not constant. */
 static int64_t count_sources(const struct tri_lengths *l)
 {
     return l->near.n + l->n_rasters + l->n_backgrounds + l->n_sampled;
 }
 
-/* --- made */
+/* --- making */
 
 struct making {
-    struct tri_lengths *out;
-    const struct tri_sizes *sizes;
-    struct tri_size_frame frame;
+    struct tri_lengths *out; /* the result */
+    const struct tri_sizes *sizes; /* the request */
+    struct tri_size_frame frame;   /* data common to all sources */
 };
 
-/* The box of the mesh: its boundary consists of subsegments. */
+/* Returns the bounding box of the mesh. Its boundary consists of subsegments. */
 static struct tri_size_frame frame_of(const struct tri_sizes *sizes, const struct tri_mesh *mesh)
 {
     struct tri_size_frame f = {.mesh = mesh, .gradation = sizes->gradation > 0 ? sizes->gradation : USUAL_GRADATION};
@@ -145,13 +145,13 @@ static struct tri_size_frame frame_of(const struct tri_sizes *sizes, const struc
     return f;
 }
 
-/* The marker of a subsegment, as callers see it. */
+/* Returns the marker of a subsegment as callers see it: a boundary without a marker has 1. */
 static int32_t marker_of(const struct tri_subsegment *s)
 {
     return s->marker == 0 && tri_is_boundary(s) ? 1 : s->marker;
 }
 
-/* A growth that is given is limited by a gradation that is given. */
+/* Returns the growth of a field. If both the growth and the gradation are given, the smaller one counts. */
 static double growth_of(const struct making *m, const struct tri_size_field *f)
 {
     const double given = m->sizes->gradation;
@@ -175,7 +175,7 @@ static enum tri_status take_near(struct making *m, const struct tri_size_field *
                                    : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no segment has the marker %d", f->marker);
 }
 
-/* Notes the first field that ends before the mesh does. The box is in the units of the mesh. */
+/* Notes the first field that does not cover the mesh. low, high: the field's box, in units of the mesh. */
 static void note_uncovered(struct making *m, int64_t k, struct tri_point low, struct tri_point high)
 {
     const struct tri_size_frame *f = &m->frame;
@@ -195,7 +195,7 @@ static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error
     if (status)
         return status;
     m->out->n_rasters++;
-    const double x = 0.5 / r->inverse[0], y = 0.5 / r->inverse[1]; /* a value speaks for a cell around its node */
+    const double x = 0.5 / r->inverse[0], y = 0.5 / r->inverse[1]; /* a value holds for a cell around its node */
     const double width = (double)(2 * r->n[0] - 1) * x, height = (double)(2 * r->n[1] - 1) * y;
     note_uncovered(m, k, (struct tri_point){r->origin[0] - x, r->origin[1] - y},
                    (struct tri_point){r->origin[0] + width, r->origin[1] + height});
@@ -246,7 +246,7 @@ static enum tri_status take(struct making *m, int64_t k, struct tri_error *error
     return TRI_OK;
 }
 
-/* What the figure asks for. */
+/* Adds the lengths that follow from the shape of the input. */
 static enum tri_status take_figure(struct making *m, struct tri_error *error)
 {
     const struct tri_sizes *s = m->sizes;
@@ -285,7 +285,7 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
 {
     *lengths = NULL;
     enum tri_status status = tri_sizes_check(sizes, error);
-    if (status || mesh->n_subs == 0 || !tri_sizes_any(sizes)) /* an empty mesh has nothing to measure */
+    if (status || mesh->n_subs == 0 || !tri_sizes_any(sizes)) /* for an empty mesh there is nothing to compute */
         return status;
     struct making m = {calloc(1, sizeof *m.out), sizes, frame_of(sizes, mesh)};
     m.frame.executor = executor;
@@ -316,7 +316,7 @@ void tri_lengths_free(struct tri_lengths *l)
     free(l);
 }
 
-/* --- asked */
+/* --- evaluation */
 
 double tri_lengths_at(const struct tri_lengths *l, struct tri_point p)
 {

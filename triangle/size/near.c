@@ -1,12 +1,12 @@
 /* Lengths that grow with the distance from segments and points.
  *
- * Each has its own length and growth, so that boundaries, regions and narrow places share one search: a contest
- * (candidates.h) with h itself as the key. */
+ * Each segment has its own length and growth. So boundaries, regions and narrow gaps share one search: a contest
+ * (candidates.h) whose key is h itself. */
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
 
-/* In cells with a side of this much of h, so much of it may be missed. */
+/* In cells with sides up to SMALL * h, the result may exceed h by TOLERANCE * h. */
 static const double SMALL = 0.5, TOLERANCE = 0.002;
 
 bool tri_near_add(struct tri_near *near, struct tri_point a, struct tri_point b, double length, double growth)
@@ -19,7 +19,7 @@ bool tri_near_add(struct tri_near *near, struct tri_point a, struct tri_point b,
     return true;
 }
 
-/* From a place to the nearest one of an item. */
+/* Returns the vector from p to the nearest point of a segment. */
 static inline struct tri_point away_from(const struct tri_near_item *s, struct tri_point p)
 {
     const double x = p.x - s->from.x, y = p.y - s->from.y;

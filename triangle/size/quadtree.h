@@ -1,4 +1,4 @@
-/* A square that is cut into four again and again: which leaf is a place in? */
+/* A quadtree: finds the leaf that contains a point. */
 #ifndef TRIANGLE_SIZE_QUADTREE_H
 #define TRIANGLE_SIZE_QUADTREE_H
 
@@ -11,21 +11,21 @@
 enum { TRI_QUADTREE_DEEPEST = 30 };
 
 struct tri_quadtree {
-    struct tri_point low; /* the root's lower left corner */
-    double side;          /* the root's */
+    struct tri_point low; /* lower left corner of the root */
+    double side;          /* side of the root */
     double scale;         /* 2^TRI_QUADTREE_DEEPEST / side */
-    int32_t *child;       /* [n] of a cell four in a row, by the bits x + 2 y: >= 0: where its own four begin; < 0: ~ of
-                             the number of a leaf. child[0] is the root */
-    int32_t n, capacity;
+    int32_t *child;       /* [n] four consecutive entries per divided cell, in the order x + 2 y. >= 0: index of the
+                             first of its own four; < 0: ~number of a leaf. child[0] is the root */
+    int32_t n, capacity;  /* entries of child; allocated */
 };
 
-/* A cell: side * 2^-depth wide. */
+/* A cell. Its side is side * 2^-depth. */
 struct tri_cell {
-    uint32_t x, y; /* how many cells of this depth lie before it */
-    int depth;
+    uint32_t x, y; /* column and row among the cells of this depth */
+    int depth;     /* 0 for the root */
 };
 
-/* The leaf, and its cell, in which a cell of the largest depth lies. */
+/* Returns the leaf that contains the cell x, y of the largest depth, and sets *cell to the leaf's cell. */
 static inline int32_t tri_quadtree_leaf(const struct tri_quadtree *tree, uint32_t x, uint32_t y, struct tri_cell *cell)
 {
     int32_t at = tree->child[0];
@@ -38,7 +38,7 @@ static inline int32_t tri_quadtree_leaf(const struct tri_quadtree *tree, uint32_
     return ~at;
 }
 
-/* The same for a place; outside the root for the nearest place in it. */
+/* The same for a point. Outside the root, the nearest point in the root counts. */
 static inline int32_t tri_quadtree_find(const struct tri_quadtree *tree, struct tri_point p, struct tri_cell *cell)
 {
     const double most = (double)((1U << TRI_QUADTREE_DEEPEST) - 1);
@@ -52,7 +52,7 @@ static inline double tri_cell_side(const struct tri_quadtree *tree, int depth)
     return tree->side / (double)(UINT32_C(1) << depth);
 }
 
-/* The lower left corner. */
+/* Returns the cell's lower left corner. */
 static inline struct tri_point tri_cell_low(const struct tri_quadtree *tree, struct tri_cell cell)
 {
     const double side = tri_cell_side(tree, cell.depth);
@@ -64,13 +64,13 @@ static inline struct tri_cell tri_cell_child(struct tri_cell cell, uint32_t k)
     return (struct tri_cell){2 * cell.x + (k & 1), 2 * cell.y + (k >> 1), cell.depth + 1};
 }
 
-/* Room for four more; false: there is none. */
+/* Makes room for four more entries. Returns false if memory ran out. */
 static inline bool tri_quadtree_grow(struct tri_quadtree *tree)
 {
     return tri_grow(&tree->child, &tree->capacity, tree->n + 4, sizeof *tree->child);
 }
 
-/* A root around a box, and no leaf yet. False: no memory. */
+/* Initialises a tree whose root contains the box. It has no leaf yet. Returns false if memory ran out. */
 static inline bool tri_quadtree_init(struct tri_quadtree *tree, struct tri_point low, struct tri_point high)
 {
     double side = tri_larger(high.x - low.x, high.y - low.y);

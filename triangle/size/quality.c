@@ -1,4 +1,4 @@
-/* Bounds, sizes that are asked for, and the judgement of triangles by them. */
+/* Computes bounds and wanted sizes, and judges triangles by them. */
 #include "triangle/size/quality.h"
 
 #include <assert.h>
@@ -52,7 +52,7 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {
     struct tri_bounds bounds = {0, 0, 0};
     if (!(min_angle > 0)) {
-        /* No bound: still keep away from subsegments, as for 20 degrees, or triangles come out flat. */
+        /* Even without an angle bound, points keep away from subsegments as for 20 degrees, to avoid flat triangles. */
         bounds.lens_cos2 = conforming ? 0 : 0.58682408883346604; /* cos^2 of 40 degrees */
         return bounds;
     }
@@ -60,8 +60,8 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
     bounds.sin2 = 1 - cosine * cosine;
     if (!conforming)
         bounds.lens_cos2 = twice > 0 ? twice * twice : 0;
-    /* The off-centre that sees its edge under exactly the angle bound lies at 0.5 of this (Üngör 2004); 0.2% nearer,
-     * rounding cannot make the new triangle bad. */
+    /* The off-centre that sees its edge under exactly the angle bound lies at height 0.5 * sqrt(..) (Üngör 2004).
+     * The factor TRI_OFF_CENTRE places it 0.2% lower, so that rounding cannot make the new triangle bad. */
     bounds.off_centre = TRI_OFF_CENTRE * sqrt((1 + cosine) / (1 - cosine));
     return bounds;
 }
@@ -76,10 +76,11 @@ struct tri_bounds tri_bounds_of(const struct tri_quality *quality, double min_an
 
 /* --- sizes */
 
-/* No bound. */
+/* The value that means no bound. */
 static const double ANY_LENGTH = 1e100;
 
-/* Twice a bound of the caller's. The unit is a power of two; its square may be beyond the range of doubles. */
+/* Converts an area bound of the caller to twice the area in the mesh's units. The unit is a power of two whose
+ * square may exceed the range of doubles. */
 static double to_area2(const struct tri_asked *a, double bound)
 {
     return 2 * (bound * tri_area_scale(a->quality) / a->mesh->unit / a->mesh->unit);
@@ -99,8 +100,8 @@ double tri_area2_in_region(const struct tri_asked *a, tri_region_id region)
     return own > 0 ? tri_lesser(to_area2(a, own), a->area2) : a->area2;
 }
 
-/* A length that is not above 0 wants nothing: no mesh could have it. In the mesh's units: squares of the caller's may
- * be beyond the range of doubles. */
+/* Is the triangle larger than the lengths at p allow? A length that is not above 0 is ignored, because no mesh could
+ * satisfy it. Computed in the mesh's units, because squares in the caller's units may exceed the range of doubles. */
 static bool is_above_length(const struct tri_asked *asked, const struct tri_point p[4], double area)
 {
     const struct tri_quality *q = asked->quality;
@@ -113,7 +114,7 @@ static bool is_above_length(const struct tri_asked *asked, const struct tri_poin
     return false;
 }
 
-/* The answer of the size test about a triangle shrunk about a place, to 1 / scale of its area. */
+/* Does the size test reject the triangle shrunk about a point to 1 / scale of its area? */
 static bool test_refuses(const struct tri_asked *asked, const struct tri_point corner[3], struct tri_point about,
                          double scale)
 {
@@ -131,7 +132,9 @@ static bool test_refuses(const struct tri_asked *asked, const struct tri_point c
 
 bool tri_is_refused(const struct tri_asked *asked, struct tri_point a, struct tri_point b, struct tri_point c)
 {
-    const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}}; /* the last first */
+    const struct tri_point place[4] = {a, b, c, {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}}; /* the corners and,
+                                                                                                    last, the
+                                                                                                    centroid */
     const double scale = tri_area_scale(asked->quality);
     assert(scale > 0 && tri_asks_caller(asked->quality));
     if (asked->quality->edge_length && is_above_length(asked, place, tri_area_of(a, b, c) / scale))
@@ -181,8 +184,8 @@ double tri_asked_length(const struct tri_asked *asked, const struct tri_point tr
 }
 
 struct asking {
-    const struct tri_mesh *mesh;
-    const struct tri_lengths *lengths;
+    const struct tri_mesh *mesh; /* lengths go into mesh->length */
+    const struct tri_lengths *lengths; /* borrowed */
 };
 
 static void ask_share(void *context, size_t share)

@@ -1,27 +1,27 @@
 /* Lengths on a grid.
  *
- * Two things spread over the nodes: data to those that have none, and short lengths to longer ones around. Both are
- * min over y of base(y) + slope |x - y|, and each node keeps the y that it has so far and asks its eight neighbours
- * for theirs: two sweeps down and up, as of Danielsson's distance transform (Euclidean distance mapping, Computer
- * Graphics and Image Processing 14, 1980), again and again until nothing changes. Distances are exact, and only now and
- * then is a y not found: up to a part in 1,000. */
+ * Two things propagate over the nodes: data to nodes without data, and short lengths to their surroundings. Both
+ * compute min over y of base(y) + slope |x - y|. Each node stores its best y so far and tries those of its eight
+ * neighbours. As in Danielsson's distance transform (Euclidean distance mapping, Computer Graphics and Image
+ * Processing 14, 1980), two sweeps go down and up; they repeat until nothing changes. Distances are exact. In rare
+ * cases the best y is missed, with an error of up to 1 in 1,000. */
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
 
 enum { MOST_SWEEPS = 8 };
 
-/* What spreads. */
+/* A propagation over the grid. */
 struct spreading {
-    int32_t width, height;
-    double step[2], slope; /* the distance of columns and rows */
-    const float *base;     /* [height][width]; infinite: nothing */
-    float *least;          /* base, and less once it has spread */
-    int32_t *from;         /* the node that it is from */
-    bool changed;
+    int32_t width, height; /* columns and rows */
+    double step[2], slope; /* distances of columns and of rows; slope of the propagation */
+    const float *base;     /* [height][width] start values; infinite: does not propagate */
+    float *least;          /* [height][width] result, at most base */
+    int32_t *from;         /* [height][width] the node y that gives the result */
+    bool changed;          /* true: a node has changed in this sweep */
 };
 
-/* Lets a node have what its neighbour, at `offset` in numbers, has. */
+/* Tries the y of a neighbour for the node in column i and row j. offset: from the node to the neighbour. */
 static inline void ask(struct spreading *s, int32_t i, int32_t j, int32_t offset)
 {
     const int32_t node = j * s->width + i, from = s->from[node + offset];
@@ -36,7 +36,7 @@ static inline void ask(struct spreading *s, int32_t i, int32_t j, int32_t offset
     }
 }
 
-/* A row from the one before it, `way` rows off, and along itself, there and back. */
+/* Updates a row from the previous row (`way` rows back), and along itself in both directions. */
 static void sweep_row(struct spreading *s, int32_t j, int way)
 {
     const int32_t w = s->width, before = j - way;
@@ -74,8 +74,8 @@ static enum tri_status spread(struct spreading *s, const struct tri_stop *stop, 
     return TRI_OK;
 }
 
-/* Values for the nodes that have none: those of the nearest that has. *value has them afterwards; the other two arrays
- * are scratch. */
+/* Gives each node without data the value of the nearest node with data. The result is in *value; base and s are work
+ * space. */
 static enum tri_status fill_gaps(struct spreading *s, float *value, float *base, const struct tri_stop *stop,
                                  struct tri_error *error)
 {
@@ -83,7 +83,7 @@ static enum tri_status fill_gaps(struct spreading *s, float *value, float *base,
     for (int32_t k = 0; k < n; k++)
         base[k] = value[k] > 0 ? 0 : HUGE_VALF;
     s->base = base;
-    s->slope = 1 / tri_larger(s->step[0], s->step[1]); /* in steps, which floats have */
+    s->slope = 1 / tri_larger(s->step[0], s->step[1]); /* in grid steps, which floats can represent */
     const enum tri_status status = spread(s, stop, error);
     for (int32_t k = 0; !status && k < n; k++)
         base[k] = value[s->from[k]];
@@ -92,7 +92,7 @@ static enum tri_status fill_gaps(struct spreading *s, float *value, float *base,
     return status;
 }
 
-/* The values as they are kept, 0 where there are none; the number of these. */
+/* Converts the field's values for storage, with 0 for no data. Returns the number of nodes without data. */
 static int64_t take(struct tri_raster *r, const struct tri_size_field *f, const struct tri_size_frame *frame)
 {
     int64_t gaps = 0;
@@ -150,7 +150,7 @@ enum tri_status tri_raster_make(struct tri_raster *raster, const struct tri_size
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     const int64_t gaps = take(&r, f, frame);
     const enum tri_status status = gaps < n ? limit(&r, gaps, frame, error)
-                                            : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value is a length");
+                                            : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value is above 0");
     if (status)
         tri_raster_clear(&r);
     *raster = r;
@@ -170,7 +170,7 @@ double tri_raster_at(const struct tri_raster *r, struct tri_point p)
     }
     const float *v = r->value + i[1] * r->n[0] + i[0];
     const int64_t right = r->n[0] > 1, up = r->n[1] > 1 ? r->n[0] : 0;
-    const double low = (1 - f[0]) * v[0] + f[0] * v[right]; /* above 0, whatever is rounded */
+    const double low = (1 - f[0]) * v[0] + f[0] * v[right]; /* above 0 in spite of rounding */
     const double high = (1 - f[0]) * v[up] + f[0] * v[up + right];
     return r->scale * ((1 - f[1]) * low + f[1] * high);
 }

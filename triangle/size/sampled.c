@@ -1,45 +1,45 @@
-/* A function of the caller, asked for arrays of places, level by level of a quadtree, and kept.
+/* A function of the caller, sampled level by level into a quadtree.
  *
- * A cell is asked for at nine places: its corners, amid its sides, at its centre. Where the corners alone would tell
- * the other five to a share of TOLERANCE, or the cell is small against the lengths, it becomes a leaf, bilinear in each
- * of its quarters: so what was measured is the error of a cell twice as large as those that answer. Places are shared
- * by cells of all levels, and asked for once.
+ * Each cell is sampled at nine points: corners, midpoints of sides, and centre. If the corners predict the other
+ * five values within TOLERANCE, or if the cell is small compared with the lengths, it becomes a leaf, with bilinear
+ * interpolation in each quarter. So the measured error is that of a cell twice as large as the interpolated
+ * quarters. Cells of all levels share points, and each point is sampled once.
  *
- * INVARIANT. The values of a place that several leaves share are one, so that the lengths can be limited on the graph
- * of all places; leaves of one size join without a jump. */
+ * INVARIANT. Leaves that share a point share its value. So lengths can be limited on the graph of all points, and
+ * leaves of the same size join continuously. */
 #include "triangle/size/sources.h"
 
 #include "triangle/base/hash.h"
 
 enum { FIRST = 5, DEEPEST = 28, NINE = 9, CENTRE = 4, NEW = 5, EACH = 12 };
 
-static const double TOLERANCE = 0.03; /* of a length, between what is predicted and what is said */
-static const double SMALL = 0.5;      /* cells of less than this of the length are not cut */
+static const double TOLERANCE = 0.03; /* largest relative error of a prediction */
+static const double SMALL = 0.5;      /* cells with sides below this fraction of the length are not divided */
 
-/* A place by how many steps of 2^-DEEPEST / 2 of the root's side it is from the lower left corner. */
+/* A sample point: its distance from the lower left corner, in steps of half a cell of depth DEEPEST. */
 struct node {
-    uint32_t x, y;
+    uint32_t x, y; /* column and row of the point */
 };
 
 struct part {
-    struct tri_cell cell;
-    int32_t at;         /* where it is in the tree; -1: it has been cut */
-    int32_t node[NINE]; /* its places, the lowest row first; -1: not known yet */
-    double error;       /* of a prediction by its corners; 0: it is fine */
+    struct tri_cell cell; /* the cell */
+    int32_t at;         /* index in the tree; -1: has been divided */
+    int32_t node[NINE]; /* its sample points, lowest row first; -1: not yet known */
+    double error;       /* relative error of the prediction from its corners; 0: small enough */
 };
 
 struct sampling {
-    struct tri_sampled *out;
-    const struct tri_size_field *field;
-    const struct tri_size_frame *frame;
-    struct node *node; /* [n] all places so far .. */
-    double *length;    /* .. and what was said, in units of the mesh; 0: no data */
-    int32_t n, capacity, asked;
-    int32_t *slot;     /* [n_slots] a hash table of nodes; -1: free */
+    struct tri_sampled *out; /* the result */
+    const struct tri_size_field *field; /* the function */
+    const struct tri_size_frame *frame; /* data common to all sources */
+    struct node *node; /* [n] all sample points so far */
+    double *length;    /* [n] sampled lengths in units of the mesh; 0: no data */
+    int32_t n, capacity, asked;         /* points; allocated; points already sampled */
+    int32_t *slot;     /* [n_slots] hash table of sample points; -1: free */
     uint32_t n_slots;  /* a power of two */
-    struct part *part; /* [n_parts] the leaves of the tree, by their numbers, and what has been cut .. */
-    int32_t n_parts, part_capacity;
-    int32_t first;     /* .. those from here on have not been asked for yet */
+    struct part *part; /* [n_parts] the leaves of the tree by number, and divided cells */
+    int32_t n_parts, part_capacity; /* entries of `part`; allocated */
+    int32_t first;     /* parts from this one on have not been sampled */
 };
 
 static enum tri_status no_memory(struct tri_error *error)
@@ -47,7 +47,7 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
 }
 
-/* --- places */
+/* --- sample points */
 
 static uint32_t slot_of(const struct sampling *s, struct node node)
 {
@@ -57,7 +57,7 @@ static uint32_t slot_of(const struct sampling *s, struct node node)
     return k;
 }
 
-/* Room for so many more. */
+/* Makes room for more sample points. Returns false if memory ran out. */
 static bool reserve(struct sampling *s, int64_t more)
 {
     const struct tri_growing arrays[] = {{&s->node, sizeof *s->node}, {&s->length, sizeof *s->length}};
@@ -77,7 +77,7 @@ static bool reserve(struct sampling *s, int64_t more)
     return true;
 }
 
-/* The number of a place; a new one if it was not asked for yet. */
+/* Returns the number of a sample point; adds it if it is new. */
 static int32_t number_of(struct sampling *s, struct node node)
 {
     const uint32_t k = slot_of(s, node);
@@ -94,7 +94,7 @@ static struct tri_point place_of(const struct sampling *s, int32_t v)
     return (struct tri_point){s->out->tree.low.x + s->node[v].x * step, s->out->tree.low.y + s->node[v].y * step};
 }
 
-/* Asks for the places from `asked` on; those that stick out of the mesh's box at its border. */
+/* Calls the function for the points from `asked` on. Points outside the mesh's box are moved to its border. */
 static enum tri_status ask(struct sampling *s, struct tri_error *error)
 {
     const struct tri_size_frame *f = s->frame;
@@ -124,14 +124,14 @@ static void find_places(struct sampling *s, struct part *a)
     const uint32_t half = UINT32_C(1) << (DEEPEST - a->cell.depth);
     for (uint32_t k = 0; k < NINE; k++) {
         const struct node node = {(2 * a->cell.x + k % 3) * half, (2 * a->cell.y + k / 3) * half};
-        if (k == CENTRE) /* the parts have it from here, and no other cell */
+        if (k == CENTRE) /* it belongs to this cell alone; later it becomes a corner of the quarters */
             s->node[a->node[k] = s->n++] = node;
         else if (a->node[k] < 0)
             a->node[k] = number_of(s, node);
     }
 }
 
-/* How far the corners are from telling the other places, as a share of these; 0 where the cell is small. */
+/* Returns the largest relative error of predicting the other points from the corners; 0 if the cell is small. */
 static double error_of(const struct sampling *s, const struct part *a)
 {
     double l[NINE], least = HUGE_VAL;
@@ -154,7 +154,7 @@ static double error_of(const struct sampling *s, const struct part *a)
     return error;
 }
 
-/* The tolerance by which no more cells are cut than there may be places. */
+/* Returns a tolerance that limits the number of divided cells to the allowed number of points. */
 static double tolerance_for(struct sampling *s)
 {
     for (double tolerance = TOLERANCE; tolerance < 1e30; tolerance *= 2) {
@@ -168,7 +168,7 @@ static double tolerance_for(struct sampling *s)
     return HUGE_VAL;
 }
 
-/* A quarter of a cell, which has four places of it at its corners. */
+/* Returns quarter k of a cell. Four points of the cell are its corners. */
 static struct part quarter_of(const struct part *p, uint32_t k, int32_t at)
 {
     struct part quarter = {.cell = tri_cell_child(p->cell, k), .at = at};
@@ -177,7 +177,7 @@ static struct part quarter_of(const struct part *p, uint32_t k, int32_t at)
     return quarter;
 }
 
-/* Replaces a leaf by its quarters. */
+/* Divides a leaf into quarters. Returns false if memory ran out. */
 static bool cut(struct sampling *s, int32_t i)
 {
     struct tri_quadtree *tree = &s->out->tree;
@@ -192,8 +192,8 @@ static bool cut(struct sampling *s, int32_t i)
     return true;
 }
 
-/* Cuts a leaf, and around it those that are larger: neighbours differ by a factor of two at most, so that what varies
- * beside a large cell is looked for in it too. */
+/* Divides a leaf and first any larger neighbours, so that neighbours differ by a factor of two at most. So a
+ * variation beside a large cell is also searched inside that cell. Returns false if memory ran out. */
 static bool cut_evenly(struct sampling *s, int32_t i)
 {
     const struct tri_cell cell = s->part[i].cell;
@@ -211,7 +211,7 @@ static bool cut_evenly(struct sampling *s, int32_t i)
     return cut(s, i);
 }
 
-/* One level: its places, what is said there, and which cells are cut. */
+/* Processes one level: samples its points and divides its cells where necessary. */
 static enum tri_status go_deeper(struct sampling *s, struct tri_error *error)
 {
     const int32_t first = s->first, n = s->n_parts;
@@ -231,7 +231,7 @@ static enum tri_status go_deeper(struct sampling *s, struct tri_error *error)
     return status;
 }
 
-/* Numbers the leaves anew; the nodes of each, NINE in a row. NULL: no memory. */
+/* Renumbers the leaves. Returns the points of each leaf, NINE per leaf, or NULL if memory ran out. */
 static int32_t *list_leaves(struct sampling *s)
 {
     struct tri_sampled *out = s->out;
@@ -246,9 +246,9 @@ static int32_t *list_leaves(struct sampling *s)
     return leaf;
 }
 
-/* --- kept */
+/* --- storing */
 
-/* Limits the lengths, and gives each leaf its own. */
+/* Limits the gradient and stores the values of each leaf. */
 static enum tri_status keep(struct sampling *s, struct tri_error *error)
 {
     struct tri_sampled *out = s->out;
@@ -264,7 +264,7 @@ static enum tri_status keep(struct sampling *s, struct tri_error *error)
         status = tri_spread_lengths(&cells, s->length, s->frame->gradation, &has_data, s->frame->mesh->stop, error);
     free(at);
     if (!status && !has_data)
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "nothing that it returned is a length");
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "it returned no length above 0");
     double longest = 0;
     for (int32_t v = 0; v < s->n; v++)
         longest = tri_larger(longest, s->length[v]);

@@ -1,22 +1,22 @@
-/* Lengths and data spread over the nodes of cells: triangles, or leaves of a quadtree.
+/* Propagates lengths and data over the nodes of cells: triangles, or leaves of a quadtree.
  *
- * As in raster.c each node keeps from which it has what it has, so that distances are straight; here its neighbours are
- * those that lie in a cell with it. Cells are gone through to and fro until nothing changes, but only those in which
- * something has changed. */
+ * As in raster.c, each node stores the node from which its value comes, so that distances are straight lines. Here
+ * its neighbours are the nodes that share a cell with it. Passes go forwards and backwards over the cells until
+ * nothing changes, and skip cells without changes. */
 #include "triangle/size/sources.h"
 
-/* What a pass works on. */
+/* The state of a propagation. */
 struct pass {
-    const struct tri_spreading *cells;
-    const double *base;
-    double slope;
-    double *least;
-    int32_t *from;
-    unsigned char *changed; /* [n] bit 0: a node has changed in this pass, bit 1: in the one before */
-    bool any;
+    const struct tri_spreading *cells; /* the nodes and cells */
+    const double *base;                /* [n] start values */
+    double slope;                      /* slope of the propagation */
+    double *least;                     /* [n] result */
+    int32_t *from;                     /* [n] node that gives the result */
+    unsigned char *changed; /* [n] bit 0: the node changed in this pass; bit 1: in the previous pass */
+    bool any;               /* true: a node has changed in this pass */
 };
 
-/* Lets each corner of a cell have what the others have. */
+/* Tries the source node of each changed corner for all other corners of the cell. */
 static void level_out(struct pass *p, const int32_t *corner)
 {
     const struct tri_point *at = p->cells->at;
@@ -71,7 +71,7 @@ static enum tri_status fill_gaps(const struct tri_spreading *cells, double *leng
     const enum tri_status status = tri_spread(cells, base, 1, least, from, stop, error);
     for (int32_t v = 0; !status && v < cells->n; v++)
         if (!(length[v] > 0))
-            length[v] = base[from[v]] == 0 ? length[from[v]] : 0; /* whose own is above 0 */
+            length[v] = base[from[v]] == 0 ? length[from[v]] : 0; /* the source's own length is above 0 */
     return status;
 }
 
