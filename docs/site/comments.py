@@ -10,9 +10,16 @@ MARKUP = {"\\": "\\\\", "@": "\\@", "<": "\\<", ">": "\\>", "&": "\\&", "#": "\\
 
 
 def plain(text):
-    """The words of a comment, with all of Doxygen's commands escaped. An indented block stays as it is."""
-    lines = [re.sub(r"^\s*\* ?", "", line) if k else line for k, line in enumerate(text.split("\n"))]
-    return "\n".join("".join(MARKUP.get(c, c) for c in line).rstrip() for line in lines).strip()
+    """The words of a comment, with all of Doxygen's commands escaped. Indented lines are code."""
+    out, code = [], False
+    for k, line in enumerate(text.split("\n")):
+        line = re.sub(r"^\s*\* ?", "", line).rstrip() if k else line.rstrip()
+        is_code = k > 0 and line.startswith("    ") and text.count("\n *") > 0
+        if is_code != code:
+            out.append("\\verbatim" if is_code else "\\endverbatim")
+            code = is_code
+        out.append(line if code else re.sub(r"`([^`]+)`", r"<tt>\1</tt>", "".join(MARKUP.get(c, c) for c in line)))
+    return "\n".join(out + ["\\endverbatim"] * code).strip()
 
 
 def main():

@@ -32,12 +32,18 @@ ITEM = re.compile(r"[a-z_]\w*(, [a-z_]\w*)*( \[[^]]*\])?[:;,]")  # `holes [h, 2]
 
 def as_lists(app, what, name, thing, options, lines):
     """Docstrings are plain text: `name: meaning` at the margin, with further lines indented. They become lists."""
-    out, in_list = [], False
+    out, in_list, code = [], False, False
     for k, line in enumerate(lines):
-        begins_block = k == 0 or not lines[k - 1].strip()
-        line = re.sub(r"[\\*`|]|_(?=\W|$)", lambda m: "\\" + m.group(), line)
-        if begins_block:
+        if k == 0 or not lines[k - 1].strip():  # a paragraph begins
             in_list = k > 0 and ITEM.match(line) is not None
+            if line.startswith("    ") != code and line.strip():
+                code = not code
+                out += ["::", ""] if code else []
+        if code:
+            out.append(line)
+            continue
+        line = re.sub(r"[\\*|]|_(?=\W|$)", lambda m: "\\" + m.group(), line)
+        line = re.sub(r"`([^`]+)`", r"``\1``", line)
         if in_list and line.strip() and not line.startswith(" "):
             name, colon, meaning = line.partition(":")
             line = "- **%s**:%s" % (name, meaning) if colon and len(name) < 60 else "- " + line

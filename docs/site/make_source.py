@@ -73,7 +73,7 @@ def page(source, folder):
     text = source.read_text(encoding="utf-8")
     text = re.sub(r"(?<=\]\()([^)\s]+)(?=\))", lambda m: link(m.group(1), folder, source.parent), text)
     text = re.sub(r'(?<=<img src=")([^"]+)(?=")', lambda m: link(m.group(1), folder, source.parent), text)
-    text = re.sub(r"^```(\S+) (\S+)$", r"`\2`:\n\n```\1", text, flags=re.M)  # a block that names its file
+    text = re.sub(r"^```(\S+) \S+$", r"```\1", text, flags=re.M)  # a block that names its file
     return re.sub(r"^```(bat|powershell)$", "```text", text, flags=re.M)
 
 
