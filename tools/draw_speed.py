@@ -8,7 +8,7 @@ import re
 SOURCE, TARGET = "docs/performance.md", "docs/pictures/speed.svg"
 LABELS = {"letter": "letter A", "unit": "square", "sea": "sea off Norway", "oceans": "all oceans", "1": "1 M points"}
 BARS = [("Triangle 1.6", "#b8b8b8"), ("triangle (ours), 1 core", "#7fb5d5"), ("ptriangle, 2 cores", "#2166ac")]
-WIDTH, LEFT, RIGHT, TOP, BAR, GAP = 720, 130, 70, 44, 13, 14
+WIDTH, LEFT, RIGHT, TOP, BAR, GAP = 720, 130, 70, 62, 13, 14
 
 
 def seconds(cell):
@@ -41,10 +41,10 @@ def main():
              f'height="{height}" font-family="sans-serif">',
              f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
              text(10, 20, "Refinement: million triangles a second", size=14)]
-    x = 272
+    x = LEFT
     for name, colour in BARS:
-        parts.append(f'<rect x="{x}" y="9" width="12" height="12" fill="{colour}"/>' + text(x + 17, 20, name, size=12))
-        x += 34 + 6.6 * len(name)
+        parts.append(f'<rect x="{x}" y="31" width="12" height="12" fill="{colour}"/>' + text(x + 17, 42, name, size=12))
+        x += 40 + 7 * len(name)
     for k, ((label, _, _, ratios), rate) in enumerate(zip(data, rates)):
         y = TOP + k * (3 * BAR + GAP)
         parts.append(text(LEFT - 10, y + 1.5 * BAR + 5, label, "end"))
