@@ -2,7 +2,7 @@
 """Fills a folder with what Sphinx reads: the pages of docs/, CHANGELOG.md and CONTRIBUTING.md, the list of contents of
 docs/index.md, the help text of each program, and pages for the headers and for the Python package.
 
-Links to other files of the repository lead to copies in files/.
+Links to other files of the repository lead to copies in files/, and links that lead nowhere become text.
 Usage: docs/site/make_source.py FOLDER PROGRAMS     in the root of the repository; PROGRAMS: the folder of the programs"""
 import re
 import shutil
@@ -51,28 +51,36 @@ ERRORS = ["Error", "InputError", "TooLargeError", "FileError", "StoppedError", "
 
 
 def link(target, folder, page_folder):
-    """Where a link of a page leads on the site. page_folder: that of the page in the repository."""
+    """Where a link of a page leads on the site; None: nowhere. page_folder: that of the page in the repository."""
     path, _, anchor = target.partition("#")
     if not path or "://" in path or target.startswith("mailto:"):
         return target
     place = (page_folder / path).resolve()
+    if place.is_dir():
+        place = place / "README.md"
+    anchor = "#" + anchor if anchor else ""
     if place.suffix == ".md" and place.parent == ROOT / "docs":
-        new = place.name
-    elif place in [(ROOT / "docs" / p).resolve() for p in OUTSIDE]:
-        new = OUTSIDE["../" + place.name]
-    elif place.parent.name == "pictures" or not place.is_file():
-        return "pictures/" + place.name if place.is_file() else target
-    else:
-        new = "files/" + str(place.relative_to(ROOT))
-        (folder / new).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(place, folder / new)
-    return new + ("#" + anchor if anchor else "")
+        return place.name + anchor
+    if place.parent == ROOT and "../" + place.name in OUTSIDE:
+        return OUTSIDE["../" + place.name] + anchor
+    if not place.is_file():
+        return None
+    if place.parent.name == "pictures":
+        return "pictures/" + place.name
+    new = "files/%s%s" % (place.relative_to(ROOT), ".txt" if place.suffix == ".md" else "")
+    (folder / new).parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(place, folder / new)
+    return new
 
 
 def page(source, folder):
     text = source.read_text(encoding="utf-8")
-    text = re.sub(r"(?<=\]\()([^)\s]+)(?=\))", lambda m: link(m.group(1), folder, source.parent), text)
-    text = re.sub(r'(?<=<img src=")([^"]+)(?=")', lambda m: link(m.group(1), folder, source.parent), text)
+
+    def linked(match):
+        new = link(match.group(2), folder, source.parent)
+        return match.group(1) if new is None else "[%s](%s)" % (match.group(1), new)
+
+    text = re.sub(r"\[([^]]*)\]\(([^)\s]+)\)", linked, text)
     text = re.sub(r"^```(\S+) \S+$", r"```\1", text, flags=re.M)  # a block that names its file
     return re.sub(r"^```(bat|powershell)$", "```text", text, flags=re.M)
 
