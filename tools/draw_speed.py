@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws how fast meshes are made beside Triangle: reads the first table of "Beside Triangle" in docs/performance.md, and
+"""Draws the speed of refinement beside Triangle: reads the first table of "Beside Triangle" in docs/performance.md, and
 writes docs/pictures/speed.svg.
 
 Usage: tools/draw_speed.py    (in the root of the repository)"""
@@ -53,7 +53,8 @@ def main():
             parts.append(f'<rect x="{LEFT}" y="{y + i * BAR}" width="{value * scale:.1f}" height="{BAR - 1}" '
                          f'fill="{BARS[i][1]}"/>')
             inside = value * scale > WIDTH - LEFT - RIGHT - 60
-            parts.append(text(LEFT + value * scale + (-6 if inside else 5), y + i * BAR + BAR - 3, f"{value:.1f}{times}",
+            x = LEFT + value * scale + (-6 if inside else 5)
+            parts.append(text(x, y + i * BAR + BAR - 3, f"{value:.1f}{times}",
                               "end" if inside else "start", "white" if inside else "#222", 11))
     with open(TARGET, "w", encoding="utf-8") as file:
         file.write("\n".join(parts + ["</svg>"]) + "\n")
