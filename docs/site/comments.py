@@ -9,16 +9,32 @@ import sys
 MARKUP = {"\\": "\\\\", "@": "\\@", "<": "\\<", ">": "\\>", "&": "\\&", "#": "\\#", "%": "\\%", '"': '\\"'}
 
 
+def escaped(line):
+    return re.sub(r"`([^`]+)`", r"<tt>\1</tt>", "".join(MARKUP.get(c, c) for c in line))
+
+
 def plain(text):
-    """The words of a comment, with all of Doxygen's commands escaped. Indented lines are code."""
-    out, code = [], False
+    """The words of a comment, with Doxygen's commands escaped. Lines indented by four blanks are code. Lines indented by
+    two are the entries of a list, `name  meaning`, which go on in lines that are indented further."""
+    out, code, in_list = [], False, False
     for k, line in enumerate(text.split("\n")):
+        starred = k > 0 and re.match(r"\s*\*", line) is not None
         line = re.sub(r"^\s*\* ?", "", line).rstrip() if k else line.rstrip()
-        is_code = k > 0 and line.startswith("    ") and text.count("\n *") > 0
+        entry = re.match(r"  (\S.*?\S|\S)  +(\S.*)|  (\S+) (\[.*)", line) if starred else None
+        in_list = entry is not None or (in_list and line.startswith("   "))
+        is_code = starred and not in_list and line.startswith("    ")
         if is_code != code:
             out.append("\\verbatim" if is_code else "\\endverbatim")
             code = is_code
-        out.append(line if code else re.sub(r"`([^`]+)`", r"<tt>\1</tt>", "".join(MARKUP.get(c, c) for c in line)))
+        if entry:
+            name, meaning = (group for group in entry.groups() if group is not None)
+            out.append("- <tt>%s</tt>: %s" % (escaped(name), escaped(meaning)))
+        elif in_list:
+            out.append("  " + escaped(line.strip()))
+        else:
+            if out and out[-1].startswith(("- ", "  ")) and line and not code:
+                out.append("")
+            out.append(line if code else escaped(line))
     return "\n".join(out + ["\\endverbatim"] * code).strip()
 
 
