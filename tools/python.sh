@@ -1,7 +1,7 @@
 #!/bin/sh
 # The Python package as users get it: builds the wheel, installs it where there is no compiler to be found, runs its
-# tests, mypy --strict on a client of it, and every example of docs/python.md and docs/coast.md as it is written, and
-# compares ptriangle.compat with the package `triangle` from PyPI. Where PyPI cannot be reached, one line says so.
+# tests, mypy --strict on a client of it, and every example in Python of README and docs/ as it is written, and compares
+# ptriangle.compat with the package `triangle` from PyPI. Where PyPI cannot be reached, one line says so.
 # Usage: tools/python.sh [FOLDER]   a scratch folder; build/python without
 set -eu
 cd "$(dirname "$0")/.."
@@ -20,7 +20,7 @@ must() { "$@" || { cat "$work/log"; exit 1; }; }
 
 python3 -m venv "$work/venv" >"$work/log" 2>&1 || skip "python3 has no venv (Debian: python3-venv)"
 pip install numpy pytest scikit-build-core mypy || skip "PyPI cannot be reached"
-for package in matplotlib ipython shapely geopandas h5py meshio numba pyvista scipy rasterio; do
+for package in matplotlib ipython shapely geopandas h5py meshio numba pyvista scipy rasterio scikit-fem; do
     pip install "$package" ||
         echo "python: without $package, which does not install here ($(tail -n 1 "$work/log"))"
 done
@@ -39,9 +39,18 @@ cp "$root/python/tests/typed_client.py" "$work"
 "$work/venv/bin/python" -m mypy --strict typed_client.py
 "$work/venv/bin/python" typed_client.py
 "$work/venv/bin/python" -m mypy --strict -p ptriangle >mypy.log || { cat mypy.log; exit 1; }
-for document in python coast; do
+# Files that the examples of docs/formats.md read.
+mkdir -p examples/formats
+cp "$root/data/section.poly" examples/formats
+"$work/venv/bin/ptriangle" -pq30aAQ --output examples/formats/section.msh --output examples/formats/section.vtu \
+    examples/formats/section.poly
+"$work/venv/bin/python" -c 'import sys, ptriangle
+ptriangle.mesh(**ptriangle.read(sys.argv[1] + "section.msh")).write(sys.argv[1] + "section.h5")
+square = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}
+open(sys.argv[1] + "map.geojson", "w").write(str(square).replace(chr(39), chr(34)))' examples/formats/
+for document in $(cd "$root" && grep -l '^```python' README.md docs/*.md); do
     MPLBACKEND=Agg PYVISTA_OFF_SCREEN=true "$work/venv/bin/python" "$root/python/tests/run_examples.py" \
-        "$root/docs/$document.md" "$work/examples"
+        "$root/$document" "$work/examples/$(basename "$document" .md)"
 done
 if pip install triangle==20250106; then
     PATH=$work/none "$work/venv/bin/python" "$root/python/tests/against_pypi.py"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
-# Usage: tools/setup.sh [coast|build|tests|ci|ports|windows]
+# Usage: tools/setup.sh [coast|build|tests|ci|ports|windows|docs]
 #   coast  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot)
 #   build  and jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the libraries)
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
@@ -8,6 +8,7 @@
 #          .ci/run needs)
 #   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
 #   windows  compiler and emulator for Windows (what tools/windows.sh needs beside `build`)
+#   docs   Doxygen and Python's venv (what tools/docs.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, says what it installs and for what, and does not touch a machine that has
 # everything. cairo, jansson, HDF5 and, for `build`, pkg-config can be done without: PTRIANGLE_SETUP=least leaves them
 # out; PTRIANGLE_SETUP=no installs nothing.
@@ -109,6 +110,11 @@ list_missing() {
         need unzip command -v unzip
         return
     fi
+    if [ "$wanted" = docs ]; then
+        need doxygen command -v doxygen
+        need python3-venv python3 -c 'import ensurepip, venv'
+        return
+    fi
     need libcmocka-dev links cmocka.h cmocka
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
@@ -168,9 +174,9 @@ as_root() {
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
 case $wanted in
-coast | build | tests | ci | ports | windows) ;;
+coast | build | tests | ci | ports | windows | docs) ;;
 *)
-    echo "usage: tools/setup.sh [coast|build|tests|ci|ports|windows]" >&2
+    echo "usage: tools/setup.sh [coast|build|tests|ci|ports|windows|docs]" >&2
     exit 2
     ;;
 esac

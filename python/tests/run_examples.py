@@ -1,28 +1,54 @@
-"""Runs the examples of a document as they are written, one after the other, in a folder of their own, where `data` is
-that of the repository.
+"""Runs the examples of a document as they are written, one after the other, in a folder where `data` is that of the
+repository: blocks ```python in this process, and blocks whose first line names a file (```text plate.poly) are written
+to that file. If a block ```text follows a block ```python, each of its lines must occur in what the example prints, in
+this order, except lines `...`.
 
 Usage: run_examples.py DOCUMENT FOLDER     an example whose module cannot be imported is skipped, with a line
 """
+import contextlib
+import io
 import os
 import re
 import sys
 from pathlib import Path
 
 
-def examples(text):
-    """(number of the first line, code) of each block that says it is Python."""
-    for block in re.finditer(r"^```python\n(.*?)^```$", text, re.M | re.S):
-        yield text.count("\n", 0, block.start(1)) + 1, block.group(1)
+def blocks(text):
+    """(number of the first line, words of the fence, content) of each fenced block."""
+    for block in re.finditer(r"^```(\S[^\n]*)\n(.*?)^```$", text, re.M | re.S):
+        yield text.count("\n", 0, block.start(2)) + 1, block.group(1).split(), block.group(2)
+
+
+def first_missing(printed, expected):
+    """The first line of `expected` that `printed` lacks, or has too early."""
+    lines = iter(printed.splitlines())
+    for line in expected.splitlines():
+        if line.strip() not in ("", "...") and line not in lines:
+            return line
+    return None
 
 
 def run(document):
-    names, n_run, skipped = {"__name__": "__main__"}, 0, []
-    for line, code in examples(Path(document).read_text(encoding="utf-8")):
+    names, n_run, skipped, printed = {"__name__": "__main__"}, 0, [], None
+    for line, fence, content in blocks(Path(document).read_text(encoding="utf-8")):
+        if len(fence) > 1:
+            Path(fence[1]).write_text(content, encoding="utf-8")
+        if fence == ["text"] and printed is not None:
+            missing = first_missing(printed, content)
+            if missing is not None:
+                sys.exit("%s: line %d: the example before does not print: %s" % (document, line, missing))
+        printed = None
+        if fence != ["python"]:
+            continue
+        output = io.StringIO()
         try:
-            exec(compile("\n" * (line - 1) + code, str(document), "exec"), names)
+            with contextlib.redirect_stdout(output):
+                exec(compile("\n" * (line - 1) + content, str(document), "exec"), names)
             n_run += 1
+            printed = output.getvalue()
         except ModuleNotFoundError as fault:
             skipped.append("line %d: %s" % (line, fault))
+            printed = None
     return n_run, skipped
 
 
@@ -31,7 +57,8 @@ if __name__ == "__main__":
     os.makedirs(sys.argv[2], exist_ok=True)
     os.chdir(sys.argv[2])
     if not os.path.exists("data"):
-        os.symlink(document.parent.parent / "data", "data")
+        root = document.parent if (document.parent / "data").exists() else document.parent.parent
+        os.symlink(root / "data", "data")
     n_run, skipped = run(document)
     print("%s: %d examples run as they are written, %d skipped" % (document.name, n_run, len(skipped)))
     for text in skipped:
