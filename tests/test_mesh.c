@@ -1,4 +1,5 @@
-/* Storage of the mesh: growth keeps what is stored, compaction keeps the links, validation sees each broken one. */
+/* Storage of the mesh: growth keeps the content, compaction keeps the links, and validation detects each broken
+   link. */
 #include "support.h"
 
 static struct tri_mesh two_triangles(void)
@@ -43,7 +44,7 @@ static void test_growth_keeps_content_and_alignment(void **state)
     tri_mesh_free(&mesh); /* an empty mesh may be freed */
 }
 
-static void test_too_large_is_refused(void **state)
+static void test_too_many_vertices_or_triangles_are_refused(void **state)
 {
     (void)state;
     struct tri_mesh mesh;
@@ -59,7 +60,7 @@ static void test_too_large_is_refused(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_points_are_taken_over(void **state)
+static void test_points_are_copied_with_their_data(void **state)
 {
     (void)state;
     double points[8] = {0, 1, 2, 3, 4, 5, -6, 7}, attributes[4] = {9, 8, 7, 6};
@@ -75,8 +76,8 @@ static void test_points_are_taken_over(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* All coordinates land where the exact predicates can carry them, by a power of two. */
-/* Of no points there need be no array. */
+/* A power of two scales all coordinates into the range that the exact predicates support. */
+/* Without points the array may be NULL. */
 static void test_no_points_with_attributes(void **state)
 {
     (void)state;
@@ -120,7 +121,7 @@ static void test_compaction_keeps_a_valid_mesh(void **state)
     struct support_set before = support_triangles(&mesh);
     int32_t n = mesh.n_triangles;
     struct support_random random = {4};
-    /* Spread the triangles over twice the triangles, links along, then close the gaps again. */
+    /* Spreads the triangles over twice as many entries, adjusts the links, then compacts the mesh again. */
     assert_int_equal(tri_mesh_reserve_triangles(&mesh, n, NULL), TRI_OK);
     mesh.n_triangles = 2 * n;
     for (int32_t t = n; t < 2 * n; t++)
@@ -166,8 +167,8 @@ static void assert_broken(const struct tri_mesh *mesh)
     assert_true(error.text[0] != 0);
 }
 
-/* Each link, side and corner in turn is replaced by each other value that a defect could leave there. */
-static void test_each_broken_link_is_seen(void **state)
+/* Replaces each link, side and corner in turn by every other value that a defect could leave there. */
+static void test_each_broken_link_is_detected(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles();
@@ -184,7 +185,7 @@ static void test_each_broken_link_is_seen(void **state)
             }
     for (int32_t t = 0; t < 2; t++)
         for (int k = 0; k < 3; k++)
-            for (int32_t wrong = k ? -1 : 0; wrong < 6; wrong++) { /* corner 0 < 0: a free triangle */
+            for (int32_t wrong = k ? -1 : 0; wrong < 6; wrong++) { /* corner 0 below 0 marks a free triangle */
                 int32_t right = mesh.tri[t].v[k];
                 if (wrong == right)
                     continue;
@@ -196,7 +197,7 @@ static void test_each_broken_link_is_seen(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_each_broken_subsegment_is_seen(void **state)
+static void test_each_broken_subsegment_is_detected(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles();
@@ -221,8 +222,8 @@ static void test_each_broken_subsegment_is_seen(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A triangle freed while neighbours still point to it. */
-static void test_link_to_a_free_number_is_seen(void **state)
+/* A triangle is freed while its neighbours still point to it. */
+static void test_link_to_a_free_triangle_is_detected(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles();
@@ -232,8 +233,8 @@ static void test_link_to_a_free_number_is_seen(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A second copy of a triangle has the right corners behind each link, but its neighbours do not know of it. */
-static void test_copy_of_a_triangle_is_seen(void **state)
+/* A copy of a triangle has the right corners behind each link, but its neighbours do not point to it. */
+static void test_copy_of_a_triangle_is_detected(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles();
@@ -241,7 +242,7 @@ static void test_copy_of_a_triangle_is_seen(void **state)
     mesh.tri[mesh.n_triangles] = mesh.tri[1];
     mesh.n_triangles++;
     assert_broken(&mesh);
-    for (int e = 0; e < 3; e++) /* nor if only the link to the other triangle is left */
+    for (int e = 0; e < 3; e++) /* also if only the link to the other triangle is left */
         if (mesh.tri[2].n[e] < 0) {
             assert_int_equal(tri_mesh_reserve_subs(&mesh, 1, NULL), TRI_OK);
             int32_t from = mesh.tri[2].v[tri_next[e]], to = mesh.tri[2].v[tri_prev[e]];
@@ -257,16 +258,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_growth_keeps_content_and_alignment),
-        cmocka_unit_test(test_too_large_is_refused),
-        cmocka_unit_test(test_points_are_taken_over),
+        cmocka_unit_test(test_too_many_vertices_or_triangles_are_refused),
+        cmocka_unit_test(test_points_are_copied_with_their_data),
         cmocka_unit_test(test_no_points_with_attributes),
         cmocka_unit_test(test_units_bring_coordinates_into_range),
         cmocka_unit_test(test_compaction_keeps_a_valid_mesh),
         cmocka_unit_test(test_compaction_of_nothing),
-        cmocka_unit_test(test_each_broken_link_is_seen),
-        cmocka_unit_test(test_each_broken_subsegment_is_seen),
-        cmocka_unit_test(test_link_to_a_free_number_is_seen),
-        cmocka_unit_test(test_copy_of_a_triangle_is_seen),
+        cmocka_unit_test(test_each_broken_link_is_detected),
+        cmocka_unit_test(test_each_broken_subsegment_is_detected),
+        cmocka_unit_test(test_link_to_a_free_triangle_is_detected),
+        cmocka_unit_test(test_copy_of_a_triangle_is_detected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The steps of a run: those that runs make are those that next.h lists, and each of these is made. */
+/* The steps of a run: runs take only the steps listed in next.h, and together they take every listed step. */
 #include "sched/schedule/next.h"
 
 #include <stdio.h>
@@ -20,16 +20,16 @@ static const char *const name[STEPS] = {
 
 struct steps {
     bool made[STEPS][STEPS];
-    int last;               /* -1: none */
-    bool is_torn;           /* a step did not begin where the last one ended */
-    int kill_from, kill_to; /* the process ends at this step; -1: at none */
-    int n_before_kill;      /* once it has been made so often */
-    int64_t n_triangles;    /* that the sink has taken */
+    int last;               /* the last step; -1: none */
+    bool is_torn;           /* a step did not begin where the previous step ended */
+    int kill_from, kill_to; /* range of steps at which the process ends; -1: at none */
+    int n_before_kill;      /* number of times that step is taken before the process ends */
+    int64_t n_triangles;    /* triangles that the sink has received */
 };
 
 static const struct steps NO_STEPS = {.last = -1, .kill_from = -1, .kill_to = -1};
 
-/* --- what next.h lists */
+/* --- steps listed in next.h */
 
 static int step_named(const char *word, size_t length)
 {
@@ -40,7 +40,7 @@ static int step_named(const char *word, size_t length)
     return -1;
 }
 
-/* The steps that a line of the table names: the first is where the others begin. */
+/* The steps named in one row of the table. Where a row lists several, the first is the step at which they begin. */
 static void read_line(const char *line, struct steps *listed)
 {
     int from = -1;
@@ -71,7 +71,7 @@ static struct steps read_table(void)
     return listed;
 }
 
-/* --- what runs do */
+/* --- steps that runs take */
 
 static void note_step(void *user, int from, int to)
 {
@@ -100,7 +100,7 @@ static enum tri_status begin_again(void *user, const struct tri_stream *stream, 
     return TRI_OK;
 }
 
-static const struct tri_sink counting = {NULL, begin_again, count_tile, NULL}; /* for the steps of a run */
+static const struct tri_sink counting = {NULL, begin_again, count_tile, NULL}; /* counts the steps of the run */
 
 static bool never(void *user)
 {
@@ -155,7 +155,8 @@ static void run_swept(const struct trial *trial, struct steps *steps)
 
 static const char DIRECTORY[] = "next_state";
 
-/* A process that keeps a state at each border is killed at a step, once it has made that so often before. */
+/* A process that writes a checkpoint at each border is killed at a step, after taking that step a given number of
+   times. */
 static void kill_at(const struct trial *trial, struct par_options options, struct steps at, bool resume)
 {
     struct par_checkpoint c;
@@ -167,13 +168,13 @@ static void kill_at(const struct trial *trial, struct par_options options, struc
         c.seconds = 0;
         options.checkpoint = &c;
         refine(trial, options, &at);
-        _exit(2); /* it has not come there */
+        _exit(2); /* the run did not reach the step */
     }
     assert_true(waitpid(child, &how, 0) == child && WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 0);
 }
 
-/* Another process goes on to the end. */
+/* Another process continues to the end. */
 static void go_on(const struct trial *trial, struct par_options options, struct steps *steps)
 {
     struct par_checkpoint c;
@@ -182,7 +183,7 @@ static void go_on(const struct trial *trial, struct par_options options, struct 
     options.checkpoint = &c;
     assert_int_equal(refine(trial, options, steps), TRI_OK);
     assert_int_equal(steps->last, PAR_END);
-    assert_null(c.stop); /* which may have been the run's own */
+    assert_null(c.stop); /* the error may have been the run's own */
     par_checkpoint_close(&c, true);
 }
 
@@ -234,15 +235,15 @@ static void run_on_ranks(const struct trial *trial, struct steps *steps)
             steps->made[from][to] |= member[0].steps.made[from][to];
 }
 
-/* --- both */
+/* --- listed steps and steps taken */
 
 static const struct trial little = {"letter.poly", 20, 300, 500, false, false, 0};
 static const struct trial easy = {"letter.poly", 20, 15000, 500, false, false, 0};
-/* Blocks leave something. */
+/* Blocks leave some bad triangles. */
 static const struct trial stubborn = {"cracked_plate.poly", 20, 5000, 256, false, false, 1};
 static const struct trial expensive = {"letter.poly", 33, 15000, 500, false, false, 0};
 static const struct trial both = {"cracked_plate.poly", 33, 5000, 256, false, false, 1};
-/* No cells for sizes alone. */
+/* Sizes without cells of their own. */
 static const struct trial few_cells = {"cracked_plate.poly", 36, 15000, 2000, false, false, 1};
 static const struct trial no_cells = {"letter.poly", 33, 15000, 1e6, false, false, 0};
 
@@ -285,8 +286,8 @@ static void test_runs_make_the_steps_that_are_listed(void **state)
     assert_int_equal(wrong, 0);
 }
 
-/* Sizes first by one call, then a sweep. A run that goes on comes through that call again, on its way to the column
- * that it was killed in; the columns that are kept stay kept, and are handed out once. */
+/* Sizes are first met by one call, then the mesh is swept. A resumed run repeats that call on its way to the column in
+   which it was killed. Columns in the checkpoint are kept and handed out once. */
 static void test_a_sweep_is_killed_again_and_again(void **state)
 {
     (void)state;

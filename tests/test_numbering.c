@@ -1,25 +1,26 @@
-/* However a mesh is scrambled, numbering it gives the same bytes: those of the same mesh. */
+/* Numbering a mesh gives the same bytes for every permutation of its vertices and triangles. */
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
 #include "sched/tiles/numbering.h"
 #include "tile_order.h"
 
-/* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */
+/* Regions, crossing segments, and attributes that identify the position of a vertex. The mesh is so fine that the work
+   is divided into shares. */
 static struct tri_mesh refined(uint64_t seed, double max_area)
 {
     struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 60, 20, seed);
     struct tri_options options = support_quality(25, max_area);
     support_add_attributes(&pslg);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    for (int32_t t = 0; t < mesh.n_triangles; t++) /* regions by place, so that they can be recognised */
+    for (int32_t t = 0; t < mesh.n_triangles; t++) /* a region by position, to recognise each triangle */
         mesh.tri[t].region =
             mesh.xy[mesh.tri[t].v[0]].x + mesh.xy[mesh.tri[t].v[1]].x + mesh.xy[mesh.tri[t].v[2]].x > 1;
     tri_pslg_free(&pslg);
     return mesh;
 }
 
-/* A random way to put n things into n + n / 8 places from `first` on. */
+/* A random injection of n items into n + n / 8 entries from `first` on. */
 static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct support_random *random)
 {
     *places = n + n / 8;
@@ -35,7 +36,7 @@ static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct suppor
     return to;
 }
 
-/* The same mesh under other numbers, but for the first vertices, with free ids between them. */
+/* The same mesh with permuted numbers, except for the first vertices, and with free entries between them. */
 static struct tri_mesh scrambled(const struct tri_mesh *from, int32_t hubs, struct support_random *random)
 {
     struct tri_mesh to;
@@ -103,7 +104,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, int32_t hubs, stru
     return to;
 }
 
-/* Blocks of a hundred triangles or so. */
+/* Blocks of about a hundred triangles. */
 static struct par_partition partition_of(const struct tri_mesh *mesh)
 {
     struct par_partition partition;
@@ -112,13 +113,13 @@ static struct par_partition partition_of(const struct tri_mesh *mesh)
     return partition;
 }
 
-/* Behind the vertices that parents end at. */
+/* After the vertices at which parents end. */
 static enum tri_status number(struct tri_mesh *mesh, const struct par_partition *partition)
 {
     return par_number(mesh, partition, mesh->incidence.n_vertices, NULL, NULL);
 }
 
-/* By blocks of its own. */
+/* Blocks of this numbering's own. */
 static void number_and_judge(struct tri_mesh *mesh)
 {
     struct par_partition partition = partition_of(mesh);
@@ -140,7 +141,7 @@ static void assert_is_whole(const struct tri_mesh *mesh)
         assert_true(support_has_its_attributes(mesh, v));
 }
 
-static void test_any_scrambling_comes_out_the_same(void **state)
+static void test_any_permutation_gives_the_same_numbering(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 12; seed += (uint64_t)every(5)) {
@@ -159,7 +160,7 @@ static void test_any_scrambling_comes_out_the_same(void **state)
         assert_is_whole(&mesh);
         after = support_places(&mesh);
         assert_true(support_same_places(&places, &after));
-        assert_int_equal(par_number(&mesh, &partition, n_kept, NULL, NULL), TRI_OK); /* once more: nothing to do */
+        assert_int_equal(par_number(&mesh, &partition, n_kept, NULL, NULL), TRI_OK); /* nothing to do */
         support_assert_same_bytes(&mesh, &other);
         par_partition_free(&partition);
         support_places_free(&places);
@@ -169,8 +170,8 @@ static void test_any_scrambling_comes_out_the_same(void **state)
     }
 }
 
-/* Refinement may go on, and a mesh to which nothing was added is numbered too. */
-static void test_before_and_after_refinement(void **state)
+/* Refinement may continue after numbering. A mesh to which nothing was added can also be numbered. */
+static void test_numbering_works_before_and_after_refinement(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 200, 3);
@@ -191,8 +192,8 @@ static void test_before_and_after_refinement(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A corner where thousands of triangles start: sorted in linear time, and right. */
-static void test_large_fan(void **state)
+/* A vertex shared by thousands of triangles: sorting takes linear time and is correct. */
+static void test_large_fan_is_sorted_in_linear_time(void **state)
 {
     (void)state;
     enum { N = 20000 };
@@ -247,9 +248,9 @@ static void test_without_memory_nothing_changes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_scrambling_comes_out_the_same),
-        cmocka_unit_test(test_before_and_after_refinement),
-        cmocka_unit_test(test_large_fan),
+        cmocka_unit_test(test_any_permutation_gives_the_same_numbering),
+        cmocka_unit_test(test_numbering_works_before_and_after_refinement),
+        cmocka_unit_test(test_large_fan_is_sorted_in_linear_time),
         cmocka_unit_test(test_without_memory_nothing_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* The order stays that of insertion, and searches short. */
+/* The ordered list keeps the order of insertion, and searches take logarithmic time. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static bool is_below_limit(const void *user, int32_t s)
     return s < *(const int32_t *)user;
 }
 
-/* In their order the items are 0, 1, 2 ..; `in` says which are there. */
+/* In list order the items are 0, 1, 2, ...; `in` marks the items in the list. */
 static void assert_order(const struct tri_order *order, const bool *in, int32_t n)
 {
     int32_t at = -1;
@@ -72,7 +72,7 @@ static void order_is_searched_in_logarithmic_time(void **state)
     struct tri_order order;
     assert_int_equal(tri_order_init(&order, N), TRI_OK);
     for (int32_t s = 0; s < N; s++)
-        tri_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
+        tri_order_insert(&order, s, s - 1); /* from bottom to top, the worst case for an unbalanced tree */
     for (int32_t s = 0; s < N; s++)
         assert_int_equal(tri_order_find(&order, count_and_compare, &s), s - 1);
     assert_true(asked < 40 * N);

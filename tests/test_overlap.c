@@ -1,4 +1,4 @@
-/* Pieces that overlap: which elementary pieces are left, whose they are, and how many. */
+/* Overlapping pieces: which elementary pieces are left, which input pieces cover each, and how many there are. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static int32_t draw_pieces(struct support_random *random, struct tri_piece *piec
     return n;
 }
 
-/* Who runs along each unit of each line, by looking at all. */
+/* Finds the pieces that cover each unit of each line, by brute force. */
 static void paint_units(const struct tri_piece *piece, int32_t n, struct tri_course *unit, int32_t *times)
 {
     for (int32_t u = 0; u < N_POINTS; u++)
@@ -39,7 +39,7 @@ static void paint_units(const struct tri_piece *piece, int32_t n, struct tri_cou
     }
 }
 
-static void test_each_elementary_piece_once(void **state)
+static void test_each_elementary_piece_is_listed_once(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 3000; seed++) {
@@ -69,7 +69,7 @@ static void test_each_elementary_piece_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_elementary_piece_once),
+        cmocka_unit_test(test_each_elementary_piece_is_listed_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

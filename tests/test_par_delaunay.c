@@ -1,4 +1,5 @@
-/* The triangulation of points on several threads against that on one, byte for byte, with many small blocks. */
+/* Compares the triangulation of points on several threads byte for byte with that on one thread, with many small
+   blocks. */
 #include "support.h"
 
 #include "sched/schedule/threads.h"
@@ -39,7 +40,7 @@ static void test_grid_on_all_threads(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Leaves of the usual size. */
+/* Leaves of the default size. */
 static void test_many_points(void **state)
 {
     (void)state;

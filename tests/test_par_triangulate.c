@@ -1,5 +1,5 @@
-/* triangulate() of libptriangle.a: it takes the parallel schedule, gives the same mesh for any number of threads, and
- * leaves size tests that are not known to be safe to one thread. */
+/* triangulate() of libptriangle.a uses the parallel schedule, gives the same mesh for any number of threads, and calls
+   size tests on one thread unless they are known to be thread-safe. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -42,7 +42,7 @@ static void assert_same(const struct triangulateio *a, const struct triangulatei
     assert_memory_equal(a->trianglelist, b->trianglelist, 3 * (size_t)a->numberoftriangles * sizeof(int));
 }
 
-static void test_any_number_of_threads(void **state)
+static void test_any_number_of_threads_gives_the_same_mesh(void **state)
 {
     (void)state;
     struct triangulateio first = mesh_square("pqa0.00001zQ", NULL);
@@ -55,8 +55,8 @@ static void test_any_number_of_threads(void **state)
     release(&first);
 }
 
-/* The schedule makes another mesh than one sequential call, so the mesh tells which was linked. */
-static void test_it_is_the_schedule(void **state)
+/* The schedule makes a different mesh than one sequential call, so the mesh shows which library was linked. */
+static void test_the_parallel_schedule_is_used(void **state)
 {
     (void)state;
     struct tri_pslg pslg = {.n_points = 4, .points = xy, .n_segments = 4, .segments = ends};
@@ -83,7 +83,7 @@ static void test_it_is_the_schedule(void **state)
 
 struct crowd {
     atomic_int inside, calls;
-    atomic_bool met; /* two at once */
+    atomic_bool met; /* two calls ran at the same time */
 };
 
 static int ask_slowly(void *user, const REAL *a, const REAL *b, const REAL *c, REAL area)
@@ -97,7 +97,7 @@ static int ask_slowly(void *user, const REAL *a, const REAL *b, const REAL *c, R
     return area > 0.00001;
 }
 
-static void test_size_tests_one_by_one(void **state)
+static void test_size_tests_are_called_one_at_a_time(void **state)
 {
     (void)state;
     struct crowd crowd = {0};
@@ -107,7 +107,7 @@ static void test_size_tests_one_by_one(void **state)
     assert_false(crowd.met);
     options.unsuitable_in_parallel = 1;
     struct triangulateio parallel = mesh_square("pqua0.00002zQ", &options);
-    assert_int_not_equal(serial.numberofpoints, parallel.numberofpoints); /* the schedule was used */
+    assert_int_not_equal(serial.numberofpoints, parallel.numberofpoints); /* different, so the schedule was used */
     options.threads = 1;
     struct triangulateio again = mesh_square("pqua0.00002zQ", &options);
     assert_same(&parallel, &again);
@@ -119,9 +119,9 @@ static void test_size_tests_one_by_one(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any_number_of_threads),
-        cmocka_unit_test(test_it_is_the_schedule),
-        cmocka_unit_test(test_size_tests_one_by_one),
+        cmocka_unit_test(test_any_number_of_threads_gives_the_same_mesh),
+        cmocka_unit_test(test_the_parallel_schedule_is_used),
+        cmocka_unit_test(test_size_tests_are_called_one_at_a_time),
     };
     return cmocka_run_group_tests_name("par_triangulate", tests, NULL, NULL);
 }

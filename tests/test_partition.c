@@ -1,13 +1,13 @@
-/* Blocks: their fences, held against a look at every one of them; shares of work, held against the refined mesh. */
+/* Blocks: fences are compared with a search over all blocks, and shares of work with the refined mesh. */
 #include "support.h"
 
 #include "sched/schedule/partition.h"
 #include "triangle/size/estimate.h"
 #include "triangle/refine/place.h"
 
-/* Inputs and bounds of many kinds, degenerate ones among them. */
+/* Inputs and bounds of many kinds, including degenerate ones. */
 struct trial {
-    const char *file; /* or NULL */
+    const char *file; /* name of the input file; NULL: random points */
     enum support_kind kind;
     int32_t points;
     double angle, max_area, block;
@@ -20,7 +20,7 @@ static const struct trial trials[] = {
     {NULL, SUPPORT_RING, 200, 30, 0.05, 1000},
     {NULL, SUPPORT_LINE, 100, 30, 0.05, 700},
     {NULL, SUPPORT_NEAR_LINE, 300, 20, 0, 10},
-    {NULL, SUPPORT_CLUSTER, 5000, 20, 0, 100}, /* most of the work in no space */
+    {NULL, SUPPORT_CLUSTER, 5000, 20, 0, 100}, /* most of the work lies in a tiny area */
     {NULL, SUPPORT_CLUSTER, 200, 20, 1e-6, 3000},
     {"letter.poly", 0, 0, 30, 0.001, 1000},
     {"section.poly", 0, 0, 20, 0, 50},
@@ -28,7 +28,7 @@ static const struct trial trials[] = {
     {"coast/borders.poly", 0, 0, 25, 0, 1000},
     {"coast/islands.poly", 0, 0, 20, 1e7, 300},
     {"nasty/aspect_1e8.poly", 0, 0, 20, 1000, 1000},
-    {"nasty/collinear.poly", 0, 0, 20, 0.1, 100}, /* no triangles at all */
+    {"nasty/collinear.poly", 0, 0, 20, 0.1, 100}, /* no triangles */
     {"nasty/hole_eats_all.poly", 0, 0, 20, 0.001, 100},
 };
 
@@ -88,7 +88,7 @@ static bool meet(const struct tri_fence *a, const struct tri_fence *b)
     return fmax(a->x_min, b->x_min) < fmin(a->x_max, b->x_max) && fmax(a->y_min, b->y_min) < fmin(a->y_max, b->y_max);
 }
 
-/* Half-open boxes of one phase have no point in common. */
+/* Half-open boxes of one phase are disjoint. */
 static void assert_phases_are_disjoint(const struct par_partition *p)
 {
     for (int32_t i = 0; i < par_blocks(p); i++) {
@@ -104,7 +104,7 @@ static void assert_phases_are_disjoint(const struct par_partition *p)
 
 static double depth(double low, double q, double high) { return fmin(q - low, high - q); }
 
-/* The cell of n - 1 that holds q, by a look at each. */
+/* The cell, out of n - 1, that contains q, by linear search. */
 static int32_t cell_at(const double *bounds, int32_t n, double q)
 {
     int32_t k = n - 2;
@@ -119,7 +119,7 @@ static double width_at(const double *bounds, int32_t n, double q)
     return bounds[k + 1] - bounds[k];
 }
 
-/* The narrowest of the cell that holds q and its neighbours. */
+/* The narrowest of the cell that contains q and its neighbours. */
 static double least_width_at(const double *bounds, int32_t n, double q)
 {
     int32_t at = cell_at(bounds, n, q);
@@ -129,8 +129,8 @@ static double least_width_at(const double *bounds, int32_t n, double q)
     return least;
 }
 
-/* Every phase has one block that holds q, and par_block_at finds it; and some block holds q together with what is
- * around it, for half of the cells there: so no seam is left open by all four phases. */
+/* In every phase exactly one block contains q, and par_block_at finds it. Some block contains q together with its
+   surroundings, for half the width of the cells there. So no seam is left open by all four phases. */
 static void assert_point_is_served(const struct par_partition *p, struct tri_point q)
 {
     int32_t found[PAR_PHASES] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};
@@ -152,7 +152,7 @@ static void assert_point_is_served(const struct par_partition *p, struct tri_poi
     assert_true(deep);
 }
 
-/* Random points of the box and about it, vertices of the mesh, and points exactly on boundaries. */
+/* Random points in and around the box, vertices of the mesh, and points exactly on boundaries. */
 static void assert_plane_is_served(const struct par_partition *p, const struct tri_mesh *mesh)
 {
     struct support_random random = {11};
@@ -191,8 +191,8 @@ static void test_fences_serve_every_point_and_phases_are_disjoint(void **state)
     }
 }
 
-/* Coarser boundaries are every other one of the finer ones, down to one block that is the whole plane. */
-static void test_coarsening_halves(void **state)
+/* Each coarser level keeps every other boundary, down to one block that covers the whole plane. */
+static void test_coarsening_halves_the_number_of_cells(void **state)
 {
     (void)state;
     struct tri_options options;
@@ -235,8 +235,8 @@ static void test_cell_size(void **state)
     }
 }
 
-/* Triangles of the refined mesh in the fullest block of the first phase, against the mean; *ratio: of all against the
- * estimate. */
+/* Compares the triangles of the refined mesh in the fullest block of the first phase with the mean. *ratio: the total
+   number of triangles divided by the estimate. */
 static double imbalance(const struct trial *trial, double *ratio)
 {
     struct tri_options options;
@@ -271,15 +271,15 @@ static void test_blocks_have_equal_shares_of_the_work(void **state)
     (void)state;
     static const struct {
         struct trial trial;
-        double fullest; /* block against the mean */
+        double fullest; /* upper bound of fullest block divided by mean */
     } cases[] = {
-        {{NULL, SUPPORT_RANDOM, 300, 20, 1e-5, 2000}, 1.1},          /* uniform bound */
+        {{NULL, SUPPORT_RANDOM, 300, 20, 1e-5, 2000}, 1.1},          /* uniform area bound */
         {{"letter.poly", 0, 0, 30, 0.002, 1500}, 1.1},                /* with holes */
         {{NULL, SUPPORT_RANDOM, 10000, 20, 0, 1000}, 1.2},            /* uniform points */
-        {{"koch_lake.poly", 0, 0, 30, 0, 300}, 1.5},                  /* graded by features */
+        {{"koch_lake.poly", 0, 0, 30, 0, 300}, 1.5},                  /* sizes graded by features */
         {{"coast/islands.poly", 0, 0, 25, 0, 100}, 1.8},
         {{"coast/norway_sea.poly", 0, 0, 25, 0, 500}, 1.8},
-        {{"coast/borders.poly", 0, 0, 25, 3e8, 1500}, 1.8},          /* features and bound */
+        {{"coast/borders.poly", 0, 0, 25, 3e8, 1500}, 1.8},          /* features and an area bound */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double ratio;
@@ -288,7 +288,7 @@ static void test_blocks_have_equal_shares_of_the_work(void **state)
     }
 }
 
-/* The estimate is the sum of its parts, and the bound of a region counts where it is the smaller one. */
+/* The estimate is the sum of its parts. The smaller of the region's bound and the global bound applies. */
 static void test_work_follows_the_bounds(void **state)
 {
     (void)state;
@@ -317,7 +317,7 @@ static void test_work_follows_the_bounds(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Fine at one place of the square, far from the centroid of any triangle of the input. */
+/* Fine at one place in the square, far from the centroid of every input triangle. */
 static int is_too_large(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     double x = (a[0] + b[0] + c[0]) / 3 - 0.97, y = (a[1] + b[1] + c[1]) / 3 - 0.96;
@@ -331,7 +331,8 @@ static int is_never_right(void *user, const double a[2], const double b[2], cons
     return area > 0;
 }
 
-/* A size test says by probing how many triangles it will ask for, and where; one that is no test of size, nothing. */
+/* Probing a size test estimates how many triangles it will request, and where. Probing a function that does not test
+   size changes nothing. */
 static void test_size_tests_are_probed(void **state)
 {
     (void)state;
@@ -362,8 +363,8 @@ static void test_size_tests_are_probed(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* No vertices at all; and estimates that no number of blocks can follow. */
-static void test_extremes(void **state)
+/* Inputs without vertices, and estimates that no number of blocks can match. */
+static void test_extreme_estimates_are_handled(void **state)
 {
     (void)state;
     struct tri_mesh mesh;
@@ -388,10 +389,10 @@ static void test_extremes(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* --- columns by sorting all samples at once */
+/* --- columns found by sorting all samples at once */
 
 struct sampled {
-    double at[3]; /* place and work */
+    double at[3]; /* x, y and work */
 };
 
 struct sampling {
@@ -427,7 +428,7 @@ static void assert_columns_are_quantiles(const struct par_partition *p, const st
     }
 }
 
-/* Lattices have many samples in one place along each axis. */
+/* In lattices, many samples share a coordinate. */
 static void test_columns_are_those_of_sorted_samples(void **state)
 {
     (void)state;
@@ -451,12 +452,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fences_serve_every_point_and_phases_are_disjoint),
         cmocka_unit_test(test_columns_are_those_of_sorted_samples),
-        cmocka_unit_test(test_coarsening_halves),
+        cmocka_unit_test(test_coarsening_halves_the_number_of_cells),
         cmocka_unit_test(test_cell_size),
         cmocka_unit_test(test_blocks_have_equal_shares_of_the_work),
         cmocka_unit_test(test_work_follows_the_bounds),
         cmocka_unit_test(test_size_tests_are_probed),
-        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_extreme_estimates_are_handled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Refiners that pause between two points, and go on: the same mesh as without a pause. */
+/* Refiners that pause between two points and continue make the same mesh as without a pause. */
 #include "support.h"
 
 #include "triangle/mesh/surface.h"
@@ -12,7 +12,7 @@ static bool always(void *user)
 
 static const struct tri_stop at_once = {always, NULL};
 
-/* name: of a file, or NULL: random points, whose triangles are more than are looked at in one go. */
+/* name: an input file, or NULL for random points, whose triangles are too many to be searched in one pass. */
 static struct tri_mesh coarse(const char *name, const struct tri_options *options, struct tri_pslg *pslg)
 {
     struct tri_options coarse = *options;
@@ -53,16 +53,16 @@ static void compare(const char *name, const struct tri_options *options)
     tri_pslg_free(&same);
 }
 
-static void test_goes_on(void **state)
+static void test_paused_refinement_gives_the_same_mesh(void **state)
 {
     (void)state;
     struct tri_options options = support_quality(30, 0.006);
     compare("letter.poly", &options);
-    options.quality.max_steiner = 6000; /* ends amid of it */
+    options.quality.max_steiner = 6000; /* refinement ends in between, at the limit on points */
     compare("letter.poly", &options);
-    options = support_quality(33, 0.008); /* two stages */
+    options = support_quality(33, 0.008); /* two schedules in turn */
     compare("letter.poly", &options);
-    options = support_quality(36, 0.5); /* four */
+    options = support_quality(36, 0.5); /* four schedules in turn */
     compare("section.poly", &options);
     options = support_quality(28, 0.008);
     options.quality.conforming = true;
@@ -79,8 +79,9 @@ static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points
     return TRI_NO_ROOM;
 }
 
-/* Runs a refiner that finds no room before each point that needs some: so it pauses also behind the split of a
- * subsegment, with a triangle in hand, when others wait to be tested for encroachment. Returns how often it has. */
+/* Runs a refiner that finds no room before each point that needs room. It then also pauses after the split of a
+   subsegment, while it treats a triangle and others wait for the test for encroachment. Returns the number of
+   pauses. */
 static int step(struct tri_refiner *refiner, struct tri_mesh *mesh)
 {
     enum tri_status status;
@@ -117,7 +118,7 @@ static void compare_step_by_step(const char *name, const struct tri_options *opt
     tri_pslg_free(&same);
 }
 
-static void test_step_by_step(void **state)
+static void test_pause_before_each_point_gives_the_same_mesh(void **state)
 {
     (void)state;
     static const char *const names[] = {"cracked_plate.poly", "thin_channel.poly", "gear.poly", "letter.poly"};
@@ -129,7 +130,7 @@ static void test_step_by_step(void **state)
         }
 }
 
-/* Points on a circle, whose centre has all of it for a cavity; and a strip beside it. */
+/* Points on a circle, so that the cavity of its centre is the whole disk, and a strip beside it. */
 static struct tri_pslg disk(void)
 {
     enum { CORNERS = 200 };
@@ -152,8 +153,8 @@ static void add_deferred(void *user, tri_triangle_id triangle)
     *sum += triangle + 1;
 }
 
-/* A block of a phase. */
-static void test_within_a_fence(void **state)
+/* A block of one phase. */
+static void test_pauses_within_a_fence_give_the_same_mesh(void **state)
 {
     (void)state;
     int64_t deferred[2] = {0, 0};
@@ -193,9 +194,9 @@ static void test_within_a_fence(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goes_on),
-        cmocka_unit_test(test_step_by_step),
-        cmocka_unit_test(test_within_a_fence),
+        cmocka_unit_test(test_paused_refinement_gives_the_same_mesh),
+        cmocka_unit_test(test_pause_before_each_point_gives_the_same_mesh),
+        cmocka_unit_test(test_pauses_within_a_fence_give_the_same_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The best point of a petal against the whole Voronoi diagram, and against the edges that it would get. */
+/* Compares the best point of a petal with the whole Voronoi diagram, and with the edges that the point would get. */
 #include "support.h"
 
 #include "triangle/mesh/cavity.h"
@@ -8,10 +8,10 @@
 
 enum { PETALS = 4000 };
 
-/* A petal as its definition has it: the disk that sees ab under the bound. */
+/* A petal by its definition: the disk from whose border ab is seen under the bound. */
 struct petal {
     struct tri_point a, b, o;
-    double r2, usual2; /* of the disk; of the triangle's circumdisk */
+    double r2, usual2; /* squared radius of the disk; of the triangle's circumdisk */
 };
 
 static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t)
@@ -38,7 +38,7 @@ static bool holds(const struct petal *p, struct tri_point q)
     return tri_orient2d(p->a, p->b, q) > 0 && tri_distance2(p->o, q) <= p->r2 * (1 + 1e-9);
 }
 
-/* The least squared distance of q from a vertex. */
+/* The smallest squared distance of q from a vertex. */
 static double nearest2(const struct tri_mesh *mesh, struct tri_point q)
 {
     double least = HUGE_VAL;
@@ -47,8 +47,8 @@ static double nearest2(const struct tri_mesh *mesh, struct tri_point q)
     return least;
 }
 
-/* The least squared length of the edges that p would get if it were inserted for triangle t; infinite where it lies
- * behind a segment, which would be split instead. */
+/* The smallest squared length of the edges that p would get if it were inserted for triangle t. Infinite if p lies
+   behind a segment, which would be split instead. */
 static double shortest2(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point p)
 {
     struct tri_cavity cavity = {0};
@@ -62,7 +62,8 @@ static double shortest2(const struct tri_mesh *mesh, tri_triangle_id t, struct t
     return behind ? HUGE_VAL : least;
 }
 
-/* The best of the diagram's vertices in the petal, and of the places where its edges leave it, by bisection. */
+/* The best of the diagram's vertices in the petal and of the points where its edges leave the petal, found by
+   bisection. */
 static double best2(const struct tri_mesh *mesh, const struct petal *p)
 {
     double best = 0;
@@ -89,8 +90,8 @@ static bool is_bad(const struct tri_shape *shape, double angle)
     return shape->area2 * shape->area2 < sine * sine * tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
 }
 
-/* Of all bad triangles: the point lies in the petal, and its edges are no shorter than those of the circumcentre; where
- * there are no segments no other point of the diagram is better. */
+/* For each bad triangle, the point lies in the petal and its edges are no shorter than those of the circumcentre.
+   Without segments, no other point of the diagram is better. */
 static void judge_points(const struct tri_mesh *mesh, double angle, bool open, int *better, int *petals)
 {
     double height = tri_bounds_for(angle, false).off_centre;
@@ -115,7 +116,7 @@ static void judge_points(const struct tri_mesh *mesh, double angle, bool open, i
     }
 }
 
-static void test_the_best_of_the_diagram(void **state)
+static void test_the_point_is_the_best_of_the_diagram(void **state)
 {
     (void)state;
     static const double angles[] = {20, 30, 34, 38};
@@ -130,7 +131,7 @@ static void test_the_best_of_the_diagram(void **state)
     assert_true(better > petals / 10 && petals > 1000);
 }
 
-static void test_segments_hide_what_is_behind(void **state)
+static void test_segments_hide_vertices_behind_them(void **state)
 {
     (void)state;
     int better = 0, petals = 0;
@@ -145,8 +146,8 @@ static void test_segments_hide_what_is_behind(void **state)
     assert_true(better > petals / 20 && petals > 300);
 }
 
-/* What a fence does not hold, or is not here, is not read: the same point comes out whatever is there. */
-static void test_what_is_not_held_does_not_count(void **state)
+/* Triangles outside the fence, or held by other ranks, are not read. The point does not depend on their content. */
+static void test_triangles_outside_the_fence_are_not_read(void **state)
 {
     (void)state;
     const double height = tri_bounds_for(30, false).off_centre;
@@ -184,9 +185,9 @@ static void test_what_is_not_held_does_not_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_best_of_the_diagram),
-        cmocka_unit_test(test_segments_hide_what_is_behind),
-        cmocka_unit_test(test_what_is_not_held_does_not_count),
+        cmocka_unit_test(test_the_point_is_the_best_of_the_diagram),
+        cmocka_unit_test(test_segments_hide_vertices_behind_them),
+        cmocka_unit_test(test_triangles_outside_the_fence_are_not_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

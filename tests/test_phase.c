@@ -1,5 +1,5 @@
-/* One phase against its definition: the blocks of a phase, one after the other, by the sequential loop on the whole
- * mesh. */
+/* Compares one phase with its definition: the blocks of the phase, one after the other, refined by the sequential loop
+   on the whole mesh. */
 #include "full.h"
 #include "support.h"
 
@@ -10,7 +10,7 @@
 #include "triangle/refine/place.h"
 
 struct trial {
-    const char *file; /* or NULL: random points in a square */
+    const char *file; /* name of the input file; NULL: random points in a square */
     double angle, max_area, block;
     bool conforming;
 };
@@ -25,7 +25,8 @@ enum { N_TRIALS = sizeof trials / sizeof *trials };
 static struct tri_mesh start_of(const struct trial *trial, struct tri_quality *quality)
 {
     struct tri_pslg pslg = {0};
-    struct tri_options options = support_quality(20, 8 * trial->max_area); /* half way there */
+    struct tri_options options = support_quality(20, 8 * trial->max_area); /* eight times the area: about half of the
+                                                                              refinement */
     if (!trial->file)
         pslg = support_square(1, 300, 9);
     else if (!support_read(trial->file, &pslg))
@@ -63,7 +64,8 @@ static bool is_in(void *user, const double p[2])
     return p[0] >= f->x_min && p[0] < f->x_max && p[1] >= f->y_min && p[1] < f->y_max;
 }
 
-/* The reference: block after block, forwards or backwards, on the mesh itself. Returns the points inserted. */
+/* The reference: refines block after block, forwards or backwards, on the mesh itself. Returns the number of inserted
+   points. */
 static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_quality *quality,
                               const struct par_partition *p, int phase, bool backwards)
 {
@@ -93,7 +95,7 @@ static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_quality *q
     return inserted;
 }
 
-/* The block of the phase whose fence holds all three corners, or TRI_NONE. */
+/* The block of the phase whose fence contains all three corners, or TRI_NONE. */
 static int32_t block_of_triangle(const struct par_partition *p, int phase, const struct tri_mesh *mesh,
                                  const int32_t v[3])
 {
@@ -104,7 +106,7 @@ static int32_t block_of_triangle(const struct par_partition *p, int phase, const
     return block;
 }
 
-/* What changed belonged to one block before and belongs to the same one now. */
+/* Changed triangles belonged to one block before and belong to the same block now. */
 static void assert_changes_are_owned(const struct tri_mesh *mesh, const struct tri_triangle *old, int32_t n_old,
                                      const struct par_partition *p, int phase)
 {
@@ -119,8 +121,8 @@ static void assert_changes_are_owned(const struct tri_mesh *mesh, const struct t
     }
 }
 
-/* Is the triangle on the other side of a subsegment of this one listed? Of two beside an encroached subsegment one is
- * enough. */
+/* Is the triangle on the other side of a subsegment of this triangle listed? Of the two triangles beside an encroached
+   subsegment, one in the list is enough. */
 static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, int32_t t)
 {
     for (int e = 0; e < 3; e++)
@@ -132,7 +134,7 @@ static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, in
     return false;
 }
 
-/* Whatever is bad now is in the worklist, for the phases to come; but for what was given up for good. */
+/* Every bad triangle is in the worklist for the following phases, except those that were given up permanently. */
 static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_quality *quality,
                                                   const struct par_ids *worklist,
                                                   const struct tri_refine_report *report)
@@ -152,7 +154,7 @@ static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, c
     free(bad.item);
 }
 
-/* The phase itself, and what can be told from before and after. */
+/* Runs the phase itself, and checks the state before and after it. */
 static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *quality, const struct par_partition *p,
                          int phase, const struct par_options *options, int64_t *pauses)
 {
@@ -169,7 +171,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *qualit
     run.worklist = bad_triangles(mesh, quality);
     if (par_phase(&run, &turn, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    par_room_mark(&run.spare, mesh, NULL); /* triangles that nobody has used yet hold anything */
+    par_room_mark(&run.spare, mesh, NULL); /* entries for triangles that were never used hold arbitrary bytes */
     assert_changes_are_owned(mesh, old, n_old, p, phase);
     assert_worklist_holds_all_that_is_bad(mesh, quality, &run.worklist, &report.total);
     *pauses += report.pauses;
@@ -186,8 +188,8 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_quality *qualit
     return inserted;
 }
 
-/* Serialisation: threads, order of blocks and pauses for room do not show in the mesh. */
-static void test_a_phase_is_its_blocks_one_by_one(void **state)
+/* Serialisation: the mesh does not depend on threads, the order of blocks, or pauses for room. */
+static void test_a_phase_equals_its_blocks_one_by_one(void **state)
 {
     (void)state;
     static const struct par_options options[] = {{.threads = 1},
@@ -222,9 +224,9 @@ static void test_a_phase_is_its_blocks_one_by_one(void **state)
     assert_true(pauses > 1000);
 }
 
-/* Four phases leave little, and all that they leave is in the worklist; triangles that have gone are dropped from
- * it. */
-static void test_four_phases_in_turn(void **state)
+/* Four phases leave few bad triangles, all of them in the worklist. Triangles that no longer exist are dropped from
+   it. */
+static void test_four_phases_leave_few_bad_triangles(void **state)
 {
     (void)state;
     for (int i = 0; i < N_TRIALS; i++) {
@@ -261,8 +263,8 @@ static void test_four_phases_in_turn(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_phase_is_its_blocks_one_by_one),
-        cmocka_unit_test(test_four_phases_in_turn),
+        cmocka_unit_test(test_a_phase_equals_its_blocks_one_by_one),
+        cmocka_unit_test(test_four_phases_leave_few_bad_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

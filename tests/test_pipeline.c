@@ -1,4 +1,4 @@
-/* Whatever is made in whatever order, all is taken in its order, by the caller's thread, from a slot of its own. */
+/* Items may be made in any order. The caller's thread consumes all of them in sequence, each from a slot of its own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,9 +16,9 @@ enum { N = 500, SLOTS = 5 };
 
 struct trial {
     pthread_t caller;
-    int32_t slot[SLOTS]; /* what lies in it */
+    int32_t slot[SLOTS]; /* number of the item that each slot holds */
     int32_t n_taken;
-    int32_t fails_at; /* making this one fails; N: none */
+    int32_t fails_at; /* number of the item whose making fails; N: none */
     bool in_order, by_caller;
 };
 
@@ -27,7 +27,7 @@ static enum tri_status make(void *context, int32_t i, int32_t slot, struct tri_e
     struct trial *t = context;
     if (i == t->fails_at)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "number %d", (int)i);
-    for (volatile int32_t k = 0; k < i * 7919 % 5000; k++) /* some take longer than others */
+    for (volatile int32_t k = 0; k < i * 7919 % 5000; k++) /* makes some items slower than others */
         ;
     t->slot[slot] = i;
     return TRI_OK;
@@ -54,7 +54,7 @@ static enum tri_status run(struct trial *t, int threads, int32_t n_slots, struct
     return status;
 }
 
-static void all_are_taken_in_order(void **state)
+static void all_items_are_consumed_in_order(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 4; threads++)
@@ -66,7 +66,7 @@ static void all_are_taken_in_order(void **state)
         }
 }
 
-static void a_failure_ends_it(void **state)
+static void a_failure_ends_the_pipeline(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 3; threads++) {
@@ -80,6 +80,7 @@ static void a_failure_ends_it(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_are_taken_in_order), cmocka_unit_test(a_failure_ends_it)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(all_items_are_consumed_in_order),
+                                       cmocka_unit_test(a_failure_ends_the_pipeline)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Densities of a picture: every pixel whose centre a large triangle covers has its share, and no other; small triangles
- * are counted one by one; what is outside, or nowhere, is left out. */
+/* Densities of a picture. Each pixel whose centre lies in a large triangle gets its share, and no other pixel does.
+   Small triangles are counted one by one. Triangles outside the picture and those without finite coordinates are
+   omitted. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +15,7 @@ enum { WIDTH = 40, HEIGHT = 30 };
 
 static double count[WIDTH * HEIGHT];
 
-/* A picture of [0, 4] x [0, 3], ten pixels a unit, and nothing in it. */
+/* An empty picture of [0, 4] x [0, 3] with ten pixels per unit. */
 static struct plot_density empty_picture(void)
 {
     for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -37,7 +38,7 @@ static double sum(void)
     return all;
 }
 
-static void test_two_large_ones_fill_the_picture(void **state)
+static void test_two_large_triangles_fill_the_picture(void **state)
 {
     (void)state;
     struct plot_density d = empty_picture();
@@ -46,16 +47,16 @@ static void test_two_large_ones_fill_the_picture(void **state)
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         assert_true(count[i] > 0.99 / 600 && count[i] < 1.01 / 600);
     d = empty_picture();
-    add(&d, -100, -100, 100, -100, 0, 300); /* all of it lies inside */
+    add(&d, -100, -100, 100, -100, 0, 300); /* the picture lies inside the triangle */
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         assert_true(count[i] > 0 && count[i] == count[0]);
 }
 
-static void test_place_of_a_triangle(void **state)
+static void test_a_triangle_covers_the_right_pixels(void **state)
 {
     (void)state;
     struct plot_density d = empty_picture();
-    add(&d, 1, 1, 2, 1, 1, 2); /* counted from the top: rows 10 to 19 */
+    add(&d, 1, 1, 2, 1, 1, 2); /* rows count from the top: rows 10 to 19 */
     for (int row = 0; row < HEIGHT; row++)
         for (int column = 0; column < WIDTH; column++) {
             const double x = column + 0.5 - 10, y = HEIGHT - row - 0.5 - 10, edge = 10 - x - y;
@@ -64,7 +65,7 @@ static void test_place_of_a_triangle(void **state)
         }
 }
 
-static void test_small_ones_are_counted(void **state)
+static void test_small_triangles_are_counted(void **state)
 {
     (void)state;
     struct plot_density d = empty_picture();
@@ -73,7 +74,7 @@ static void test_small_ones_are_counted(void **state)
     assert_true(count[19 * WIDTH + 20] == 100 && sum() == 100);
 }
 
-static void test_what_is_not_there(void **state)
+static void test_triangles_outside_are_omitted(void **state)
 {
     (void)state;
     struct plot_density d = empty_picture();
@@ -88,10 +89,10 @@ static void test_what_is_not_there(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_two_large_ones_fill_the_picture),
-        cmocka_unit_test(test_place_of_a_triangle),
-        cmocka_unit_test(test_small_ones_are_counted),
-        cmocka_unit_test(test_what_is_not_there),
+        cmocka_unit_test(test_two_large_triangles_fill_the_picture),
+        cmocka_unit_test(test_a_triangle_covers_the_right_pixels),
+        cmocka_unit_test(test_small_triangles_are_counted),
+        cmocka_unit_test(test_triangles_outside_are_omitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

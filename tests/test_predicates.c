@@ -1,5 +1,5 @@
-/* Tests of triangle/predicates and triangle/expansion. The oracle evaluates the same determinants in GMP integers, and
- * breaks ties by raising the lifted points by actual, widely different amounts instead of by reasoning about them. */
+/* Tests of triangle/predicates and triangle/expansion. The oracle evaluates the same determinants with GMP integers. It
+   breaks ties by raising the lifted points by actual amounts of widely different magnitude, not by case analysis. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +41,7 @@ static double random_mantissa(void)
     return 1 + (double)(random_bits() >> 12) * 0x1p-52;
 }
 
-/* Of random sign and an exponent in [low, high]; sometimes with few bits. */
+/* A random sign and a random exponent in [low, high]; sometimes with few significant bits. */
 static double random_double(int low, int high)
 {
     double m = random_bits() % 4 == 0 ? 1 + random_int(0, 7) / 8.0 : random_mantissa();
@@ -136,7 +136,7 @@ static void load(int n, const struct tri_point *p)
     }
 }
 
-/* minor = (px[j] - px[i]) (py[k] - py[i]) - (py[j] - py[i]) (px[k] - px[i]); uses tmp[16..19]. */
+/* minor = (px[j] - px[i]) (py[k] - py[i]) - (py[j] - py[i]) (px[k] - px[i]). Uses tmp[16..19]. */
 static void oracle_minor(mpz_t minor, int i, int j, int k)
 {
     mpz_sub(tmp[16], px[j], px[i]);
@@ -155,7 +155,8 @@ static int oracle_orient(struct tri_point a, struct tri_point b, struct tri_poin
     return mpz_sgn(tmp[0]);
 }
 
-/* The 4 x 4 determinant of rows x, y, lift, 1, developed by its lifts; the coordinates are loaded. Uses tmp[1..4]. */
+/* The 4 x 4 determinant with rows x, y, lift, 1, expanded by the lifts. The coordinates must be loaded. Uses
+   tmp[1..4]. */
 static int determinant_of_lifts(void)
 {
     oracle_minor(tmp[1], 1, 2, 3);
@@ -193,7 +194,7 @@ static int lexicographic_rank(const struct tri_point p[4], int i)
     return rank;
 }
 
-/* Ties broken: lifts are raised by 2^(gap (rank - 4)) of the unit, where 2^gap is beyond any ratio of minors. */
+/* With ties broken: lifts are raised by 2^(gap (rank - 4)) units, where 2^gap exceeds any ratio of minors. */
 static bool oracle_in_circle(const struct tri_point p[4])
 {
     int sign = oracle_incircle(p);
@@ -283,8 +284,8 @@ static void shuffle(struct tri_point p[4])
     }
 }
 
-/* A random point of integer coordinates on the circle about 0 of radius 5 * 13 * 17 * ..., n_primes factors: a Gaussian
- * integer, product of squares and norms of the primes' factors. */
+/* A random point with integer coordinates on the circle about 0 with radius 5 * 13 * 17 * ... (n_primes factors). The
+   point is a Gaussian integer, a product of squares and norms of the primes' factors. */
 static struct tri_point lattice_circle_point(int n_primes)
 {
     static const int64_t factor[9][2] = {{2, 1}, {3, 2}, {4, 1}, {5, 2}, {6, 1}, {5, 4}, {7, 2}, {6, 5}, {8, 3}};
@@ -304,7 +305,7 @@ static struct tri_point lattice_circle_point(int n_primes)
     return (struct tri_point){random_sign() * (double)x, random_sign() * (double)y};
 }
 
-/* One of the eight images of (x, y) under the symmetries of the square, all on one circle about 0. */
+/* One of the eight images of (x, y) under the symmetries of the square. All lie on one circle about 0. */
 static struct tri_point symmetric_point(double x, double y)
 {
     double u = random_sign() * x, v = random_sign() * y;
@@ -325,7 +326,7 @@ static void perturb(struct tri_point p[4], int ulps)
     }
 }
 
-/* Exactly cocircular by construction, from small integers up to coordinates that use the whole range. */
+/* Points that are exactly cocircular by construction, from small integers to coordinates that use the whole range. */
 static void cocircular_points(struct tri_point p[4])
 {
     int kind = random_int(0, 3), n_primes = random_int(1, 9);
@@ -388,7 +389,7 @@ static void test_two_sum_and_two_product_are_exact(void **state)
     }
 }
 
-/* A compressed expansion of up to max components; returns its length. */
+/* An expansion, compressed to at most max components. Returns its length. */
 static int random_expansion(int max, double *e)
 {
     double sum[2 * TRI_EXPANSION_FACTOR];
@@ -457,7 +458,7 @@ static void test_orient2d_random(void **state)
     }
 }
 
-/* 256 x 256 neighbours, one ulp apart, of a point on a line through two others. */
+/* 256 x 256 neighbours, one ulp apart, of a point on the line through two other points. */
 static void test_orient2d_grid_of_ulps(void **state)
 {
     (void)state;
@@ -465,7 +466,7 @@ static void test_orient2d_grid_of_ulps(void **state)
     for (int i = 0; i < 256; i++) {
         for (int k = 0; k < 256; k++) {
             struct tri_point a = {0.5 + i * 0x1p-53, 0.5 + k * 0x1p-53};
-            int sign = (k > i) - (k < i); /* above the diagonal, b -> c has a on its left */
+            int sign = (k > i) - (k < i); /* above the diagonal, a lies to the left of b -> c */
             assert_int_equal(sign_of(tri_orient2d(a, b, c)), -sign_of(tri_orient2d(b, a, c)));
             assert_int_equal(sign_of(tri_orient2d(c, a, b)), sign_of(tri_orient2d(a, b, c)));
             check_orient(a, b, c);
@@ -488,7 +489,7 @@ static void test_orient2d_near_a_line(void **state)
     }
 }
 
-/* Right angles up to a few ulps, and anything. */
+/* Right angles with errors of a few ulps, and random vectors. */
 static void test_dot(void **state)
 {
     (void)state;
@@ -504,7 +505,7 @@ static void test_dot(void **state)
     }
 }
 
-/* Multiples of one vector by powers of two, all signs: collinear with tails that no filter sees. */
+/* Multiples of one vector by powers of two, with all signs: collinear, with low parts that no filter resolves. */
 static void test_orient2d_collinear_in_the_whole_range(void **state)
 {
     (void)state;
@@ -575,7 +576,7 @@ static void test_incircle_near_a_circle(void **state)
     }
 }
 
-/* Rounded points of a circle, and of a grid of tenths: never exactly cocircular, always nearly so. */
+/* Rounded points of a circle, and of a grid with spacing 0.1: never exactly cocircular, always nearly so. */
 static void test_incircle_rounded_circle_and_grid(void **state)
 {
     (void)state;
@@ -596,7 +597,7 @@ static void test_incircle_integers(void **state)
     (void)state;
     for (int i = 0; i < 40000; i++) {
         struct tri_point p[4];
-        int bits = random_int(1, 27), size = bits < 12 ? 5 : 1 << bits; /* around the limit of 25 bits too */
+        int bits = random_int(1, 27), size = bits < 12 ? 5 : 1 << bits; /* also around the limit of 25 bits */
         for (int k = 0; k < 4; k++) {
             p[k] = (struct tri_point){random_int(-size, size), random_int(-size, size)};
         }
@@ -604,7 +605,8 @@ static void test_incircle_integers(void **state)
     }
 }
 
-/* Nearly cocircular integers whose determinant is tiny beside its terms: points of a lattice circle moved by 1. */
+/* Nearly cocircular integers whose determinant is tiny compared with its terms: points of a lattice circle, moved by
+   1. */
 static void test_incircle_integers_off_a_circle_by_one(void **state)
 {
     (void)state;
@@ -620,7 +622,7 @@ static void test_incircle_integers_off_a_circle_by_one(void **state)
     }
 }
 
-/* The ends of the range: least and greatest coordinates, one ulp apart. */
+/* The ends of the range: smallest and largest coordinates, one ulp apart. */
 static void test_incircle_ends_of_the_range(void **state)
 {
     (void)state;
@@ -639,7 +641,7 @@ static void test_incircle_ends_of_the_range(void **state)
     assert_true(TRI_LEAST_COORDINATE == 0x1p-216);
 }
 
-/* Products of lowest bits reach 2^-1072; a filter that let them vanish would call these cocircular. */
+/* Products of the lowest bits reach 2^-1072. A filter in which they underflow would call these points cocircular. */
 static void test_incircle_least_determinant(void **state)
 {
     (void)state;
@@ -659,11 +661,13 @@ static void test_incircle_least_determinant(void **state)
 
 static const int permutation[24][4] = {
     {0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 0, 1, 3},
-    {2, 1, 3, 0}, {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}, /* even until here, odd from here */
+    {2, 1, 3, 0}, {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}, /* even permutations up to here, odd ones from
+                                                                             here on */
     {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 3, 2, 1}, {1, 0, 2, 3}, {1, 2, 3, 0}, {1, 3, 0, 2}, {2, 0, 3, 1},
     {2, 1, 0, 3}, {2, 3, 1, 0}, {3, 0, 1, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}};
 
-/* p are distinct and not all collinear: there all answers are false, which does not alternate. */
+/* The points p are distinct and not all collinear, since for collinear points all answers are false and do not
+   alternate. */
 static void check_permutations(const struct tri_point p[4])
 {
     double det = tri_incircle(p[0], p[1], p[2], p[3]);
@@ -693,8 +697,8 @@ static void test_in_circle_alternates_over_all_namings(void **state)
     }
 }
 
-/* Is the diagonal from a to c Delaunay in the convex quadrilateral a, b, c, d? Both triangles must say the same, under
- * each of their names. */
+/* Is the diagonal from a to c Delaunay in the convex quadrilateral a, b, c, d? Both triangles must give the same answer
+   for every order of their corners. */
 static bool is_diagonal(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     bool valid = !tri_in_circle(a, b, c, d);
@@ -725,7 +729,7 @@ static void test_in_circle_of_a_unit_square(void **state)
 {
     (void)state;
     struct tri_point a = {0, 0}, b = {1, 0}, c = {1, 1}, d = {0, 1};
-    /* (1, 1) is the largest, hence raised most: it is cut off by the diagonal between its neighbours. */
+    /* (1, 1) is the largest point, so its lift is raised most. The diagonal between its neighbours cuts it off. */
     assert_true(is_diagonal(b, c, d, a));
     assert_false(is_diagonal(a, b, c, d));
 }
@@ -751,7 +755,7 @@ static bool is_empty(int n, const struct tri_point *p, int i, int j, int k)
     return true;
 }
 
-/* Triangles with empty circles, ties broken; *twice_area gets their doubled area. */
+/* Lists triangles with empty circles, with ties broken. *twice_area: the sum of their doubled areas. */
 static int count_delaunay(int n, const struct tri_point *p, double *twice_area)
 {
     int count = 0;
@@ -770,7 +774,7 @@ static int count_delaunay(int n, const struct tri_point *p, double *twice_area)
     return count;
 }
 
-/* Of n points with h on the hull's border there are 2n - 2 - h triangles, if ties never leave a gap or an overlap. */
+/* n points, h of them on the border of the hull, give 2n - 2 - h triangles if ties never leave a gap or an overlap. */
 static void test_in_circle_triangulates_an_integer_grid(void **state)
 {
     (void)state;

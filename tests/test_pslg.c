@@ -1,4 +1,4 @@
-/* What a PSLG must fulfil before anything looks at it. */
+/* Checks that a PSLG is validated before it is used. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

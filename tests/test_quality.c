@@ -1,10 +1,10 @@
-/* Bounds, shapes and placement against elementary geometry in long double. */
+/* Compares bounds, shapes and placement with elementary geometry in long double. */
 #include "support.h"
 #include "triangle/refine/place.h"
 
 static const double RADIANS = 0.017453292519943295769;
 
-static void test_bounds(void **state)
+static void test_bounds_match_their_angles(void **state)
 {
     (void)state;
     for (double angle = 1; angle <= 60; angle++) {
@@ -17,7 +17,8 @@ static void test_bounds(void **state)
     }
     struct tri_bounds none = tri_bounds_for(0, false);
     assert_true(none.sin2 == 0 && none.off_centre == 0);
-    assert_true(none.lens_cos2 == tri_bounds_for(20, false).lens_cos2); /* keeps away from subsegments all the same */
+    assert_true(none.lens_cos2 == tri_bounds_for(20, false).lens_cos2); /* points keep their distance from subsegments
+                                                                           even then */
     assert_true(tri_bounds_for(0, true).lens_cos2 == 0);
     assert_true(tri_bounds_for(-5, false).sin2 == 0);
 }
@@ -97,8 +98,8 @@ static void test_circumcentre_is_equidistant(void **state)
     }
 }
 
-/* An off-centre lies on the bisector of the shortest edge, on the side of the third corner, at the height asked for. */
-static void test_off_centre(void **state)
+/* An off-centre lies on the bisector of the shortest edge, on the side of the third corner, at the requested height. */
+static void test_off_centre_has_the_requested_height(void **state)
 {
     (void)state;
     struct support_random random = {4};
@@ -125,7 +126,7 @@ static void test_off_centre(void **state)
     assert_true(moved > 1000);
 }
 
-/* The new triangle on the shortest edge keeps the bound for which the off-centre was placed. */
+/* The new triangle on the shortest edge meets the bound for which the off-centre was computed. */
 static void test_off_centre_keeps_the_bound(void **state)
 {
     (void)state;
@@ -142,12 +143,9 @@ static void test_off_centre_keeps_the_bound(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_shape_and_angle_test),
-        cmocka_unit_test(test_longer_product_takes_the_two_longer),
-        cmocka_unit_test(test_circumcentre_is_equidistant),
-        cmocka_unit_test(test_off_centre),
-        cmocka_unit_test(test_off_centre_keeps_the_bound),
+        cmocka_unit_test(test_bounds_match_their_angles),           cmocka_unit_test(test_shape_and_angle_test),
+        cmocka_unit_test(test_longer_product_takes_the_two_longer), cmocka_unit_test(test_circumcentre_is_equidistant),
+        cmocka_unit_test(test_off_centre_has_the_requested_height), cmocka_unit_test(test_off_centre_keeps_the_bound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* A sink behind a queue: all tiles in their order, copied; failures come back; nothing hangs, nothing leaks. */
+/* A sink behind a queue receives copies of all tiles in order. Failures are returned, nothing hangs, and nothing
+   leaks. */
 #include "sched/tiles/queue.h"
 
 #include <setjmp.h>
@@ -16,11 +17,11 @@
 
 static const struct lattice LATTICE = {60, 3, 2, 1, true, false};
 
-/* What came, as a sum over all bytes in order. */
+/* Checksum over all received bytes, in order. */
 struct judge {
     uint64_t sum;
     int tiles, begun, ended;
-    int fail_at; /* this tile is refused; 0: none */
+    int fail_at; /* number of the tile that is refused; 0: none */
 };
 
 static void add_bytes(struct judge *judge, const void *data, size_t n)
@@ -66,14 +67,14 @@ static enum tri_status end(void *user, struct tri_error *error)
 
 static struct tri_sink sink_of(struct judge *judge) { return (struct tri_sink){judge, begin, take, end}; }
 
-static void test_same_tiles(void **state)
+static void test_the_sink_receives_the_same_tiles(void **state)
 {
     (void)state;
     const int64_t most[] = {0, 1, 5000, 1 << 20};
     struct judge straight = {0}, queued = {0};
     const struct tri_sink to_straight = sink_of(&straight), to_queued = sink_of(&queued);
     assert_int_equal(lattice_hand_out(&LATTICE, &to_straight, NULL), TRI_OK);
-    for (int i = 0; i < 8; i++) { /* twice each: a second beginning */
+    for (int i = 0; i < 8; i++) { /* each run twice, for a second beginning */
         struct par_queue queue;
         assert_true(par_queue_begin(&queue, &to_queued, most[i / 2]));
         const struct tri_sink sink = par_queue_sink(&queue);
@@ -87,7 +88,7 @@ static void test_same_tiles(void **state)
     assert_int_equal(queued.ended, 12);
 }
 
-static void test_failures_come_back(void **state)
+static void test_failures_are_returned(void **state)
 {
     (void)state;
     for (int k = 1; k <= 21; k++) {
@@ -105,14 +106,14 @@ static void test_failures_come_back(void **state)
     }
 }
 
-/* Whoever made tiles has failed: no end comes. */
+/* The producer of the tiles has failed, so the last tile never arrives. */
 static enum tri_status hand_out_some(const struct tri_sink *sink)
 {
     const struct tri_sink endless = {sink->user, sink->begin, sink->take, NULL};
     return lattice_hand_out(&LATTICE, &endless, NULL);
 }
 
-static void test_dropped(void **state)
+static void test_a_queue_may_be_dropped_before_its_end(void **state)
 {
     (void)state;
     struct judge judge = {0};
@@ -125,18 +126,18 @@ static void test_dropped(void **state)
     par_queue_free(&queue);
     assert_int_equal(judge.ended, 0);
     assert_int_equal(atomic_load(&support_held), held);
-    assert_true(par_queue_begin(&queue, &to, 1)); /* and one that never begins */
+    assert_true(par_queue_begin(&queue, &to, 1)); /* and a queue that never begins */
     par_queue_free(&queue);
 }
 
-static void test_no_memory(void **state)
+static void test_lack_of_memory_is_reported(void **state)
 {
     (void)state;
     struct judge judge = {0};
     const struct tri_sink to = sink_of(&judge);
     enum tri_status status = TRI_NO_MEMORY;
     int64_t held = atomic_load(&support_held);
-    for (int64_t k = 10; status; k++) { /* those before are the lattice's, and the thread */
+    for (int64_t k = 10; status; k++) { /* earlier allocations are the lattice's and the thread's */
         struct par_queue queue;
         assert_true(par_queue_begin(&queue, &to, 5000));
         const struct tri_sink sink = par_queue_sink(&queue);
@@ -154,10 +155,10 @@ static void test_no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_tiles),
-        cmocka_unit_test(test_failures_come_back),
-        cmocka_unit_test(test_dropped),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_the_sink_receives_the_same_tiles),
+        cmocka_unit_test(test_failures_are_returned),
+        cmocka_unit_test(test_a_queue_may_be_dropped_before_its_end),
+        cmocka_unit_test(test_lack_of_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Against a stable sort that is plainly right, over all sizes that are treated differently. */
+/* Compares the radix sort with a simple stable sort, over all sizes that have a code path of their own. */
 #include "full.h"
 #include "support.h"
 #include "triangle/base/radix.h"
@@ -33,7 +33,8 @@ static void assert_sorts(uint64_t *items, int32_t n, int low, int high, const st
     free(scratch);
 }
 
-/* Keys of so many bits, the place of each below them; spread: 0 all alike .. 3 evenly, 4: nearly all in one bucket. */
+/* Keys with a given number of bits, and the index of each below them. spread: 0 all equal .. 3 uniform, 4: nearly all
+   in one bucket. */
 static void fill(uint64_t *items, int32_t n, int low, int bits, int spread, struct support_random *random)
 {
     uint64_t mask = bits == 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
@@ -59,15 +60,15 @@ static void test_sorts_stably(void **state)
         for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
             for (int spread = 0; spread < 5; spread++) {
                 if (sizes[s] > 1000 && r != 1 && spread != (int)r % 5)
-                    continue; /* the judge takes long over many */
+                    continue; /* the reference sort is slow for many keys */
                 fill(items, sizes[s], ranges[r][0], ranges[r][1] - ranges[r][0], spread, &random);
                 assert_sorts(items, sizes[s], ranges[r][0], ranges[r][1], spread % 2 ? &support_backwards : NULL);
             }
     free(items);
 }
 
-/* So many that even the buckets of the first pass do not fit a cache. The index below the key rises, so stably sorted
- * items rise, too. */
+/* So many keys that even the buckets of the first pass exceed a cache. The index below the key increases, so stably
+   sorted items increase as well. */
 static void test_sorts_millions(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The schedule on ranks, which here are threads: tile for tile what one process makes, for any number of ranks and any
- * shares of the columns; and one error on all of them, wherever it comes from. */
+/* The schedule on ranks, which are threads here: the tiles equal those of one process for any number of ranks and any
+   shares of the columns. An error on any rank is returned by all ranks. */
 #include "fake_ranks.h"
 #include "full.h"
 #include "support.h"
@@ -27,27 +27,27 @@ static const struct trial trials[] = {
     {"nasty/aspect_1e8.poly", 20, 10000, 256, false, false, 0},
     {"nasty/huge_scale.poly", 30, 10000, 256, false, false, 0},
     {"nasty/needle_1e-9.poly", 20, 4000, 256, false, false, 0},
-    {"square_random1000.poly", 33, 10000, 256, false, false, 0}, /* two schedules */
+    {"square_random1000.poly", 33, 10000, 256, false, false, 0}, /* needs two schedules */
     {"section.poly", 32, 20000, 300, true, true, 0},
     {"coast/norway_sea.poly", 34, 30000, 400, false, false, 0},
     {"letter.poly", 34, 20000, 500, false, false, 1},
-    {"section.poly", 35, 10000, 500, true, true, 0},             /* and a sequential call behind them */
+    {"section.poly", 35, 10000, 500, true, true, 0},             /* followed by a sequential call */
     {"section.poly", 25, -15000, 300, false, true, 0},
-    {"letter.poly", 25, -20000, 300, false, false, 0}, /* coarse vertices are erased, also at borders */
+    {"letter.poly", 25, -20000, 300, false, false, 0}, /* coarse vertices are erased, also at borders between ranks */
 };
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 9 };
 
-/* --- what is handed out */
+/* --- tiles handed out */
 
-/* Everything that one sink has taken; cmocka's asserts belong to the main thread. */
+/* What one sink has received. Asserts of cmocka may only run on the main thread. */
 struct stream {
     struct par_bytes bytes;
     bool first_rank, lost;
     int32_t n_attributes;
-    int64_t end[3];        /* of vertices, triangles and segments; -1: nothing has come yet */
+    int64_t end[3];        /* numbers of vertices, triangles and segments so far; -1: no tile yet */
     int64_t begin[3];
-    int32_t fail_at;       /* > 0: this call of take fails */
+    int32_t fail_at;       /* number of the call of take that fails; 0: none */
 };
 
 static void append(struct stream *s, const void *bytes, int64_t n, size_t item)
@@ -108,7 +108,7 @@ struct member {
     enum tri_status status;
     struct tri_error error;
     bool relayed;
-    struct par_checkpoint checkpoint; /* open on rank 0, where there is one */
+    struct par_checkpoint checkpoint; /* open on rank 0 if the run has a checkpoint */
 };
 
 static void refine_to(struct member *m)
@@ -120,7 +120,7 @@ static void refine_to(struct member *m)
     m->status = par_refine(&m->mesh, &m->start->options.quality, &m->options, &m->report, &m->error);
 }
 
-/* All tiles to the sink of rank 0. */
+/* Sends all tiles to the sink of rank 0. */
 static void refine_and_relay(struct member *m)
 {
     const struct tri_sink to = {&m->stream, begin_stream, take_tile, NULL};
@@ -166,7 +166,7 @@ static struct member new_member(const struct start *start, const struct par_opti
     return (struct member){.start = start, .options = *options, .mesh = mesh, .stream = new_stream(true)};
 }
 
-/* Any shares, empty ones among them. */
+/* Random shares, some of them empty. */
 static void draw_shares(double share[MOST_RANKS + 1], int n_ranks, struct support_random *random)
 {
     share[0] = 0;
@@ -193,7 +193,7 @@ static void new_members(struct member *member, const struct start *start, const 
         member[p].stream.first_rank = p == 0;
         member[p].stream.fail_at = p == fails ? relayed ? 8 : 2 : 0;
         member[p].relayed = relayed;
-        if (relayed && p % 2 == 0) { /* all of its mesh leaves memory at once */
+        if (relayed && p % 2 == 0) { /* all of its mesh is removed from memory at once */
             member[p].options.memory = 1;
             member[p].options.scratch = ".";
         }
@@ -210,7 +210,7 @@ static void run_ranks(struct member *member, const struct start *start, const st
     fake_world_free(&world);
 }
 
-/* Of one process, and of these ranks one after the other: the same bytes. */
+/* One process, then each number of ranks in turn, gives the same bytes. */
 static void compare(const struct member *alone, const struct member *member, int n_ranks)
 {
     size_t at = 0;
@@ -236,7 +236,7 @@ static int64_t sent(const struct member *member, int n_ranks, enum par_move move
     return bytes;
 }
 
-static void test_ranks_hand_out_what_one_process_does(void **state)
+static void test_ranks_hand_out_the_tiles_of_one_process(void **state)
 {
     (void)state;
     struct support_random random = {7};
@@ -269,9 +269,9 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
     }
 }
 
-/* A block leaves a triangle beside a subsegment, with a corner outside its box, where a rank owns that which lends it
- * nothing. */
-static void test_a_block_leaves_what_reaches_beyond_its_box(void **state)
+/* A block leaves a triangle beside a subsegment with a corner outside its box, in an area of a rank that lends it no
+   triangles. */
+static void test_a_block_leaves_triangles_beyond_its_box(void **state)
 {
     (void)state;
     static const struct trial trial = {"section.poly", 25, 0, 60, true, false, 0};
@@ -289,11 +289,11 @@ static void test_a_block_leaves_what_reaches_beyond_its_box(void **state)
     trials_free(&start);
 }
 
-/* A disk that is full on one rank: all say so, in its words. */
-static void test_an_error_of_one_is_an_error_of_all(void **state)
+/* The disk is full on one rank: all ranks return the error with the same message. */
+static void test_an_error_on_one_rank_is_returned_by_all(void **state)
 {
     (void)state;
-    for (int fails = 0; fails < 4; fails++) { /* 3: rank 0, of tiles that others have sent */
+    for (int fails = 0; fails < 4; fails++) { /* 3: rank 0, for tiles received from others */
         static const struct trial trial = {"gear.poly", 30, 10000, 128, false, false, 0};
         struct start start = trials_start_of(&trial);
         struct par_options options = small_blocks(&trial, 1);
@@ -313,14 +313,14 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
 
 static const char DIRECTORY[] = "ranks-state";
 
-/* Rank 0 asks for the end as soon as there is something to go on from, and it is known. */
+/* Rank 0 requests the end as soon as there is a checkpoint to resume from and it has been reported. */
 static bool has_kept(void *user)
 {
     const struct par_checkpoint *c = user;
     return par_checkpoint_has_state(c) && c->last > 0;
 }
 
-/* From one checkpoint to the next, by so many ranks, of these shares. */
+/* Runs from one checkpoint to the next, with a given number of ranks and their shares. */
 static void run_a_step(struct member *member, const struct start *start, const struct par_options *options,
                        int n_ranks, const double *share, bool resume)
 {
@@ -346,7 +346,7 @@ static void remove_checkpoint(void)
     support_remove_directory(DIRECTORY);
 }
 
-/* Each step is done by another number of ranks, of other shares. Returns how many runs it took. */
+/* Each step is done by a different number of ranks with different shares. Returns the number of runs. */
 static int run_in_steps(const struct member *alone, const struct start *start, const struct par_options *options,
                         struct support_random *random)
 {
@@ -377,7 +377,7 @@ static int run_in_steps(const struct member *alone, const struct start *start, c
     return runs;
 }
 
-static void test_other_ranks_go_on(void **state)
+static void test_other_ranks_resume_from_a_checkpoint(void **state)
 {
     (void)state;
     static const int chosen[] = {5, 15, 10, 6, 20};
@@ -386,7 +386,7 @@ static void test_other_ranks_go_on(void **state)
         const struct trial *trial = &trials[chosen[i]];
         struct start start = trials_start_of(trial);
         struct par_options options = small_blocks(trial, 2);
-        options.cell_triangles /= 4; /* phases in several steps */
+        options.cell_triangles /= 4; /* makes phases take several steps */
         struct member alone = new_member(&start, &options);
         refine_to(&alone);
         int runs = run_in_steps(&alone, &start, &options, &random);
@@ -409,7 +409,7 @@ static void flip_byte(const char *name, long at)
     fclose(file);
 }
 
-/* Two ranks go on, and both fail. */
+/* Two ranks resume, and both fail. */
 static void expect_refusal(const struct start *start, const struct par_options *options, const char *text)
 {
     struct member member[2];
@@ -422,7 +422,7 @@ static void expect_refusal(const struct start *start, const struct par_options *
     par_checkpoint_close(&member[0].checkpoint, false);
 }
 
-static void test_what_does_not_fit_is_refused(void **state)
+static void test_checkpoints_of_other_runs_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -433,7 +433,7 @@ static void test_what_does_not_fit_is_refused(void **state)
     struct par_options options = small_blocks(&trials[3], 1);
     struct member member[3];
     remove_checkpoint();
-    run_a_step(member, &start, &options, 3, NULL, false); /* keeps twice */
+    run_a_step(member, &start, &options, 3, NULL, false); /* writes two checkpoints */
     assert_int_equal(member[0].status, TRI_STOPPED);
     par_checkpoint_close(&member[0].checkpoint, false);
     for (int p = 0; p < 3; p++)
@@ -451,7 +451,7 @@ static void test_what_does_not_fit_is_refused(void **state)
     tri_pslg_free(&other.pslg);
 }
 
-/* --- what the first rank has */
+/* --- data of the first rank */
 
 struct listener {
     struct par_carrier carrier;
@@ -470,7 +470,7 @@ static void *listen(void *user)
     return NULL;
 }
 
-static void test_all_get_what_the_first_has(void **state)
+static void test_all_ranks_get_the_data_of_the_first(void **state)
 {
     (void)state;
     for (int fails = -1; fails < 3; fails++) {
@@ -491,7 +491,7 @@ static void test_all_get_what_the_first_has(void **state)
     }
 }
 
-/* --- calls that do not fit each other */
+/* --- inconsistent calls */
 
 struct caller {
     struct par_carrier carrier;
@@ -522,17 +522,17 @@ static void *call(void *user)
     return NULL;
 }
 
-/* Nobody waits: all return the same. */
-static void test_ranks_that_are_called_otherwise_are_refused(void **state)
+/* No rank waits: all ranks return the same status. */
+static void test_inconsistent_calls_on_ranks_are_refused(void **state)
 {
     static const struct {
         double corner, area;
         bool has_sink;
-        const char *text; /* NULL: it is the call of the others */
+        const char *text; /* NULL: the same call as on the other ranks */
     } one[] = {
         {1, 1e-5, true, NULL},
         {1, 2e-5, true, "the ranks were given different inputs or settings"},
-        {1, 0.4, true, "the ranks were given different inputs or settings"}, /* too small to be shared */
+        {1, 0.4, true, "the ranks were given different inputs or settings"}, /* too small to be distributed */
         {2, 1e-5, true, "the ranks were given different inputs or settings"},
         {1, -1, true, "settings: max_area is -1"},
         {1, 1e-5, false, "a stream needs a sink with a take function"},
@@ -559,13 +559,13 @@ static void test_ranks_that_are_called_otherwise_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_get_what_the_first_has),
-        cmocka_unit_test(test_ranks_hand_out_what_one_process_does),
-        cmocka_unit_test(test_a_block_leaves_what_reaches_beyond_its_box),
-        cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
-        cmocka_unit_test(test_other_ranks_go_on),
-        cmocka_unit_test(test_what_does_not_fit_is_refused),
-        cmocka_unit_test(test_ranks_that_are_called_otherwise_are_refused),
+        cmocka_unit_test(test_all_ranks_get_the_data_of_the_first),
+        cmocka_unit_test(test_ranks_hand_out_the_tiles_of_one_process),
+        cmocka_unit_test(test_a_block_leaves_triangles_beyond_its_box),
+        cmocka_unit_test(test_an_error_on_one_rank_is_returned_by_all),
+        cmocka_unit_test(test_other_ranks_resume_from_a_checkpoint),
+        cmocka_unit_test(test_checkpoints_of_other_runs_are_refused),
+        cmocka_unit_test(test_inconsistent_calls_on_ranks_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Reading .node, .poly, .ele and .area files: every lexical rule and every error as a row of a table. Each row is read
- * with chunks of several sizes, down to one byte, and with tasks in reverse order; the result must be the same. */
+/* Reading .node, .poly, .ele and .area files: every lexical rule and every error is a row of a table. Each row is read
+   with chunks of several sizes, down to one byte, and with tasks in reverse order. The result must be the same. */
 #include "triangle/text/read.h"
 
 #include <math.h>
@@ -43,7 +43,8 @@ static int tear_down(void **state)
     return rmdir(directory);
 }
 
-/* Unlinked first: some file systems flush a file whose bytes are replaced, which takes longer than all else here. */
+/* The old file is unlinked first: some file systems flush a file whose bytes are replaced, which would take longer than
+   the rest of the test. */
 static void write_bytes(const char *path, const char *bytes, size_t n)
 {
     unlink(path);
@@ -64,7 +65,7 @@ static void run_backwards(void *self, size_t n_tasks, void (*task)(void *context
 
 static const struct tri_executor backwards = {run_backwards, NULL};
 
-/* What was read, as text. */
+/* The content that was read, as text. */
 struct dump {
     char text[4096];
     size_t length;
@@ -113,7 +114,7 @@ static void add_warning(void *user, const char *file, int64_t line, const char *
     add(user, "|w%ld:%s", (long)line, text);
 }
 
-/* Everything that is read with other chunks or another executor must be the same. */
+/* Reading with other chunks or another executor must give the same result. */
 static const struct tri_read_options varieties[] = {
     {.default_base = 1},
     {.default_base = 1, .chunk_bytes = 1},
@@ -125,7 +126,7 @@ static const struct tri_read_options varieties[] = {
 
 enum kind { NODE, POLY, POLY_WITH_REGIONS, POLY_REFINING, ELE, AREA };
 
-/* Reads the file of that kind; dump becomes the result, or the error as "status line text". */
+/* Reads the file of that kind. dump becomes the result, or the error as "status line text". */
 static void read_kind(enum kind kind, struct tri_read_options options, struct dump *dump)
 {
     struct tri_pslg pslg = {0};
@@ -172,7 +173,7 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
 
 struct example {
     const char *text;
-    const char *expected; /* a dump, or for errors "status line text": the begin of it */
+    const char *expected; /* the beginning of the dump or, for errors, of "status line text" */
 };
 
 static const char *path_of(enum kind kind)
@@ -201,7 +202,7 @@ static void check_examples(enum kind kind, const struct example *examples, size_
 
 #define CHECK_EXAMPLES(kind, examples) check_examples(kind, examples, LENGTH(examples))
 
-/* --- rules that have a meaning */
+/* --- rules that affect the meaning */
 
 static void node_lexical_rules(void **state)
 {
@@ -226,7 +227,7 @@ static void node_lexical_rules(void **state)
     CHECK_EXAMPLES(NODE, examples);
 }
 
-/* The number of the first record counts; all others are only counted. */
+/* The number of the first record determines the base. The numbers of all other records are ignored. */
 static void node_base(void **state)
 {
     (void)state;
@@ -412,7 +413,7 @@ static void ele_and_area_errors(void **state)
     CHECK_EXAMPLES(AREA, areas);
 }
 
-static void files_that_are_none(void **state)
+static void missing_and_unreadable_files_are_refused(void **state)
 {
     (void)state;
     unlink(node_path);
@@ -425,7 +426,7 @@ static void files_that_are_none(void **state)
     unlink(node_path);
 }
 
-/* A pipe has no size to ask for. */
+/* The size of a pipe is unknown. */
 static void reads_from_a_pipe(void **state)
 {
     (void)state;
@@ -446,7 +447,7 @@ static void reads_from_a_pipe(void **state)
     close(ends[0]);
 }
 
-/* A NUL byte would end the number before it: UTF-16 text would be read as other numbers. */
+/* A NUL byte would end the number before it, so that UTF-16 text would be read as different numbers. */
 static void nul_bytes_are_refused(void **state)
 {
     (void)state;
@@ -463,7 +464,7 @@ static void nul_bytes_are_refused(void **state)
     assert_null(pslg.points);
 }
 
-/* A line has no length limit: far longer than a chunk, and than any buffer. */
+/* The length of a line is unlimited: this one is far longer than a chunk and than any buffer. */
 static void long_line(void **state)
 {
     (void)state;
@@ -479,7 +480,7 @@ static void long_line(void **state)
     check_file(NODE, "a long line", "1 p:0 7 1 0 0 1");
 }
 
-/* Many records over many chunks: a table that ends and begins inside chunks. */
+/* Many records over many chunks. The table begins and ends inside chunks. */
 static void large_file_in_chunks(void **state)
 {
     (void)state;
@@ -512,7 +513,7 @@ static void large_file_in_chunks(void **state)
     }
 }
 
-/* --- whatever the bytes are: a result or an error, the same for all chunks */
+/* --- arbitrary bytes give a result or an error, the same for all chunks */
 
 static uint32_t random_number(void)
 {
@@ -563,7 +564,7 @@ int main(void)
         cmocka_unit_test(node_errors),
         cmocka_unit_test(poly_errors),
         cmocka_unit_test(ele_and_area_errors),
-        cmocka_unit_test(files_that_are_none),
+        cmocka_unit_test(missing_and_unreadable_files_are_refused),
         cmocka_unit_test(reads_from_a_pipe),
         cmocka_unit_test(nul_bytes_are_refused),
         cmocka_unit_test(long_line),

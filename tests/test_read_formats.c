@@ -1,6 +1,6 @@
-/* Formats of other programs, read again: what each keeps of a mesh comes back, of a part what is in it, in whatever
- * order a file has it; what is not read is refused by one sentence; whatever happens to a file, reading ends with a
- * mesh whose numbers are those of points, or with an error. */
+/* Reads formats of other programs again. The data that a format stores is restored, for a part of a mesh as well, and
+   in any order that the file uses. Unsupported content is refused with one sentence. Reading a damaged file ends with
+   an error or with a mesh whose indices are valid. */
 #include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
@@ -17,8 +17,8 @@
 #include "tests/files.h"
 #include "triangle/text/formats.h"
 
-/* The square of tests/test_formats.c: 3 x 3 points less its upper right quarter; the last segment is inside. Behind the
- * corners come the nodes amid edges. */
+/* The square of tests/test_formats.c: 3 x 3 points without the upper right quarter. The last segment lies inside. The
+   nodes at midpoints of edges follow the corners. */
 static const double points[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2, 0.5, 0.5, 1, 0.5, 0.5, 0, 0, 0.5,
                                 0.5, 1, 1.5, 0.5, 2, 0.5, 1.5, 0, 1.5, 1, 0.5, 1.5, 1, 1.5, 0, 1.5, 0.5, 2};
 static const double depths[] = {1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.1};
@@ -29,7 +29,7 @@ static const int32_t six[] = {0, 1, 4, 9, 8, 10, 0, 4, 3, 12, 11, 8, 1, 2, 5, 14
 static const double regions[] = {7, 7, 3, 3, 0.5, 7}, materials[] = {7, 7, 3, 3, 1, 7};
 static const int32_t segments[] = {0, 1, 1, 2, 2, 5, 5, 4, 4, 7, 7, 6, 6, 3, 3, 0, 1, 4};
 static const int32_t segment_markers[] = {2, 2, 1, 1, 1, 1, 0, 0, 5};
-enum { INNER = 1, OUTER = 8 }; /* segments */
+enum { INNER = 1, OUTER = 8 }; /* markers of segments */
 
 static struct array_grid ell(int n_nodes)
 {
@@ -75,7 +75,7 @@ static void free_mesh(struct mesh *mesh)
     tri_elements_free(&mesh->elements);
 }
 
-/* Empty where it fails. */
+/* Empty if reading fails. */
 static enum tri_status read_mesh(const char *name, struct mesh *mesh, struct tri_error *error)
 {
     *mesh = (struct mesh){0};
@@ -85,7 +85,7 @@ static enum tri_status read_mesh(const char *name, struct mesh *mesh, struct tri
     return status;
 }
 
-/* --- the same, in whatever order */
+/* --- the same mesh in any order */
 
 enum { MOST_LINES = 32, LINE_BYTES = 96 };
 
@@ -124,12 +124,12 @@ static void take_lines(struct lines *l, const struct mesh *mesh)
     sort_lines(l);
 }
 
-/* What a format keeps of the square. */
+/* The data of the square that a format stores. */
 struct kept {
     const char *name;
     int n_nodes;
-    bool markers, inner;     /* of points; segments inside */
-    const double *attributes; /* of triangles; NULL: none */
+    bool markers, inner;     /* markers of points; segments inside the domain */
+    const double *attributes; /* attributes of triangles; NULL: none */
 };
 
 static void expect_lines(struct lines *l, const struct kept *kept)
@@ -163,7 +163,7 @@ static const struct kept formats[] = {
 };
 enum { FORMATS = sizeof formats / sizeof *formats };
 
-static void test_what_is_written_is_read(void **state)
+static void test_written_meshes_are_read_back(void **state)
 {
     (void)state;
     for (int i = 0; i < FORMATS; i++) {
@@ -184,8 +184,8 @@ static void test_what_is_written_is_read(void **state)
     }
 }
 
-/* Points alone, and nothing that stands for nothing. */
-static void test_little(void **state)
+/* Points alone, and empty tables. */
+static void test_points_alone_and_empty_tables_are_read(void **state)
 {
     (void)state;
     static const char *const names[] = {"x.vtu", "x.msh", "x.2dm", "x.14"};
@@ -203,7 +203,7 @@ static void test_little(void **state)
     }
 }
 
-static void test_parts(void **state)
+static void test_parts_of_a_mesh_are_read(void **state)
 {
     (void)state;
     static const char *const names[] = {"p_1.msh", "p_2.msh", "p_3.msh"};
@@ -232,7 +232,7 @@ static void test_parts(void **state)
     assert_int_equal(ends, OUTER + INNER);
 }
 
-/* --- files of others */
+/* --- files written by other programs */
 
 #define VTU_HEAD "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>" \
                  "<FieldData><DataArray type=\"Float64\" Name=\"T\" format=\"ascii\">1</DataArray></FieldData>" \
@@ -265,7 +265,7 @@ static void expect_square(const char *name, const char *text, int32_t n_segments
     unlink(name);
 }
 
-static void test_files_of_others(void **state)
+static void test_files_of_other_programs_are_read(void **state)
 {
     (void)state;
     expect_square("x.vtu", VTU_HEAD VTU_POINTS VTU_CELLS("1 2  0 1 2  0 2 3", "3 5 5") VTU_TAIL, 1);
@@ -286,7 +286,7 @@ static void refuse(const char *name, const char *text, const char *words)
     unlink(name);
 }
 
-static void test_refused(void **state)
+static void test_unsupported_content_is_refused(void **state)
 {
     (void)state;
     struct mesh mesh;
@@ -332,7 +332,7 @@ static void assert_sound(const struct mesh *mesh)
         assert_true(mesh->elements.extra[i] >= 0 && mesh->elements.extra[i] < p->n_points);
 }
 
-/* The file stays open: some file systems write one to the disk that is closed after it was made shorter. */
+/* The file stays open, because some file systems flush a file that is closed after truncation. */
 static void try_bytes(const char *name, int file, const char *bytes, size_t n)
 {
     struct mesh mesh;
@@ -348,7 +348,7 @@ static void try_bytes(const char *name, int file, const char *bytes, size_t n)
     free_mesh(&mesh);
 }
 
-static void test_damage(void **state)
+static void test_damaged_files_are_harmless(void **state)
 {
     (void)state;
     static const char changes[] = {'\0', '\xff', '9', '-', '<', '\x7f'};
@@ -379,8 +379,12 @@ static void test_damage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_written_is_read), cmocka_unit_test(test_little), cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_files_of_others),         cmocka_unit_test(test_refused), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_written_meshes_are_read_back),
+        cmocka_unit_test(test_points_alone_and_empty_tables_are_read),
+        cmocka_unit_test(test_parts_of_a_mesh_are_read),
+        cmocka_unit_test(test_files_of_other_programs_are_read),
+        cmocka_unit_test(test_unsupported_content_is_refused),
+        cmocka_unit_test(test_damaged_files_are_harmless),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

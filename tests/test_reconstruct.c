@@ -1,6 +1,5 @@
-/* Meshes from their triangles: round trips, faults, surfaces that are no plane mesh, flips, regions.
- *
- * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+/* Meshes made from their triangles: round trips, faults, surfaces that are not planar meshes, flips, regions.
+   This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include <stdio.h>
 
 #include "allocations.h"
@@ -13,7 +12,7 @@
 
 enum { MOST = 64 };
 
-/* A mesh as input: points, segments and triangles that a .node, .poly and .ele file of it would hold. */
+/* A mesh as input: the points, segments and triangles that its .node, .poly and .ele files would contain. */
 struct input {
     struct tri_pslg pslg;
     struct tri_elements elements;
@@ -47,7 +46,7 @@ static struct input input_of(const struct tri_mesh *mesh)
     return in;
 }
 
-/* A fan of n - 1 triangles around point 0 at the origin; the other n points lie on a half circle, or nearly so. */
+/* A fan of n - 1 triangles around point 0 at the origin. The other n points lie on a half circle, or nearly so. */
 static struct input fan(int32_t n, double height)
 {
     struct input in = {.pslg = support_pslg(n + 1, 8, 0, 0), .elements = {.n = n - 1, .n_nodes = 3}};
@@ -85,7 +84,7 @@ static void add_steiner(struct tri_mesh *mesh, double min_angle, double max_area
     tri_mesh_compact(mesh);
 }
 
-/* Delaunay at every edge without subsegment; ties may be as they like. */
+/* Delaunay at every edge that is not a subsegment. Ties may be broken in any way. */
 static void assert_delaunay(const struct tri_mesh *mesh)
 {
     for (int32_t t = 0; t < mesh->n_triangles; t++)
@@ -100,7 +99,7 @@ static void assert_delaunay(const struct tri_mesh *mesh)
 
 /* --- round trips */
 
-/* Each subsegment is its own parent; or else the subsegments of a parent that was split have one again. */
+/* Makes each subsegment its own parent, or lets the subsegments of a split segment share a parent again. */
 static void assert_parents(const struct tri_mesh *mesh, const struct tri_mesh *back, bool united)
 {
     int32_t *parent = malloc((size_t)mesh->n_parents * sizeof *parent + 1);
@@ -133,7 +132,8 @@ static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh 
         assert_int_equal(back->tri[t].region, 0);
     }
     for (int32_t s = 0; s < mesh->n_subs; s++) {
-        int turned = back->sub[s].v[0] != mesh->sub[s].v[0]; /* so that all of a parent run its way */
+        int turned = back->sub[s].v[0] != mesh->sub[s].v[0]; /* so that all subsegments of a parent have its direction
+                                                                 */
         for (int k = 0; k < 2; k++) {
             assert_int_equal(back->sub[s].v[k], mesh->sub[s].v[k ^ turned]);
             assert_int_equal(back->sub[s].side[k], mesh->sub[s].side[k ^ turned]);
@@ -142,7 +142,8 @@ static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh 
     }
 }
 
-/* A mesh that is refined already is made the same, refined or not, and further refinement is judged. */
+/* A mesh that is refined already is restored unchanged, whether or not refinement is requested. Further refinement is
+   checked. */
 static void round_trip(const struct tri_pslg *pslg, double angle, double area)
 {
     struct tri_options options = support_quality(angle, area);
@@ -165,7 +166,7 @@ static void round_trip(const struct tri_pslg *pslg, double angle, double area)
     tri_mesh_free(&mesh);
 }
 
-static void what_was_meshed_comes_back(void **state)
+static void meshes_are_restored_from_their_triangles(void **state)
 {
     (void)state;
     static const struct {
@@ -186,7 +187,7 @@ static void what_was_meshed_comes_back(void **state)
     }
 }
 
-/* Without segments the boundary alone is subsegments, in the order of the triangles, marked 1. */
+/* Without segments, only the boundary consists of subsegments, in the order of the triangles and with marker 1. */
 static void boundary_becomes_subsegments(void **state)
 {
     (void)state;
@@ -252,7 +253,7 @@ static void segments_that_are_edges(void **state)
 {
     (void)state;
     struct input in = square();
-    segment(&in, 0, 2, 5); /* through the middle */
+    segment(&in, 0, 2, 5); /* crosses the middle */
     segment(&in, 4, 0, 0);
     segment(&in, 0, 4, -7);
     segment(&in, 4, 0, 8);
@@ -266,7 +267,7 @@ static void segments_that_are_edges(void **state)
     int32_t loose;
     struct tri_reconstruct_options both = {.use_segments = true, .is_edge = is_edge, .loose = &loose};
     struct tri_mesh mesh = rebuild(&in, &both);
-    static const bool expected[8] = {false, true, true, true, true, true, false, true}; /* 5, 7: could be none */
+    static const bool expected[8] = {false, true, true, true, true, true, false, true}; /* 5, 7: possibly no edge */
     assert_memory_equal(is_edge, expected, sizeof expected);
     assert_int_equal(loose, 2);
     assert_int_equal(mesh.n_subs, 5);
@@ -307,13 +308,13 @@ static void clockwise_triangles_are_turned(void **state)
     free_input(&in);
 }
 
-/* Of the nodes behind the third those vanish that are no corners; other unused vertices stay. */
-static void kept_vertices(void **state)
+/* Nodes after the third that are not corners are removed. Other unused vertices are kept. */
+static void unused_vertices_are_kept(void **state)
 {
     (void)state;
     struct input in = square();
     struct tri_error error = {0};
-    in.elements.n = 2; /* 0 1 4 and 1 2 4: 3 and 5 are unused */
+    in.elements.n = 2; /* 0 1 4 and 1 2 4: vertices 3 and 5 are unused */
     in.elements.n_nodes = 5;
     in.elements.extra = malloc(4 * sizeof(int32_t));
     memcpy(in.elements.extra, (int32_t[]){2, 3, TRI_NONE, 77}, 4 * sizeof(int32_t));
@@ -328,7 +329,7 @@ static void kept_vertices(void **state)
         assert_true(v == 3 || kept.vertex[kept.number[v]] == v);
     }
     tri_used_free(&kept);
-    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, true, &error), TRI_OK); /* corners alone */
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, true, &error), TRI_OK); /* only corners are kept */
     assert_int_equal(kept.n, mesh.n_vertices - 2);
     tri_used_free(&kept);
     free(in.elements.extra);
@@ -347,7 +348,7 @@ static void faults_name_the_triangle(void **state)
     (void)state;
     static const struct {
         int32_t base;
-        int32_t corners[6]; /* of triangles 4 and 5, behind the square */
+        int32_t corners[6]; /* corners of triangles 4 and 5, which follow those of the square */
         const char *text;
     } examples[] = {
         {0, {0, 0, 1, 0, 1, 3}, "triangle 4 has two equal corners"},
@@ -377,7 +378,7 @@ static void faults_name_the_triangle(void **state)
     }
 }
 
-static void no_triangles(void **state)
+static void inputs_without_triangles_are_handled(void **state)
 {
     (void)state;
     struct input in = square();
@@ -400,7 +401,7 @@ static void no_triangles(void **state)
     free_input(&in);
 }
 
-/* --- whatever the triangles are */
+/* --- arbitrary triangles */
 
 static struct tri_pslg few_points(struct support_random *random, int32_t n)
 {
@@ -415,7 +416,7 @@ static struct tri_pslg few_points(struct support_random *random, int32_t n)
     return pslg;
 }
 
-/* Triangles of any kind, but, to get past the first look, only such as fit those before them. */
+/* Triangles of any kind. To pass the first check, each must match the triangles before it. */
 static void grow(struct input *in, struct support_random *random, int32_t wanted, double wild)
 {
     struct tri_elements *elements = &in->elements;
@@ -457,8 +458,8 @@ static void assert_counter_clockwise(const struct tri_mesh *mesh)
     }
 }
 
-/* Surfaces that overlap, wind several times around a vertex or hang together by corners are refined like any other, as
- * far as that goes; what is none is refused. */
+/* Surfaces that overlap, wind several times around a vertex, or are connected only at corners are refined like any
+   other, as far as possible. Triangles that form no surface are refused. */
 static bool treat_garbage(struct support_random *random, double wild)
 {
     struct input in = {.pslg = few_points(random, 4 + support_below(random, 12)), .elements = {.n_nodes = 3}};
@@ -491,7 +492,7 @@ static bool treat_garbage(struct support_random *random, double wild)
     return status == TRI_OK;
 }
 
-static void garbage(void **state)
+static void arbitrary_triangles_are_refined_or_refused(void **state)
 {
     (void)state;
     struct support_random random = {17};
@@ -501,8 +502,8 @@ static void garbage(void **state)
     assert_true(good > runs / 2 && good < runs);
 }
 
-/* A sheet that winds twice around the origin: eight sectors over sixteen points, two at each place of the edge. */
-static void winds_twice(void **state)
+/* A sheet that winds twice around the origin: eight sectors over sixteen points, two at each place of the border. */
+static void a_sheet_that_winds_twice_is_refined(void **state)
 {
     (void)state;
     static const double at[8][2] = {{2, 0}, {1, 1}, {0, 2}, {-1, 1}, {-2, 0}, {-1, -1}, {0, -2}, {1, -1}};
@@ -530,7 +531,7 @@ static void winds_twice(void **state)
 
 /* --- flips */
 
-static void flips_before_refinement(void **state)
+static void triangles_are_flipped_before_refinement(void **state)
 {
     (void)state;
     struct input in = fan(200, 0.75);
@@ -553,7 +554,7 @@ static void flips_before_refinement(void **state)
     free_input(&in);
 }
 
-/* Both diagonals of each cell of a grid are Delaunay: none is turned. */
+/* Both diagonals of each grid cell are Delaunay, so none is flipped. */
 static void ties_stay(void **state)
 {
     (void)state;
@@ -581,7 +582,7 @@ static void ties_stay(void **state)
     free_input(&in);
 }
 
-/* Nothing is quadratic in the degree of a vertex, not even where every edge is a segment, too. */
+/* No step is quadratic in the degree of a vertex, even if every edge is a segment. */
 static void vertex_of_high_degree(void **state)
 {
     (void)state;
@@ -631,7 +632,7 @@ static void values_become_regions(void **state)
     free_input(&in);
 }
 
-/* The input triangle that holds the centre of t. */
+/* The input triangle that contains the centre of t. */
 static int32_t original_of(const struct tri_mesh *old, const struct tri_mesh *mesh, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
@@ -647,7 +648,7 @@ static int32_t original_of(const struct tri_mesh *old, const struct tri_mesh *me
     return 0;
 }
 
-/* Flips leave values where they were, however many follow one another at one place. */
+/* Flips do not move values, regardless of how many flips follow at one place. */
 static void values_stay_when_edges_are_flipped(void **state)
 {
     (void)state;
@@ -671,8 +672,8 @@ static void values_stay_when_edges_are_flipped(void **state)
     assert_true(moved > 0);
 }
 
-/* A sliver that already meets its bound has nothing to say about the ground beside it. */
-static void bound_of_a_sliver_stays_on_it(void **state)
+/* A sliver that already meets its bound does not limit the triangles beside it. */
+static void bound_of_a_sliver_does_not_spread(void **state)
 {
     (void)state;
     struct input in = {.pslg = support_pslg(4, 0, 0, 0), .elements = {.n = 2, .n_nodes = 3}};
@@ -691,7 +692,7 @@ static void bound_of_a_sliver_stays_on_it(void **state)
     free_input(&in);
 }
 
-/* Where segments part them, the values of a place stay what they were. */
+/* If segments separate them, the values at a place do not change. */
 static void values_do_not_cross_segments(void **state)
 {
     (void)state;
@@ -724,8 +725,8 @@ static void values_do_not_cross_segments(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Where nothing parts them, values are still those of a triangle nearby, and each keeps its bound. */
-static void values_are_copied(void **state)
+/* If nothing separates them, each value comes from a nearby triangle and keeps its bound. */
+static void values_come_from_a_nearby_triangle(void **state)
 {
     (void)state;
     struct input in = square();
@@ -748,7 +749,7 @@ static void values_are_copied(void **state)
         share[k] += 0.5 * tri_orient2d(mesh.xy[mesh.tri[t].v[0]], mesh.xy[mesh.tri[t].v[1]], mesh.xy[mesh.tri[t].v[2]]);
     }
     for (int k = 0; k < 4; k++)
-        assert_true(share[k] > 0.3 && share[k] < 1.7); /* 1 each, but for ragged borders */
+        assert_true(share[k] > 0.3 && share[k] < 1.7); /* about 1 each, apart from ragged borders */
     support_judge(&mesh, NULL, &(struct tri_check_options){.min_angle = 20, .ignore_lost = true}, true, NULL);
     tri_mesh_free(&mesh);
     free_input(&in);
@@ -784,9 +785,9 @@ static void fails_cleanly_without_memory(void **state)
     free_input(&in);
 }
 
-/* --- in shares */
+/* --- work in shares */
 
-/* So many triangles that they are taken and matched in several shares; numbers have nothing to do with places. */
+/* So many triangles that they are read and matched in several shares. Numbers are unrelated to positions. */
 static struct input many_triangles(void)
 {
     struct tri_pslg pslg = support_points(SUPPORT_RANDOM, 40000, 3);
@@ -798,8 +799,8 @@ static struct input many_triangles(void)
     return in;
 }
 
-/* Flips, too. */
-static void shares_leave_no_trace(void **state)
+/* With flips as well. */
+static void shares_do_not_change_the_mesh(void **state)
 {
     (void)state;
     struct input in = many_triangles();
@@ -813,14 +814,14 @@ static void shares_leave_no_trace(void **state)
             assert_true(one.feature[v] == shares.feature[v]);
         tri_mesh_free(&one);
         tri_mesh_free(&shares);
-        for (int32_t v = 0; v < in.pslg.n_points; v += 500) /* not Delaunay any more, if a triangulation still */
+        for (int32_t v = 0; v < in.pslg.n_points; v += 500) /* no longer Delaunay, though still a triangulation */
             in.pslg.points[2 * v] += 1e-4;
     }
     free_input(&in);
 }
 
-/* A fault is that of the first triangle, in whatever order shares are looked at. */
-static void faults_in_shares(void **state)
+/* The reported fault is that of the first triangle, for any order in which shares are processed. */
+static void the_first_fault_is_reported_for_any_order_of_shares(void **state)
 {
     (void)state;
     struct input in = many_triangles();
@@ -839,7 +840,8 @@ static void faults_in_shares(void **state)
     free_input(&in);
 }
 
-/* A bound that is out of reach: the mesh is that of the usual angle. Refining one that keeps its bound adds nothing. */
+/* The bound cannot be met, so the mesh has the angles of the default bound. Refining a mesh that meets its bound adds
+   nothing. */
 static void a_mesh_that_keeps_its_bound_is_not_refined_again(void **state)
 {
     (void)state;
@@ -863,9 +865,9 @@ static void a_mesh_that_keeps_its_bound_is_not_refined_again(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Two arcs of many short sides with a space between them that is too narrow to be filled. At the corners the angle
- * of two pieces is beyond rounding; that of the sides is not, and what each of their pieces has beside it is cheap. */
-static void what_was_given_up_stays_given_up(void **state)
+/* Two arcs of many short sides, separated by a space too narrow to fill. At the corners the angle between two pieces
+   exceeds rounding, while that between the sides does not. The surroundings of these pieces are cheap to refine. */
+static void narrow_spaces_stay_unfilled(void **state)
 {
     (void)state;
     enum { N = 34 };
@@ -883,14 +885,15 @@ static void what_was_given_up_stays_given_up(void **state)
     assert_int_equal(back.n_parents, 2 * N);
     struct tri_refine_report report;
     assert_int_equal(tri_refine(&back, &options.quality, &report, NULL), TRI_OK);
-    assert_in_range(back.n_triangles, mesh.n_triangles, 1.2 * mesh.n_triangles); /* once 45 times as many */
+    assert_in_range(back.n_triangles, mesh.n_triangles, 1.2 * mesh.n_triangles); /* without the rule: 45 times */
     tri_mesh_free(&back);
     free_input(&in);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
 
-/* In resolutions of the parent's larger end: how far do ends of subsegments lie off its line, at most? */
+/* The maximum distance of the ends of subsegments from their parent's line, in resolutions of the parent's larger
+   end. */
 static double farthest_astray(const struct tri_mesh *mesh)
 {
     double most = 0;
@@ -903,15 +906,15 @@ static double farthest_astray(const struct tri_mesh *mesh)
     return most;
 }
 
-/* Boundaries far higher than wide, read again: they must keep inside what was read, and do so by units of the finer
- * coordinate, not of the larger one, which left no place to split: 4 and 154 circles stayed. The chains of the first
- * keep to their lines; the second has corners five units or so inside, and yet they are chains. */
-static void boundaries_that_are_read_have_places(void **state)
+/* Boundaries far higher than wide, read again. Vertices must stay inside the domain that was read, within units of the
+   finer coordinate. Units of the larger coordinate would leave no position for a split. The chains of the first input
+   follow their lines. The second has corners about five units inside, and still its pieces are recognised as chains. */
+static void boundaries_that_are_read_can_be_split(void **state)
 {
     (void)state;
     static const struct {
         const char *file;
-        double angle, area, most; /* most: resolutions off the line */
+        double angle, area, most; /* most: maximum distance from the line in resolutions */
     } cases[] = {{"regress/high_kite.poly", 37, 312819811.76, 0.1},
                  {"regress/bent_strip.poly", 0, 0, TRI_CHAIN_ASTRAY}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -939,28 +942,28 @@ static void boundaries_that_are_read_have_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares_leave_no_trace),
-        cmocka_unit_test(boundaries_that_are_read_have_places),
+        cmocka_unit_test(shares_do_not_change_the_mesh),
+        cmocka_unit_test(boundaries_that_are_read_can_be_split),
         cmocka_unit_test(a_mesh_that_keeps_its_bound_is_not_refined_again),
-        cmocka_unit_test(what_was_given_up_stays_given_up),
-        cmocka_unit_test(faults_in_shares),
-        cmocka_unit_test(what_was_meshed_comes_back),
+        cmocka_unit_test(narrow_spaces_stay_unfilled),
+        cmocka_unit_test(the_first_fault_is_reported_for_any_order_of_shares),
+        cmocka_unit_test(meshes_are_restored_from_their_triangles),
         cmocka_unit_test(boundary_becomes_subsegments),
         cmocka_unit_test(segments_that_are_edges),
         cmocka_unit_test(clockwise_triangles_are_turned),
-        cmocka_unit_test(kept_vertices),
+        cmocka_unit_test(unused_vertices_are_kept),
         cmocka_unit_test(faults_name_the_triangle),
-        cmocka_unit_test(no_triangles),
-        cmocka_unit_test(garbage),
-        cmocka_unit_test(winds_twice),
-        cmocka_unit_test(flips_before_refinement),
+        cmocka_unit_test(inputs_without_triangles_are_handled),
+        cmocka_unit_test(arbitrary_triangles_are_refined_or_refused),
+        cmocka_unit_test(a_sheet_that_winds_twice_is_refined),
+        cmocka_unit_test(triangles_are_flipped_before_refinement),
         cmocka_unit_test(ties_stay),
         cmocka_unit_test(vertex_of_high_degree),
         cmocka_unit_test(values_become_regions),
         cmocka_unit_test(values_stay_when_edges_are_flipped),
-        cmocka_unit_test(bound_of_a_sliver_stays_on_it),
+        cmocka_unit_test(bound_of_a_sliver_does_not_spread),
         cmocka_unit_test(values_do_not_cross_segments),
-        cmocka_unit_test(values_are_copied),
+        cmocka_unit_test(values_come_from_a_nearby_triangle),
         cmocka_unit_test(fails_cleanly_without_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

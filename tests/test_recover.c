@@ -1,17 +1,17 @@
-/* Edges recovered one after another: after each the mesh is the constrained Delaunay triangulation of what has been
- * laid. By Lee & Lin's lemma it is enough that every edge without subsegment is Delaunay. */
+/* Edges are recovered one after another. After each, the mesh is the constrained Delaunay triangulation of the edges so
+   far. By Lee & Lin's lemma it is enough that every edge without a subsegment is Delaunay. */
 #include "full.h"
 #include "support.h"
 #include "triangle/cdt/recover.h"
 
 struct crossing {
-    int32_t t;     /* triangle at a that the segment leaves through; TRI_NONE: through none, or it is not clear */
-    int32_t edges; /* crossed */
+    int32_t t;     /* triangle at a through which the segment leaves; TRI_NONE: none, or ambiguous */
+    int32_t edges; /* number of edges crossed */
 };
 
 static bool is_corner(const struct tri_triangle *t, int32_t v) { return t->v[0] == v || t->v[1] == v || t->v[2] == v; }
 
-/* Naive: looks at everything. */
+/* A naive search over all triangles. */
 static struct crossing find_crossing(const struct tri_mesh *mesh, int32_t a, int32_t b)
 {
     struct crossing found = {TRI_NONE, 0};
@@ -48,7 +48,7 @@ static void mark(struct tri_mesh *mesh, int32_t code)
     mesh->tri[t].n[tri_edge(code)] = mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
 }
 
-/* Recovers ab if nothing is in its way; returns how many edges it crossed. */
+/* Recovers ab if nothing blocks it. Returns how many edges it crossed. */
 static int32_t recover(struct tri_recovery *r, struct tri_mesh *mesh, int32_t a, int32_t b)
 {
     struct tri_error error = {0};
@@ -74,8 +74,8 @@ static struct tri_mesh delaunay_of(struct tri_pslg *pslg)
     return support_constrained(pslg, &report);
 }
 
-/* Segment after segment between random points, as long as they cross nothing that has been laid: walls, and edges whose
- * both sides lie in one polygon. */
+/* Inserts segments between random points as long as they cross no earlier segment. The polygons then have walls, and
+   edges with both sides in one polygon. */
 static void test_random_segments(void **state)
 {
     (void)state;
@@ -99,8 +99,9 @@ static void test_random_segments(void **state)
     tri_recovery_free(&r);
 }
 
-/* Points about a segment from (-2, 0) to (2, 0), the first two; then short segments that hang into the strip around it
- * or stand across it, save the line itself: walls, and edges with both sides in one polygon. */
+/* Points around the segment from (-2, 0) to (2, 0), whose ends come first. Then short segments that reach into the
+   strip around it or stand across it, without crossing the line. They give walls, and edges with both sides in one
+   polygon. */
 static struct tri_pslg strip(int32_t n, uint64_t seed, double height, double reach)
 {
     struct support_random random = {seed};
@@ -138,7 +139,8 @@ static void test_walls_beside_the_edge(void **state)
     tri_recovery_free(&r);
 }
 
-/* Shapes on which flips take quadratic time, here small enough to be looked at, then large. k points above, k below. */
+/* Shapes on which flips take quadratic time, first small enough for a complete check, then large. k points lie above, k
+   below. */
 enum shape { PARABOLAS, LENS, ZIGZAG, FAN, SHAPES };
 
 static struct tri_pslg shape(enum shape which, int32_t k)
@@ -170,7 +172,7 @@ static void recover_shape(enum shape which, int32_t k)
     tri_pslg_free(&pslg);
 }
 
-static void test_shapes(void **state)
+static void test_shapes_that_need_many_flips(void **state)
 {
     (void)state;
     for (int which = 0; which < SHAPES; which++) {
@@ -185,7 +187,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_segments),
         cmocka_unit_test(test_walls_beside_the_edge),
-        cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_shapes_that_need_many_flips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Refinement: bounds kept on every input, and what options, gates and fences promise. Every mesh goes to the judge. */
+/* Refinement: bounds are met on every input, and options, gates and fences keep their guarantees. Every mesh is
+   checked. */
 #include "full.h"
 #include "support.h"
 
@@ -26,7 +27,7 @@ static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *
     return sum;
 }
 
-/* The mesh for the options, judged; max_bad as in tri_check_options. */
+/* Makes the mesh for the options and checks it. max_bad as in tri_check_options. */
 static struct tri_mesh refine_and_judge(const struct tri_pslg *pslg, const struct tri_options *options, int64_t max_bad,
                                         struct tri_report *report)
 {
@@ -53,7 +54,7 @@ static struct tri_pslg load(const char *name)
     return pslg;
 }
 
-/* No input angle is below 45 degrees here: no excuse for a single bad triangle. */
+/* No input angle is below 45 degrees, so no bad triangle is excused. */
 static void test_angle_bounds_are_met(void **state)
 {
     (void)state;
@@ -94,7 +95,8 @@ static void test_area_bounds_are_met(void **state)
     }
 }
 
-/* Small angles, crossings, overlaps: bad only what the judge finds explained or what is counted as bad by reason. */
+/* Small angles, crossings, overlaps: every bad triangle is one that the checker excuses, or that is counted by
+   reason. */
 static void test_tangles_are_refined(void **state)
 {
     (void)state;
@@ -114,8 +116,8 @@ static void test_tangles_are_refined(void **state)
         }
 }
 
-/* -Y and -YY protect segments; sizes are kept all the same, by points inside. */
-static void test_protection_is_no_excuse_for_sizes(void **state)
+/* -Y and -YY protect segments. Sizes are still met, by points inside the domain. */
+static void test_sizes_are_met_with_protected_segments(void **state)
 {
     (void)state;
     for (int i = 0; i < 4; i++) {
@@ -130,8 +132,8 @@ static void test_protection_is_no_excuse_for_sizes(void **state)
     }
 }
 
-/* Points beside a wall that must not be split: the circumdisks of all their triangles reach beyond it. (Each searched
- * all of the others before it was given up; 1,000 points show that it is still given up, and counted.) */
+/* Points beside a wall that must not be split, so that the circumdisks of all their triangles extend beyond it. Each of
+   1,000 triangles must be given up and counted, without searching all the others first. */
 static void test_triangles_beside_a_protected_wall_are_given_up(void **state)
 {
     (void)state;
@@ -154,9 +156,8 @@ static void test_triangles_beside_a_protected_wall_are_given_up(void **state)
     }
 }
 
-/* Such a wall does not keep all that it sees coarse. (Once 1,351 of 4,116 triangles stayed bad, in sight of the sides
- * of the box; with a larger figure it took minutes to find that out for each of them.) */
-static void test_what_a_protected_wall_sees_is_refined(void **state)
+/* A protected wall must not keep all triangles in sight of it coarse. Giving them up takes no long search. */
+static void test_triangles_in_sight_of_a_protected_wall_are_refined(void **state)
 {
     (void)state;
     struct tri_report report;
@@ -210,7 +211,7 @@ struct wish {
     int asked;
 };
 
-/* Small near a point, four times as large for each unit of distance. */
+/* Small near a point, and four times as large for each unit of distance. */
 static int wants_smaller(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     struct wish *wish = user;
@@ -221,7 +222,7 @@ static int wants_smaller(void *user, const double a[2], const double b[2], const
     return area > wish->finest * (1 + 100 * (x * x + y * y));
 }
 
-static void test_user_size_test(void **state)
+static void test_sizes_of_a_user_function_are_met(void **state)
 {
     (void)state;
     struct wish wish = {0.3, 0.7, 1e-5, 0};
@@ -268,7 +269,7 @@ static void test_protected_subsegments_stay(void **state)
             support_judge(&mesh, &pslg, &check, false, NULL);
             for (int32_t s = 0; s < mesh.n_subs; s++) {
                 const struct tri_parent *parent = &mesh.parents[mesh.sub[s].parent];
-                const int32_t *v = mesh.sub[s].v; /* runs the input segment's way */
+                const int32_t *v = mesh.sub[s].v; /* has the direction of the input segment */
                 bool whole = (v[0] == parent->v[0] && v[1] == parent->v[1]) ||
                              (v[1] == parent->v[0] && v[0] == parent->v[1]);
                 assert_true(whole || (protect == 1 && !is_boundary(&mesh.sub[s])));
@@ -307,7 +308,7 @@ static void test_limit_on_points_is_exact(void **state)
             }
 }
 
-static void test_conforming_meshes(void **state)
+static void test_conforming_meshes_are_delaunay(void **state)
 {
     (void)state;
     for (int i = 0; i < N_VALID; i++)
@@ -338,7 +339,7 @@ static void test_same_input_same_mesh(void **state)
     }
 }
 
-/* Who asks again finds nothing to do. */
+/* A second call finds nothing to do. */
 static void test_second_call_changes_nothing(void **state)
 {
     (void)state;
@@ -377,7 +378,7 @@ static struct tri_mesh coarse_square(struct tri_pslg *pslg)
     return support_generate(pslg, &options, NULL);
 }
 
-static void test_gate_that_says_no_stops_everything(void **state)
+static void test_a_closed_gate_prevents_every_point(void **state)
 {
     (void)state;
     struct tri_pslg pslg, same;
@@ -398,7 +399,7 @@ static void test_gate_that_says_no_stops_everything(void **state)
     tri_pslg_free(&same);
 }
 
-static void test_gate_that_says_yes_changes_nothing(void **state)
+static void test_an_open_gate_changes_nothing(void **state)
 {
     (void)state;
     struct tri_pslg pslg, same;
@@ -419,8 +420,9 @@ static void test_gate_that_says_yes_changes_nothing(void **state)
     tri_pslg_free(&same);
 }
 
-/* A gate open on one side, then on the other, then for all: points only where it is open, nothing bad at the end. */
-static void test_gated_halves(void **state)
+/* A gate that is open on one side, then on the other, then everywhere. Points appear only where it is open, and no bad
+   triangle remains. */
+static void test_points_appear_only_where_the_gate_is_open(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -462,7 +464,7 @@ static void refine_within(struct tri_mesh *mesh, const struct tri_fence *fence, 
     assert_true(report.inserted_free > 50 && report.fenced > 0);
 }
 
-/* Each triangle with a corner outside the box is there before and after. */
+/* Each triangle with a corner outside the box exists before and after. */
 static void test_fence_protects_the_outside(void **state)
 {
     (void)state;
@@ -486,7 +488,7 @@ static void test_fence_protects_the_outside(void **state)
     }
 }
 
-/* Disjoint boxes do not know of each other: any order gives the same set of triangles. */
+/* Disjoint boxes are independent: any order gives the same set of triangles. */
 static void test_disjoint_fences_commute(void **state)
 {
     (void)state;
@@ -526,7 +528,7 @@ static enum tri_status grant_room(void *user, struct tri_mesh *mesh, int32_t poi
     return status ? status : tri_mesh_reserve_subs(mesh, 10, error);
 }
 
-static void test_more_room_is_asked_and_may_fail(void **state)
+static void test_a_failed_request_for_room_is_returned(void **state)
 {
     (void)state;
     for (int grants = 0; grants <= 100; grants += 4) {
@@ -544,7 +546,7 @@ static void test_more_room_is_asked_and_may_fail(void **state)
         assert_true(status == TRI_OK || strcmp(error.text, "the view is full") == 0);
         assert_true(grants < 100 || status == TRI_OK);
         struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 30};
-        support_judge(&mesh, &pslg, &check, false, NULL); /* valid, as far as it got */
+        support_judge(&mesh, &pslg, &check, false, NULL); /* valid as far as it was refined */
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -556,7 +558,7 @@ static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points
     return TRI_NO_ROOM;
 }
 
-/* A refiner that pauses whenever there is no room makes the mesh that one without pauses makes. */
+/* A refiner that pauses whenever there is no room makes the same mesh as one that never pauses. */
 static void test_pauses_change_nothing(void **state)
 {
     (void)state;
@@ -577,7 +579,7 @@ static void test_pauses_change_nothing(void **state)
             struct tri_error fault = {0};
             if (tri_mesh_validate(&mesh, &fault) != TRI_OK)
                 fail_msg("%s", fault.text);
-            mesh.vertex_capacity = mesh.n_vertices; /* as small steps as may be */
+            mesh.vertex_capacity = mesh.n_vertices; /* the smallest possible steps */
             assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, NULL), TRI_OK);
             assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, NULL), TRI_OK);
             assert_int_equal(tri_mesh_reserve_subs(&mesh, 1, NULL), TRI_OK);
@@ -601,7 +603,7 @@ static void count_left(void *user, int32_t triangle)
     ++*(int64_t *)user;
 }
 
-static void test_what_is_left_is_told(void **state)
+static void test_remaining_bad_triangles_are_reported(void **state)
 {
     (void)state;
     static const struct tri_fence fence = {1, 1, 5, 6};
@@ -624,8 +626,8 @@ static void test_what_is_left_is_told(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* All that is bad is found, in order and in any slices; nothing once it is mended. */
-static void test_work_is_found(void **state)
+/* All bad triangles are found in order, for any slices. Refining them leaves none. */
+static void test_all_bad_triangles_are_found(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -654,8 +656,8 @@ static void test_work_is_found(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Only the neighbourhood of the worklist is touched; all bad triangles in it leave nothing bad. */
-static void test_seeds(void **state)
+/* Only the neighbourhood of the worklist is changed. If it lists all bad triangles, none remains. */
+static void test_only_the_neighbourhood_of_the_worklist_changes(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -712,7 +714,8 @@ static bool is_encroached(const struct tri_mesh *mesh)
     return false;
 }
 
-/* Where no subsegment is encroached, all circumcentres lie inside, and no insertion raises the largest circumradius. */
+/* Where no subsegment is encroached, all circumcentres lie inside, and no insertion increases the largest
+   circumradius. */
 static void test_largest_circumradius_never_grows(void **state)
 {
     (void)state;
@@ -729,7 +732,7 @@ static void test_largest_circumradius_never_grows(void **state)
              report.inserted_free + report.inserted_on_segments > 0 && steps < 1500; steps++) {
             assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
             if (is_encroached(&mesh))
-                continue; /* in the middle of a chain of splits */
+                continue; /* in a chain of splits */
             double now = largest_circumradius(&mesh);
             assert_true(now <= last * (1 + 1e-9));
             last = now;
@@ -741,8 +744,8 @@ static void test_largest_circumradius_never_grows(void **state)
     }
 }
 
-/* Every input that can be read, however nasty, and any bound: an end within seconds, a valid mesh. */
-static void test_refinement_ends_on_everything(void **state)
+/* For every readable input and any bound, refinement ends within seconds with a valid mesh. */
+static void test_refinement_ends_on_every_input(void **state)
 {
     (void)state;
     static const char *const folders[] = {"nasty", "regress"};
@@ -776,8 +779,8 @@ static void test_refinement_ends_on_everything(void **state)
     }
 }
 
-/* Bounds that cannot be met are given up after a while; what comes out is no heap of slivers. */
-static void test_hopeless_bounds_end(void **state)
+/* Bounds that cannot be met are given up after a while, and the mesh contains no large number of slivers. */
+static void test_refinement_ends_with_unreachable_bounds(void **state)
 {
     (void)state;
     static const double angles[] = {36, 40, 50, 60};
@@ -800,30 +803,30 @@ int main(void)
         cmocka_unit_test(test_angle_bounds_are_met),
         cmocka_unit_test(test_area_bounds_are_met),
         cmocka_unit_test(test_tangles_are_refined),
-        cmocka_unit_test(test_protection_is_no_excuse_for_sizes),
+        cmocka_unit_test(test_sizes_are_met_with_protected_segments),
         cmocka_unit_test(test_triangles_beside_a_protected_wall_are_given_up),
-        cmocka_unit_test(test_what_a_protected_wall_sees_is_refined),
+        cmocka_unit_test(test_triangles_in_sight_of_a_protected_wall_are_refined),
         cmocka_unit_test(test_coasts_are_refined),
         cmocka_unit_test(test_region_areas),
-        cmocka_unit_test(test_user_size_test),
+        cmocka_unit_test(test_sizes_of_a_user_function_are_met),
         cmocka_unit_test(test_protected_subsegments_stay),
         cmocka_unit_test(test_limit_on_points_is_exact),
-        cmocka_unit_test(test_conforming_meshes),
+        cmocka_unit_test(test_conforming_meshes_are_delaunay),
         cmocka_unit_test(test_same_input_same_mesh),
         cmocka_unit_test(test_second_call_changes_nothing),
-        cmocka_unit_test(test_gate_that_says_no_stops_everything),
-        cmocka_unit_test(test_gate_that_says_yes_changes_nothing),
-        cmocka_unit_test(test_gated_halves),
+        cmocka_unit_test(test_a_closed_gate_prevents_every_point),
+        cmocka_unit_test(test_an_open_gate_changes_nothing),
+        cmocka_unit_test(test_points_appear_only_where_the_gate_is_open),
         cmocka_unit_test(test_fence_protects_the_outside),
         cmocka_unit_test(test_disjoint_fences_commute),
-        cmocka_unit_test(test_more_room_is_asked_and_may_fail),
+        cmocka_unit_test(test_a_failed_request_for_room_is_returned),
         cmocka_unit_test(test_pauses_change_nothing),
-        cmocka_unit_test(test_what_is_left_is_told),
-        cmocka_unit_test(test_work_is_found),
-        cmocka_unit_test(test_seeds),
+        cmocka_unit_test(test_remaining_bad_triangles_are_reported),
+        cmocka_unit_test(test_all_bad_triangles_are_found),
+        cmocka_unit_test(test_only_the_neighbourhood_of_the_worklist_changes),
         cmocka_unit_test(test_largest_circumradius_never_grows),
-        cmocka_unit_test(test_refinement_ends_on_everything),
-        cmocka_unit_test(test_hopeless_bounds_end),
+        cmocka_unit_test(test_refinement_ends_on_every_input),
+        cmocka_unit_test(test_refinement_ends_with_unreachable_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

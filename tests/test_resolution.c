@@ -1,4 +1,5 @@
-/* Where coordinates end: what is near a segment but told from it, figures of any scale, and those too small for one. */
+/* Limits of coordinates: vertices near a segment but distinct from it, figures of any scale, and figures that are too
+   small. */
 #include <float.h>
 
 #include "support.h"
@@ -19,7 +20,8 @@ static void judge(const struct tri_pslg *pslg, double angle, bool conforming)
     tri_mesh_free(&mesh);
 }
 
-/* A slanted segment in a box, and beside it a vertex that many resolutions away, at which a segment ends or none. */
+/* A slanted segment in a box, and beside it a vertex at a given number of resolutions. A segment may end at the
+   vertex. */
 static struct tri_pslg beside(double resolutions, double slope, bool ends)
 {
     struct tri_pslg pslg = support_pslg(8, 6, 0, 0);
@@ -37,8 +39,8 @@ static struct tri_pslg beside(double resolutions, double slope, bool ends)
     return pslg;
 }
 
-/* From 64 resolutions on the bound on angles is kept there, from 100 on all circles of -D are empty. */
-static void test_what_lies_near_a_segment_is_a_feature(void **state)
+/* From a distance of 64 resolutions on, the angle bound is met there. From 100 on, all circles of -D are empty. */
+static void test_vertices_near_a_segment_are_features(void **state)
 {
     (void)state;
     static const double resolutions[] = {64, 80, 100, 128, 200};
@@ -52,8 +54,8 @@ static void test_what_lies_near_a_segment_is_a_feature(void **state)
         }
 }
 
-/* A ground plan, a corner of which lies 115 resolutions from a wall. */
-static void test_a_corner_near_a_wall(void **state)
+/* A ground plan with a corner that lies 115 resolutions from a wall. */
+static void test_a_corner_near_a_wall_is_meshed(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -63,7 +65,8 @@ static void test_a_corner_near_a_wall(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Three by three slanted cells, each a ring of its own; more copies of them are moved by up to so many resolutions. */
+/* Three by three slanted cells, each a ring of its own. More copies of them are moved by up to the given number of
+   resolutions. */
 static struct tri_pslg map_of(int copies, double resolutions, uint64_t seed)
 {
     enum { CELLS = 3 };
@@ -96,8 +99,9 @@ static int32_t count_refined(struct tri_pslg pslg)
     return n;
 }
 
-/* What lies within rounding is no feature where there is much of it: each would take hundreds of triangles. */
-static void test_borders_computed_twice(void **state)
+/* Details within rounding are not treated as features if there are many of them: each would need hundreds of
+   triangles. */
+static void test_borders_within_rounding_are_no_features(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 5; seed++) {
@@ -107,7 +111,7 @@ static void test_borders_computed_twice(void **state)
     }
 }
 
-/* A zigzag in a box, and a copy of it that far away. */
+/* A zigzag in a box, and a copy of it at the given distance. */
 static struct tri_pslg zigzag(int copies, double away, uint64_t seed)
 {
     enum { STEPS = 6 };
@@ -130,8 +134,9 @@ static struct tri_pslg zigzag(int copies, double away, uint64_t seed)
     return pslg;
 }
 
-/* The space between two lines is too dear to fill, and how wide it is at its ends and corners is no feature either. */
-static void test_a_line_drawn_twice(void **state)
+/* The space between two lines is too expensive to fill, and its width at ends and corners is not treated as a
+   feature. */
+static void test_a_line_drawn_twice_is_not_filled(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 5; seed++) {
@@ -151,7 +156,7 @@ static struct tri_pslg scaled(const struct tri_pslg *pslg, int exponent)
     return copy;
 }
 
-/* Every vertex has a place among doubles: what is written is what the predicates have seen. */
+/* Every vertex lies at a double: the coordinates that are written are those that the predicates used. */
 static void assert_exact(const struct tri_mesh *mesh)
 {
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
@@ -183,7 +188,7 @@ static void test_the_mesh_is_the_same_at_any_scale(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Near the origin of a tiny figure lie points that only the last doubles tell from each other. */
+/* Near the origin of a tiny figure, points differ only in the last representable doubles. */
 static void test_no_rounding_folds_a_tiny_mesh(void **state)
 {
     (void)state;
@@ -231,10 +236,10 @@ static void test_subnormal_figures_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_lies_near_a_segment_is_a_feature),
-        cmocka_unit_test(test_a_corner_near_a_wall),
-        cmocka_unit_test(test_borders_computed_twice),
-        cmocka_unit_test(test_a_line_drawn_twice),
+        cmocka_unit_test(test_vertices_near_a_segment_are_features),
+        cmocka_unit_test(test_a_corner_near_a_wall_is_meshed),
+        cmocka_unit_test(test_borders_within_rounding_are_no_features),
+        cmocka_unit_test(test_a_line_drawn_twice_is_not_filled),
         cmocka_unit_test(test_the_mesh_is_the_same_at_any_scale),
         cmocka_unit_test(test_no_rounding_folds_a_tiny_mesh),
         cmocka_unit_test(test_subnormal_figures_are_refused),

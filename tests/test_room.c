@@ -1,5 +1,5 @@
-/* Ranges of the shared arrays: dealt out, used, given back and closed up, against a table that says whose each item
- * is. */
+/* Ranges of the shared arrays are dealt out, used, returned and closed up. A table that records the owner of each item
+   is the reference. */
 #include "support.h"
 
 #include "sched/schedule/room.h"
@@ -9,7 +9,7 @@
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
 
-/* Whose is each item of each kind? */
+/* The owner of each item of each kind. */
 struct table {
     int32_t *owner[PAR_KINDS];
     int32_t n[PAR_KINDS], capacity[PAR_KINDS];
@@ -35,7 +35,7 @@ static void table_grow(struct table *table, const struct tri_mesh *shared)
     }
 }
 
-/* Everything that a room lists belongs to it from now on; it must have been its own, or free to take. */
+/* Marks all items that a room lists as its own. Each must have been its own before, or free. */
 static void table_claim(struct table *table, const struct par_room *room, int32_t who)
 {
     for (int kind = 0; kind < PAR_KINDS; kind++)
@@ -66,7 +66,7 @@ static int32_t room_left(const struct par_room *room, int kind)
     return n;
 }
 
-/* Of these, those that insertions can take: each takes two. */
+/* How many insertions the free items allow: each insertion uses two triangles. */
 static int32_t room_usable(const struct par_room *room)
 {
     int32_t n = 0;
@@ -83,7 +83,7 @@ static void table_free(struct table *table)
         free(table->owner[kind]);
 }
 
-/* Uses up to n points' worth of room, as the refinement loop does; false where the room was full before. */
+/* Uses up to n points' worth of room, like the refinement loop. Returns false if the room was full before. */
 static bool use_room(struct table *table, struct par_view *view, const struct tri_mesh *shared, int32_t who, int32_t n,
                      struct support_random *random)
 {
@@ -127,8 +127,8 @@ static void give_back(struct table *table, struct par_room *room, struct par_roo
                 table->owner[kind][at] = SPARE;
 }
 
-/* No item belongs to two rooms, none is lost, and what was asked for is there. */
-static void test_random_dealings(void **state)
+/* No item belongs to two rooms, none is lost, and each request is satisfied. */
+static void test_random_requests_are_satisfied(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++) {
@@ -159,7 +159,7 @@ static void test_random_dealings(void **state)
         }
         for (int32_t who = 0; who < ROOMS; who++)
             give_back(&table, &view[who].room, &spare);
-        for (int kind = 0; kind < PAR_KINDS; kind++) { /* each item is used or spare */
+        for (int kind = 0; kind < PAR_KINDS; kind++) { /* each item is either used or spare */
             assert_int_equal(table_count(&table, kind, NOBODY), 0);
             assert_int_equal(table_count(&table, kind, USED) + room_left(&spare, kind), count_of(&shared, kind));
         }
@@ -169,7 +169,7 @@ static void test_random_dealings(void **state)
     }
 }
 
-/* Attributes that are linear in the plane, so that interpolated ones can be recognised. */
+/* Attributes that are linear in the plane, so that interpolated values can be checked. */
 static struct tri_mesh mesh_with_attributes(void)
 {
     struct tri_pslg pslg = support_square(1, 30, 1);
@@ -182,7 +182,7 @@ static struct tri_mesh mesh_with_attributes(void)
     return mesh;
 }
 
-/* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
+/* Refines on a view until it is done, reaches its limit, or has no more room. */
 static int64_t refine_in_view(struct tri_mesh *shared, struct par_view *view, int64_t limit, double max_area)
 {
     struct tri_quality options = tri_quality_defaults();
@@ -205,8 +205,8 @@ static int64_t refine_in_view(struct tri_mesh *shared, struct par_view *view, in
     return report.inserted_free + report.inserted_on_segments;
 }
 
-/* After closing: no gap, valid links, the same triangles at the same places, and what belongs to a vertex came with
- * it. */
+/* After closing there is no gap, links are valid, the same triangles lie at the same places, and the data of a vertex
+   has moved with it. */
 static void assert_closed(struct tri_mesh *mesh, const struct support_places *before, int64_t vertices)
 {
     struct tri_error error = {0};
@@ -234,7 +234,7 @@ static void assert_closed(struct tri_mesh *mesh, const struct support_places *be
                 assert_int_equal(mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])], ~s);
 }
 
-/* Views that take turns, with more or less room than they need, in random order. */
+/* Views take turns in random order, with more or less room than they need. */
 static void test_closing_keeps_the_mesh(void **state)
 {
     (void)state;
@@ -251,7 +251,7 @@ static void test_closing_keeps_the_mesh(void **state)
             } else if (action == 1) {
                 assert_int_equal(par_room_extend(&view[who].room, &spare, &mesh, 1 + support_below(&random, 300), NULL),
                                  TRI_OK);
-                par_room_mark(&view[who].room, &mesh, NULL); /* so that the mesh can be looked at */
+                par_room_mark(&view[who].room, &mesh, NULL); /* so that the mesh can be checked */
             } else {
                 vertices += refine_in_view(&mesh, &view[who], support_below(&random, 60), 2e-4);
             }
@@ -267,7 +267,7 @@ static void test_closing_keeps_the_mesh(void **state)
             par_room_close(&spare, &mesh, &executor);
             par_team_end(&team);
         } else {
-            /* leaves out what is marked */
+            /* omits marked items */
             struct par_partition tiles;
             const struct tri_quality none = tri_quality_defaults();
             assert_int_equal(par_partition_make(&tiles, &mesh, &none, mesh.n_triangles, 100, NULL, NULL), TRI_OK);
@@ -281,21 +281,21 @@ static void test_closing_keeps_the_mesh(void **state)
     }
 }
 
-/* Nothing was used: the counts are those of before; everything was used: nothing moves. */
-static void test_closing_extremes(void **state)
+/* If nothing was used, the counts are those of before. If everything was used, nothing moves. */
+static void test_closing_unused_and_full_rooms(void **state)
 {
     (void)state;
     struct tri_mesh mesh = mesh_with_attributes();
     struct par_room room = {0}, spare = {0};
     struct support_places places = support_places(&mesh);
     int32_t vertices = mesh.n_vertices, subs = mesh.n_subs;
-    par_room_close(&spare, &mesh, NULL); /* no gaps at all */
+    par_room_close(&spare, &mesh, NULL); /* there are no gaps */
     assert_closed(&mesh, &places, vertices);
     for (int i = 0; i < 5; i++) {
         assert_int_equal(par_room_extend(&room, &spare, &mesh, 1000, NULL), TRI_OK);
         par_room_return(&room, &spare);
     }
-    assert_true(mesh.n_triangles >= 1000 && mesh.n_triangles < 3000); /* what is given back is dealt again */
+    assert_true(mesh.n_triangles >= 1000 && mesh.n_triangles < 3000); /* returned items are dealt out again */
     par_room_close(&spare, &mesh, NULL);
     assert_closed(&mesh, &places, vertices);
     assert_int_equal(mesh.n_subs, subs);
@@ -303,9 +303,9 @@ static void test_closing_extremes(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Where all points of a block lie on segments it gets a place for a subsegment with each, and no more triangles than
- * it asks for, which are there already when it asks again. */
-static void test_room_beside_a_coast(void **state)
+/* If all points of a block lie on segments, it gets room for one subsegment with each point. It gets no more triangles
+   than it requests, and these are still available at its next request. */
+static void test_blocks_on_segments_get_room_for_subsegments(void **state)
 {
     (void)state;
     struct tri_mesh mesh = mesh_with_attributes();
@@ -321,8 +321,9 @@ static void test_room_beside_a_coast(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* What blocks are expected to need is a guess: if it cannot be had, they still get what they ask for. */
-static void test_too_much_is_expected(void **state)
+/* The expected need of blocks is an estimate. If that much memory is not available, blocks still get what they
+   request. */
+static void test_an_excessive_estimate_does_not_fail(void **state)
 {
     (void)state;
     struct tri_mesh mesh = {0};
@@ -339,10 +340,11 @@ static void test_too_much_is_expected(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_room_beside_a_coast), cmocka_unit_test(test_too_much_is_expected),
-        cmocka_unit_test(test_random_dealings),
+        cmocka_unit_test(test_blocks_on_segments_get_room_for_subsegments),
+        cmocka_unit_test(test_an_excessive_estimate_does_not_fail),
+        cmocka_unit_test(test_random_requests_are_satisfied),
         cmocka_unit_test(test_closing_keeps_the_mesh),
-        cmocka_unit_test(test_closing_extremes),
+        cmocka_unit_test(test_closing_unused_and_full_rooms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
