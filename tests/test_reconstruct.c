@@ -132,8 +132,7 @@ static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh 
         assert_int_equal(back->tri[t].region, 0);
     }
     for (int32_t s = 0; s < mesh->n_subs; s++) {
-        int turned = back->sub[s].v[0] != mesh->sub[s].v[0]; /* so that all subsegments of a parent have its direction
-                                                                 */
+        int turned = back->sub[s].v[0] != mesh->sub[s].v[0]; /* subsegments get the direction of their parent */
         for (int k = 0; k < 2; k++) {
             assert_int_equal(back->sub[s].v[k], mesh->sub[s].v[k ^ turned]);
             assert_int_equal(back->sub[s].side[k], mesh->sub[s].side[k ^ turned]);

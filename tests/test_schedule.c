@@ -1,8 +1,7 @@
-/* The whole schedule against the sequential loop: the same bounds, nearly the same size, and one mesh for any number
- * of threads, any order of the blocks.
- *
- * Blocks are made small, so that small inputs have many. This program is linked with --wrap for malloc, calloc,
- * realloc and free: see allocations.h. */
+/* Compares the whole schedule with the sequential loop: the same bounds, nearly the same size, and the same mesh for
+   any number of threads and any order of the blocks.
+   Blocks are made small, so that small inputs have many of them. This program is linked with --wrap for malloc, calloc,
+   realloc and free: see allocations.h. */
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
@@ -19,7 +18,7 @@
 #include "triangle/mesh/topology.h"
 #include "trials.h"
 
-/* The first twelve are run by every test that looks for differences; the rest are inputs of the unkind sort. */
+/* Every test that compares meshes runs the first twelve. The rest are difficult inputs. */
 static const struct trial trials[] = {
     {"letter.poly", 30, 20000, 500, false, false, 0},
     {"square_random1000.poly", 20, 20000, 700, false, false, 0},
@@ -80,7 +79,7 @@ static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_quality *qu
     return sum;
 }
 
-/* Areas are kept whatever angles are like, save in a mesh that is not finished. */
+/* Area bounds are met regardless of angles, except in an unfinished mesh. */
 static void judge(const struct start *start, const struct tri_mesh *mesh, int64_t max_bad)
 {
     const struct tri_quality *quality = &start->options.quality;
@@ -90,7 +89,7 @@ static void judge(const struct start *start, const struct tri_mesh *mesh, int64_
     support_judge(mesh, &start->pslg, &check, quality->region_areas && max_bad < INT64_MAX, NULL);
 }
 
-/* A legal mesh; what is bad in it is about what the sequential loop could not do either. */
+/* The mesh is valid. Its number of bad triangles is about that of the sequential loop. */
 static void compare_with_sequential(const struct trial *trial, const struct start *start, const struct tri_mesh *mesh,
                                     const struct par_report *report)
 {
@@ -106,7 +105,8 @@ static void compare_with_sequential(const struct trial *trial, const struct star
         (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
         (long long)report->deferred, (long long)report->left_over);
     judge(start, mesh, bad);
-    bool beyond = start->options.quality.min_angle > 28; /* then what is bad depends on the order */
+    bool beyond = start->options.quality.min_angle > 28; /* beyond this, the number of bad triangles depends on the
+                                                            order */
     assert_true(bad <= plain_bad + plain_bad / 4 + 10 * (beyond || plain_bad > 0));
     assert_true(report->columns * report->rows >= 9);
     assert_true(mesh->n_triangles < 1.18 * plain.n_triangles);
@@ -130,7 +130,7 @@ static void test_bounds_and_size_are_those_of_the_sequential_loop(void **state)
     }
 }
 
-/* The reports tell the same but for the times. */
+/* The reports are equal except for the times. */
 static void assert_same_report(const struct par_report *a, const struct par_report *b)
 {
     assert_memory_equal(&a->total, &b->total, sizeof a->total);
@@ -173,10 +173,10 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     }
 }
 
-/* By block, ids tell from which room a block took them. Places do not, where one schedule does everything: a second
- * one begins in the order of the ids. And the same mesh has the same numbers, unless by
- * block. */
-static void test_room_moves_ids_alone(void **state)
+/* If blocks number the mesh, the ids depend on the room from which a block took them. The positions do not depend on it
+   if one schedule does all the work, since a second schedule begins in the order of the ids. The same mesh has the same
+   numbers, unless blocks number it. */
+static void test_room_changes_only_ids(void **state)
 {
     (void)state;
     static const int32_t rooms[] = {1, 50};
@@ -224,12 +224,12 @@ struct bytes {
     size_t n, capacity;
 };
 
-/* Everything that is handed out, one after the other. */
+/* All tiles that are handed out, one after the other. */
 struct stream {
     struct bytes all, points, corners, ends;
     int64_t n, n_vertices, n_triangles, n_segments;
     int32_t n_attributes, n_begun, n_ended;
-    int32_t n_kept; /* in pieces: vertices that there were before refinement; 0: they are one tile */
+    int32_t n_kept; /* the stream arrives in tiles: number of vertices before refinement; 0: all tiles count as one */
 };
 
 static void append(struct bytes *b, const void *bytes, size_t n)
@@ -264,7 +264,7 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *told, s
     struct stream *s = user;
     (void)error;
     assert_true(s->n_ended == 0 && told->estimate > 0);
-    free_stream(s); /* void so far */
+    free_stream(s); /* drops all tiles so far */
     *s = (struct stream){.n_begun = s->n_begun + 1, .n_kept = s->n_kept};
     append(&s->all, &told->estimate, sizeof told->estimate);
     s->n_attributes = told->n_attributes;
@@ -321,8 +321,8 @@ static enum tri_status refine_to(struct stream *stream, const struct start *star
 
 static const char *const ways[] = {"in memory", "swept", "parked"};
 
-/* Column by column, on more threads, with other room: byte for byte what comes out of memory. Where blocks leave
- * something over, or a second schedule follows, the mesh is parked. */
+/* Column by column, on more threads, with other room: the tiles have the same bytes as those of a mesh in memory. If
+   blocks leave bad triangles, or a second schedule follows, the mesh is parked. */
 static void test_budgets_hand_out_the_same_tiles(void **state)
 {
     (void)state;
@@ -344,7 +344,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         options.memory = 1000;
         options.scratch = ".";
         options.threads = 3;
-        if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* a last call begins in the order of ids */
+        if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* a final sequential call begins in the order of ids */
             options.tight_room = 100;
         assert_int_equal(refine_to(&parts, &start, &options, &tight_report, &tight), TRI_OK);
         print_message("  %-28s %lld triangles, rounds %d, %s: %lld bytes on disk\n", trials[i].file,
@@ -352,7 +352,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
                       (long long)tight_report.parked);
         assert_same_stream(&parts, &whole);
         assert_memory_equal(&tight_report.total, &report.total, sizeof report.total);
-        assert_true(tight_report.parked > 0); /* nothing fits, nor does what a sweep holds */
+        assert_true(tight_report.parked > 0); /* nothing fits, including the state of a sweep */
         n_ways[tight_report.way]++;
         begun_again += parts.n_begun > 1;
         free_stream(&whole);
@@ -367,7 +367,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
     assert_true(!is_full() || (n_ways[PAR_SWEPT] >= 4 && n_ways[PAR_PARKED] >= 4 && begun_again >= 2));
 }
 
-/* A run from the figure on, in which the caller's points have other numbers while the mesh is made. */
+/* A run that starts from the input, in which the caller's points have different numbers while the mesh is made. */
 struct whole_run {
     const struct start *start;
     struct par_options options;
@@ -384,7 +384,7 @@ static enum tri_status refine_whole_run(void *user, struct tri_mesh *mesh, const
     run->options.figure = &run->start->pslg;
     enum tri_status status = par_refine(mesh, quality, &run->options, &run->report, error);
     *total = run->report.total;
-    if (run->options.sweep) { /* it is no mesh any more */
+    if (run->options.sweep) { /* the mesh has been dissolved */
         tri_mesh_free(mesh);
         return tri_mesh_init(mesh, error) ? TRI_NO_MEMORY : status;
     }
@@ -435,7 +435,7 @@ static void assert_same_in_pieces(const struct stream *stream, struct tri_mesh *
     free_stream(&pieces);
 }
 
-/* In memory, in a stream and in a sweep, for one sequential call, too, and with blocks' own numbers. */
+/* In memory, in a stream and in a sweep, also for one sequential call and with the numbers of the blocks. */
 static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
 {
     (void)state;
@@ -484,8 +484,8 @@ static enum tri_status refine_parked(const struct start *start, const char *scra
     return status;
 }
 
-/* Where a mesh cannot be parked there is an error, and no signal. */
-static void test_scratch_that_cannot_be_used(void **state)
+/* If a mesh cannot be parked, an error is returned, and no signal is raised. */
+static void test_unusable_scratch_files_are_an_error(void **state)
 {
     (void)state;
     struct start start = {support_square(1, 100, 5), support_quality(33, 1e-4)};
@@ -497,7 +497,7 @@ static void test_scratch_that_cannot_be_used(void **state)
     assert_string_equal(error.file, "nowhere");
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     limit = before;
-    limit.rlim_cur = 1 << 17; /* less than the file of an array */
+    limit.rlim_cur = 1 << 17; /* less than the size of an array's file */
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
     enum tri_status status = refine_parked(&start, ".", &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
@@ -522,8 +522,9 @@ static void assert_same_edges(const struct tri_mesh *a, const struct tri_mesh *b
     tri_edge_list_free(&other);
 }
 
-/* Without a sink a mesh that does not fit stays a mesh, in files if somebody keeps them; swept or not, the same. */
-static void test_a_mesh_lies_in_files(void **state)
+/* Without a sink, a mesh that exceeds the bound is still returned, in files if the caller keeps them. The result is the
+   same, swept or not. */
+static void test_a_mesh_above_the_bound_lies_in_files(void **state)
 {
     (void)state;
     static const double angles[] = {20, 33, 35};
@@ -557,7 +558,7 @@ static void test_a_mesh_lies_in_files(void **state)
     }
 }
 
-/* Tiles that have been handed out give their memory to those that follow. */
+/* Later tiles reuse the memory of tiles that have been handed out. */
 static void test_a_sweep_holds_few_columns(void **state)
 {
     (void)state;
@@ -576,8 +577,8 @@ static void test_a_sweep_holds_few_columns(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Above 31 degrees sizes are brought about first: what comes after must not see other numbers. */
-static void test_the_way_of_numbering_moves_ids_alone(void **state)
+/* Above 31 degrees sizes are met first. The next stage must not depend on the numbering. */
+static void test_the_numbering_changes_only_ids(void **state)
 {
     (void)state;
     static const double angles[] = {25, 33, 35};
@@ -594,7 +595,7 @@ static void test_the_way_of_numbering_moves_ids_alone(void **state)
         }
         assert_true(report[0].levels > 0 && report[0].seconds_number > 0 && report[1].seconds_number == 0);
         assert_true(support_same_places(&places[0], &places[1]));
-        if (angles[i] <= TRI_EASY_ANGLE) { /* else the report's partition is that of the first schedule */
+        if (angles[i] <= TRI_EASY_ANGLE) { /* otherwise the report's partition is that of the first schedule */
             assert_int_equal(par_number(&mesh[1], &report[1].partition, start.pslg.n_points, NULL, NULL), TRI_OK);
             support_assert_same_bytes(&mesh[0], &mesh[1]);
         }
@@ -616,9 +617,9 @@ static bool is_before(const struct par_block_report *a, const struct par_block_r
     return a->phase != b->phase ? a->phase < b->phase : a->block < b->block;
 }
 
-/* Above 31 degrees the mesh is refined by two schedules: blocks tell by which, and the rest of the report is of the
- * first. */
-static void test_schedules_are_told_apart(void **state)
+/* Above 31 degrees the mesh is refined by two schedules. Messages about blocks name the schedule, and the rest of the
+   report is that of the first. */
+static void test_messages_name_the_schedule(void **state)
 {
     (void)state;
     struct start start = square(100, 25, 1e-4);
@@ -638,9 +639,9 @@ static void test_schedules_are_told_apart(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Triangles with several encroached walls beyond the fences of small blocks are left once each: told of as often as
- * walls are seen, the worklist grew threefold in every phase. */
-static void test_what_is_left_does_not_multiply(void **state)
+/* A triangle with several encroached walls beyond the fence of a small block is listed once. If it were listed once for
+   each wall, the worklist would grow threefold in every phase. */
+static void test_deferred_triangles_are_listed_once(void **state)
 {
     (void)state;
     static const double place[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-0.0029265, -0.0026616},
@@ -663,7 +664,7 @@ static void test_what_is_left_does_not_multiply(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Cuts do not run along a gap that holds nearly all of the work, upright or level. */
+/* Cuts do not run along a gap that contains nearly all of the work, vertical or horizontal. */
 static void test_a_long_gap_costs_no_triangles(void **state)
 {
     (void)state;
@@ -690,7 +691,7 @@ static void test_a_long_gap_costs_no_triangles(void **state)
     }
 }
 
-/* A first trial call that the schedule goes on with has given nothing up. */
+/* If the schedule continues after a first trial call, that call has given up no triangle. */
 static void test_a_trial_call_gives_nothing_up(void **state)
 {
     (void)state;
@@ -706,7 +707,7 @@ static void test_a_trial_call_gives_nothing_up(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Blocks of the usual size: the mesh is no larger than the sequential one, but for two per cent. */
+/* With blocks of the default size, the mesh is at most two per cent larger than the sequential one. */
 static void test_default_blocks_cost_no_triangles(void **state)
 {
     (void)state;
@@ -731,7 +732,7 @@ static void test_default_blocks_cost_no_triangles(void **state)
     }
 }
 
-/* Fine along a line. */
+/* Small sizes along a line. */
 static int is_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     double x = (a[0] + b[0] + c[0]) / 3, y = (a[1] + b[1] + c[1]) / 3, away = fabs(y - x);
@@ -781,8 +782,8 @@ static bool open_gate(void *user, const double p[2])
     return p[0] == p[0];
 }
 
-/* What a schedule cannot do is one sequential call. */
-static void test_limits_and_gates_go_the_sequential_way(void **state)
+/* Options that the schedule does not support lead to one sequential call. */
+static void test_limits_and_gates_lead_to_a_sequential_call(void **state)
 {
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -805,7 +806,7 @@ static void test_limits_and_gates_go_the_sequential_way(void **state)
     }
 }
 
-/* -Y leaves the boundary as it is, -YY all segments. */
+/* -Y leaves the boundary unchanged, -YY all segments. */
 static void test_protected_segments_stay_whole(void **state)
 {
     (void)state;
@@ -830,7 +831,7 @@ static void test_protected_segments_stay_whole(void **state)
     }
 }
 
-/* Coordinates times 2^k, areas times 4^k: the same mesh by numbers, whatever the unit inside. */
+/* Coordinates times 2^k and areas times 4^k give the same numbers in the mesh, regardless of the internal unit. */
 static void test_any_unit_makes_the_same_mesh(void **state)
 {
     (void)state;
@@ -844,7 +845,7 @@ static void test_any_unit_makes_the_same_mesh(void **state)
         for (int i = 0; i < 4; i++) {
             struct tri_error error = {0};
             if (!angle_only && abs(exponents[i]) > 300)
-                continue; /* the area bound itself is no double there */
+                continue; /* the area bound itself is not representable */
             struct start other = square(angle_only ? 5000 : 50, 30, 0);
             other.options.quality.max_area = ldexp(start.options.quality.max_area, 2 * exponents[i]);
             for (int32_t k = 0; k < 2 * other.pslg.n_points; k++)
@@ -866,8 +867,8 @@ static void test_any_unit_makes_the_same_mesh(void **state)
     }
 }
 
-/* Nothing to do, nothing to do it with, nothing left: every mesh is a legal start. */
-static void test_small_and_empty_meshes(void **state)
+/* No triangles, no points allowed, no bad triangles: every mesh is a valid start. */
+static void test_small_and_empty_meshes_are_valid_starts(void **state)
 {
     (void)state;
     static const char *const names[] = {"nasty/hole_eats_all.poly", "nasty/collinear.poly", "square.poly"};
@@ -890,7 +891,7 @@ static void test_small_and_empty_meshes(void **state)
     }
 }
 
-/* A second call with the same bounds finds nothing to do; one with finer bounds refines further. */
+/* A second call with the same bounds finds nothing to do. One with finer bounds refines further. */
 static void test_calls_can_follow_each_other(void **state)
 {
     (void)state;
@@ -911,7 +912,7 @@ static void test_calls_can_follow_each_other(void **state)
     memcpy(xy, mesh.xy, bytes);
     assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, &error), TRI_OK);
     assert_true(mesh.n_triangles > 5 * n && report.n_blocks > 9 && report.seconds_number > 0);
-    assert_memory_equal(mesh.xy, xy, bytes); /* who was there keeps its number */
+    assert_memory_equal(mesh.xy, xy, bytes); /* existing vertices keep their numbers */
     free(xy);
     judge(&start, &mesh, 0);
     par_report_free(&report);
@@ -922,10 +923,10 @@ static void test_calls_can_follow_each_other(void **state)
 struct told {
     pthread_t thread;
     struct par_place last;
-    int n, within; /* phases that began, and what was told within them */
+    int n, within; /* number of phases that began, and of calls within them */
 };
 
-/* No place comes before one that has been told. */
+/* Positions are reported in ascending order. */
 static void tell(void *user, const struct par_place *place)
 {
     struct told *told = user;
@@ -944,7 +945,7 @@ static void tell(void *user, const struct par_place *place)
     *(place->done > 0 ? &told->within : &told->n) += 1;
 }
 
-static void test_progress_is_told_by_the_caller(void **state)
+static void test_progress_is_reported_on_the_calling_thread(void **state)
 {
     (void)state;
     struct start start = square(100, 30, 1e-4);
@@ -956,15 +957,16 @@ static void test_progress_is_told_by_the_caller(void **state)
         options.progress_user = &told;
         struct tri_mesh mesh = refine(&start, &options, &report);
         assert_true(told.n >= 5 && told.last.triangles > 1000);
-        assert_true(told.within > 9 || threads > 1); /* of several the caller may have little to do */
+        assert_true(told.within > 9 || threads > 1); /* with several threads, the calling thread may have little to
+                                                        do */
         par_report_free(&report);
         tri_mesh_free(&mesh);
     }
     tri_pslg_free(&start.pslg);
 }
 
-/* One caller among several: refines a trial of its own with threads of its own. cmocka's asserts belong to the main
- * thread, so a caller only notes what came out. */
+/* One caller among several: refines a trial of its own with its own threads. Asserts of cmocka may only run on the main
+   thread, so a caller only records the result. */
 struct caller {
     struct start start;
     struct par_options options;
@@ -1019,7 +1021,8 @@ static void test_callers_on_threads_of_their_own(void **state)
 }
 
 #ifdef SUPPORT_WRAP
-/* One run in which the k-th allocation fails, alone or with all that follow; returns whether it was reached. */
+/* One run in which the k-th allocation fails, alone or with all later ones. Returns whether that allocation was
+   reached. */
 static bool fail_once(const struct start *start, const struct par_options *options, int64_t k, bool ever_after)
 {
     struct tri_error error = {0}, fault = {0};
@@ -1044,7 +1047,7 @@ static bool fail_once(const struct start *start, const struct par_options *optio
     }
     if (tri_mesh_validate(&mesh, &fault) != TRI_OK)
         fail_msg("allocation %d%s: %s", (int)k, ever_after ? " and later" : "", fault.text);
-    judge(start, &mesh, INT64_MAX); /* whatever is bad: a legal mesh */
+    judge(start, &mesh, INT64_MAX); /* any number of bad triangles, but a valid mesh */
     par_report_free(&report);
     tri_mesh_free(&mesh);
     par_park_close(park, NULL);
@@ -1064,7 +1067,7 @@ static enum tri_status take_nothing(void *user, const struct tri_tile *tile, str
     return TRI_OK;
 }
 
-/* Whoever runs out of memory on the way to a sink says so, and all memory comes back. */
+/* If a run with a sink lacks memory anywhere, it returns an error and frees all its memory. */
 static bool fail_streaming_once(const struct start *start, const struct par_options *options, int64_t k)
 {
     struct par_report report;
@@ -1089,7 +1092,7 @@ static bool fail_streaming_once(const struct start *start, const struct par_opti
 static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
 {
     (void)state;
-    static const double angles[] = {20, 30, 33}; /* swept, one call, parked */
+    static const double angles[] = {20, 30, 33}; /* swept, one sequential call, parked */
     for (int i = 0; i < 3; i++) {
         struct start start = square(60, angles[i], i == 1 ? 0 : 4e-4);
         struct par_options options = small_blocks(256, 1);
@@ -1097,8 +1100,8 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
         options.memory = 1000;
         options.scratch = ".";
         while (fail_streaming_once(&start, &options, k))
-            k += 1 + k * every(4) / 12; /* the later, the more alike */
-        assert_true(k > (i == 1 ? 10 : 30)); /* one call asks for little */
+            k += 1 + k * every(4) / 12; /* later allocations are more alike, so fewer are tried */
+        assert_true(k > (i == 1 ? 10 : 30)); /* one sequential call makes few allocations */
         tri_pslg_free(&start.pslg);
     }
 }
@@ -1111,7 +1114,7 @@ static void test_every_allocation_may_fail(void **state)
         struct par_options options = small_blocks(256, run < 2 ? 1 : 2);
         int64_t k = 1;
         options.tight_room = run % 2 ? 20 : 0;
-        options.memory = run == 4 ? 1000 : 0; /* in files */
+        options.memory = run == 4 ? 1000 : 0; /* the mesh lies in files */
         options.scratch = ".";
         while (fail_once(&start, &options, k, run % 2))
             k += 1 + k / 24;
@@ -1133,22 +1136,22 @@ int main(void)
         cmocka_unit_test(test_budgets_hand_out_the_same_tiles),
         cmocka_unit_test(test_a_stream_has_the_numbers_of_the_mesh),
         cmocka_unit_test(test_a_sweep_holds_few_columns),
-        cmocka_unit_test(test_scratch_that_cannot_be_used),
-        cmocka_unit_test(test_a_mesh_lies_in_files),
-        cmocka_unit_test(test_room_moves_ids_alone),
-        cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
-        cmocka_unit_test(test_schedules_are_told_apart),
-        cmocka_unit_test(test_what_is_left_does_not_multiply),
+        cmocka_unit_test(test_unusable_scratch_files_are_an_error),
+        cmocka_unit_test(test_a_mesh_above_the_bound_lies_in_files),
+        cmocka_unit_test(test_room_changes_only_ids),
+        cmocka_unit_test(test_the_numbering_changes_only_ids),
+        cmocka_unit_test(test_messages_name_the_schedule),
+        cmocka_unit_test(test_deferred_triangles_are_listed_once),
         cmocka_unit_test(test_a_long_gap_costs_no_triangles),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
-        cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),
+        cmocka_unit_test(test_limits_and_gates_lead_to_a_sequential_call),
         cmocka_unit_test(test_protected_segments_stay_whole),
         cmocka_unit_test(test_any_unit_makes_the_same_mesh),
-        cmocka_unit_test(test_small_and_empty_meshes),
+        cmocka_unit_test(test_small_and_empty_meshes_are_valid_starts),
         cmocka_unit_test(test_calls_can_follow_each_other),
         cmocka_unit_test(test_a_trial_call_gives_nothing_up),
-        cmocka_unit_test(test_progress_is_told_by_the_caller),
+        cmocka_unit_test(test_progress_is_reported_on_the_calling_thread),
         cmocka_unit_test(test_callers_on_threads_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,8 +1,7 @@
-/* Readers, writers and the checker when each of their allocations fails: TRI_NO_MEMORY with words, an empty output, no
- * file, no leak. What the mesher itself does then: test_generate.c, test_reconstruct.c, test_schedule.c,
- * test_triangulate.c.
- *
- * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+/* Readers, writers and the checker when each of their allocations fails: they return TRI_NO_MEMORY with a message and
+   an empty output, leave no file, and leak nothing. For the mesher see test_generate.c, test_reconstruct.c,
+   test_schedule.c, test_triangulate.c.
+   This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include "allocations.h"
 
 #include <stdio.h>
@@ -14,10 +13,11 @@
 #include "triangle/text/read.h"
 #include "triangle/text/write.h"
 
-/* One call of something, which frees what it makes; true: it succeeded. */
+/* One attempt, which frees what it allocates. Returns true if it succeeded. */
 typedef enum tri_status attempt(struct tri_error *error);
 
-/* The k-th allocation fails, alone or with all later ones, until an attempt needs fewer. */
+/* Lets the k-th allocation fail, alone or with all later ones, for increasing k, until an attempt needs fewer
+   allocations. */
 static void fail_each(attempt *try, int64_t least)
 {
     for (int ever_after = 0; ever_after < 2; ever_after++) {
@@ -96,11 +96,11 @@ static void remove_files(void)
     unlink("memory.area");
 }
 
-static void test_writers(void **state)
+static void test_writers_report_lack_of_memory(void **state)
 {
     (void)state;
     remove_files();
-    for (int64_t k = 1, reached = 1; reached; k++) { /* what is written once stays: the attempts differ */
+    for (int64_t k = 1, reached = 1; reached; k++) { /* some allocations happen only once, so the attempts differ */
         struct tri_error error = {0};
         long long before = support_held;
         support_calls = 0;
@@ -117,7 +117,7 @@ static void test_writers(void **state)
     }
 }
 
-static void test_readers(void **state)
+static void test_readers_report_lack_of_memory(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -141,7 +141,7 @@ static enum tri_status check(struct tri_error *error)
     return tri_check(&copy.mesh, &square, &options, &report, error);
 }
 
-static void test_checker(void **state)
+static void test_the_checker_reports_lack_of_memory(void **state)
 {
     (void)state;
     struct tri_options options = tri_defaults();
@@ -156,9 +156,9 @@ static void test_checker(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_writers),
-        cmocka_unit_test(test_readers),
-        cmocka_unit_test(test_checker),
+        cmocka_unit_test(test_writers_report_lack_of_memory),
+        cmocka_unit_test(test_readers_report_lack_of_memory),
+        cmocka_unit_test(test_the_checker_reports_lack_of_memory),
     };
     square = support_square(1, 20, 5);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,12 +1,13 @@
-/* Sites of a lattice in some triangles of a mesh, against all points of the lattice in the box around these, each of
- * which is compared with every triangle, vertex and subsegment. */
+/* Sites of a lattice in some triangles of a mesh. The reference compares each lattice point in the box around these
+   triangles with every triangle, vertex and subsegment. */
 #include "allocations.h"
 #include "support.h"
 
 #include "triangle/refine/sites.h"
 #include "triangle/tunables.h"
 
-static const double ROW = 0.86602540378443864676; /* sqrt(3) / 2, the height of an equilateral triangle with edges 1 */
+static const double ROW = 0.86602540378443864676; /* sqrt(3) / 2, the height of an equilateral triangle with edge length
+                                                     1 */
 
 struct extent {
     struct tri_point low, high;
@@ -18,11 +19,11 @@ struct trial {
     struct tri_lattice lattice;
     tri_triangle_id *triangle; /* [n] */
     int32_t n;
-    struct extent *extent; /* [n_triangles] of each triangle, and two edges more on each side */
-    double doubt; /* in edges: rounding decides what is nearer than this to a limit */
+    struct extent *extent; /* [n_triangles] the rows and columns of each triangle, extended by two edges on each side */
+    double doubt; /* in edges: if a distance is nearer than this to a limit, rounding decides */
 };
 
-/* Rows and columns of the lattice, whole numbers. */
+/* Rows and columns of the lattice, as integers. */
 struct box {
     double row[2], column[2];
 };
@@ -46,7 +47,8 @@ static struct tri_point lattice_point(const struct tri_lattice *lattice, double 
     return (struct tri_point){(column + shift) * lattice->edge, row * lattice->rise};
 }
 
-/* The first and the last row and column of points in the box around the triangles, and a few more on each side. */
+/* The first and the last row and column of lattice points in the box around the triangles, and a few more on each
+   side. */
 static struct box box_around(const struct trial *trial)
 {
     enum { MORE = 5 };
@@ -69,7 +71,7 @@ static long double distance_to(struct tri_point p, struct tri_point a, struct tr
     return hypotl(u - along * x, v - along * y);
 }
 
-/* How far is p from a triangle? 0: it is in it. */
+/* Returns the distance of p from a triangle. 0 if p is inside. */
 static long double distance_from(struct tri_point p, const struct tri_point corner[3])
 {
     long double least = HUGE_VALL;
@@ -81,7 +83,7 @@ static long double distance_from(struct tri_point p, const struct tri_point corn
     return inside ? 0 : least;
 }
 
-/* In edges: where a distance is less than a limit. */
+/* In edges: is the distance less than a limit? */
 static enum verdict is_nearer(const struct trial *trial, long double distance, double limit)
 {
     const long double beyond = distance / trial->lattice.edge - limit;
@@ -93,14 +95,15 @@ static enum verdict either(enum verdict a, enum verdict b)
     return a == IN || b == IN ? IN : a == DOUBTFUL || b == DOUBTFUL ? DOUBTFUL : OUT;
 }
 
-/* Is the point in a triangle, or hardly outside? */
+/* Is the point in a triangle, or barely outside? */
 static enum verdict is_inside(const struct trial *trial, struct tri_point p, const struct tri_point corner[3])
 {
     const long double distance = distance_from(p, corner) / trial->lattice.edge;
     return distance <= 1e-12L ? IN : distance < 1.5e-6L + trial->doubt ? DOUBTFUL : OUT;
 }
 
-/* Must the point go, as a corner of the triangle or a subsegment beside it is near? *vertex: a corner that is there. */
+/* Must the point be rejected because a corner of the triangle or a subsegment beside it is near? *vertex: the corner at
+   this point. */
 static enum verdict is_wiped_out(const struct trial *trial, struct tri_point p, tri_triangle_id t,
                                  tri_vertex_id *vertex)
 {
@@ -118,7 +121,7 @@ static enum verdict is_wiped_out(const struct trial *trial, struct tri_point p, 
     return gone;
 }
 
-/* What there is at a point of the lattice; IN: free, or, if *vertex is set, that vertex. */
+/* Classifies a lattice point. IN: the point is free or, if *vertex is set, occupied by that vertex. */
 static enum verdict judge(const struct trial *trial, struct tri_point p, tri_vertex_id *vertex)
 {
     enum verdict inside = OUT, gone = OUT;
@@ -137,7 +140,7 @@ static enum verdict judge(const struct trial *trial, struct tri_point p, tri_ver
     return inside == OUT || gone == IN ? OUT : inside == IN && gone == OUT ? IN : DOUBTFUL;
 }
 
-/* The index of the site in a row and column of the lattice, by its description in the header. */
+/* The index of the site in a row and column of the lattice, as the header defines it. */
 static int32_t site_in(const struct tri_sites *sites, double row, double column)
 {
     const double r = row - sites->bottom, c = column - sites->left;
@@ -154,7 +157,7 @@ static bool is_listed(const struct trial *trial, tri_triangle_id t)
     return false;
 }
 
-/* The triangle of a site holds it, or has its vertex for a corner. */
+/* The triangle of a site contains it or has its vertex as a corner. */
 static void check_near(const struct trial *trial, const struct tri_sites *sites, int32_t site, struct tri_point p)
 {
     const tri_triangle_id t = sites->near[site];
@@ -174,7 +177,7 @@ static void check_margin(const struct tri_sites *sites, double row, double colum
             assert_true(site_in(sites, row + j, column + i) != TRI_NONE);
 }
 
-/* Whoever asks for a place gets the site that is exactly there. */
+/* A query for a position returns the site exactly there. */
 static void check_search(const struct tri_sites *sites, struct tri_point p, int32_t site)
 {
     assert_int_equal(tri_site_of(sites, p), site);
@@ -183,7 +186,7 @@ static void check_search(const struct tri_sites *sites, struct tri_point p, int3
     assert_int_equal(tri_site_of(sites, (struct tri_point){p.x + 0.5 * sites->lattice.edge, p.y}), TRI_NONE);
 }
 
-/* How many points of the lattice are free, and how many have a vertex. */
+/* Counts the free lattice points and those with a vertex. */
 struct count {
     int32_t free, vertices, sites;
 };
@@ -212,7 +215,7 @@ static struct count compare_with(const struct trial *trial, const struct tri_sit
             count.vertices += at >= 0;
             count.sites += site != TRI_NONE;
         }
-    assert_int_equal(count.sites, sites->n); /* none is outside the box */
+    assert_int_equal(count.sites, sites->n); /* no site lies outside the box */
     for (int32_t row = 0; row < sites->n_rows; row++)
         for (int32_t column = sites->row[row].first; column <= sites->row[row].last; column++) {
             const struct tri_point p = lattice_point(&trial->lattice, sites->bottom + row, sites->left + column);
@@ -223,7 +226,7 @@ static struct count compare_with(const struct trial *trial, const struct tri_sit
     return count;
 }
 
-/* Finds the sites, and compares them; more sites, or rows of all triangles, than are wanted are none. */
+/* Finds the sites and compares them. If there are more sites or rows than the limit allows, none are returned. */
 static struct count check_sites(const struct trial *trial)
 {
     struct tri_sites sites;
@@ -242,7 +245,7 @@ static struct count check_sites(const struct trial *trial)
 
 /* --- inputs */
 
-/* A strip that runs up to the right, much thinner than it is long. */
+/* A strip that rises to the right, much thinner than long. */
 static struct tri_pslg thin_strip(void)
 {
     static const double corner[4][2] = {{0, 0}, {3, 2}, {2.95, 2.0625}, {-0.05, 0.0625}};
@@ -264,10 +267,10 @@ static struct tri_pslg draw(enum figure figure)
     return figure == LETTER ? pslg : figure == SQUARE ? support_square(1, 60, 7) : thin_strip();
 }
 
-/* A triangulation of the figure, scaled and then moved. refined: it has vertices in the lattice. */
+/* A triangulation of the figure, scaled, then moved. refined: with vertices on the lattice. */
 static struct trial begin(enum figure figure, double scale, double move, bool refined)
 {
-    static const double edge[] = {0.3, 0.06, 0.025}; /* of the lattice */
+    static const double edge[] = {0.3, 0.06, 0.025}; /* edge lengths of the lattice */
     struct trial trial = {0};
     struct tri_pslg pslg = draw(figure);
     for (int32_t i = 0; i < 2 * pslg.n_points; i++)
@@ -301,7 +304,7 @@ static void end(struct trial *trial)
     tri_mesh_free(&trial->mesh);
 }
 
-/* Leaves each triangle in the list with this chance, in another order. */
+/* Keeps each triangle in the list with this probability, and shuffles the list. */
 static void choose(struct trial *trial, double chance, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -316,7 +319,7 @@ static void choose(struct trial *trial, double chance, uint64_t seed)
     trial->n = n;
 }
 
-/* As a part of a mesh has it: of the triangles that are not listed nothing is known. */
+/* As in a part of a mesh: triangles that are not listed have undefined content. */
 static void forget_others(const struct trial *trial)
 {
     for (int32_t i = 0; i < trial->n; i++)
@@ -327,19 +330,19 @@ static void forget_others(const struct trial *trial)
         }
 }
 
-static void test_all_triangles(void **state)
+static void test_sites_in_all_triangles(void **state)
 {
     (void)state;
     for (enum figure figure = 0; figure < FIGURES; figure++) {
         struct trial trial = begin(figure, 1, 0, false);
         const struct count count = check_sites(&trial);
         print_message("  %d: %d triangles, %d sites, %d free\n", (int)figure, trial.n, count.sites, count.free);
-        assert_true(count.free > 100 && count.vertices == 0); /* corners are on subsegments */
+        assert_true(count.free > 100 && count.vertices == 0); /* corners lie on subsegments */
         end(&trial);
     }
 }
 
-static void test_scaled_and_moved(void **state)
+static void test_sites_of_scaled_and_moved_figures(void **state)
 {
     (void)state;
     static const double scales[] = {0x1p-40, 0x1p60, 4, 1}, moves[] = {0, 0, 1e6, -1e6};
@@ -351,7 +354,7 @@ static void test_scaled_and_moved(void **state)
         }
 }
 
-/* Vertices stand on sites; in the middle on all of them. */
+/* Vertices lie on sites. In the interior, every site has one. */
 static void test_vertices_on_sites(void **state)
 {
     (void)state;
@@ -365,7 +368,7 @@ static void test_vertices_on_sites(void **state)
     }
 }
 
-static void test_some_triangles(void **state)
+static void test_sites_in_some_triangles(void **state)
 {
     (void)state;
     for (enum figure figure = 0; figure < FIGURES; figure++)
@@ -380,7 +383,7 @@ static void test_some_triangles(void **state)
         }
 }
 
-static void test_nothing_listed(void **state)
+static void test_an_empty_list_has_no_sites(void **state)
 {
     (void)state;
     struct tri_sites sites;
@@ -391,8 +394,8 @@ static void test_nothing_listed(void **state)
     end(&trial);
 }
 
-/* Rows and columns that rounding would move are none. */
-static void test_coordinates_that_are_too_coarse(void **state)
+/* If rounding would move rows and columns, there are no sites. */
+static void test_coarse_coordinates_have_no_sites(void **state)
 {
     (void)state;
     for (int power = 30; power < 50; power++) {
@@ -405,7 +408,7 @@ static void test_coordinates_that_are_too_coarse(void **state)
     }
 }
 
-static void test_no_memory(void **state)
+static void test_lack_of_memory_is_reported(void **state)
 {
     (void)state;
     struct trial trial = begin(SQUARE, 1, 0, false);
@@ -430,13 +433,10 @@ static void test_no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_triangles),
-        cmocka_unit_test(test_scaled_and_moved),
-        cmocka_unit_test(test_vertices_on_sites),
-        cmocka_unit_test(test_some_triangles),
-        cmocka_unit_test(test_nothing_listed),
-        cmocka_unit_test(test_coordinates_that_are_too_coarse),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_sites_in_all_triangles),     cmocka_unit_test(test_sites_of_scaled_and_moved_figures),
+        cmocka_unit_test(test_vertices_on_sites),          cmocka_unit_test(test_sites_in_some_triangles),
+        cmocka_unit_test(test_an_empty_list_has_no_sites), cmocka_unit_test(test_coarse_coordinates_have_no_sites),
+        cmocka_unit_test(test_lack_of_memory_is_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

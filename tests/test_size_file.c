@@ -1,6 +1,6 @@
-/* Fields of lengths in files: the same field in every format gives the same lengths; what is damaged is refused by one
- * sentence with its line; whatever happens to a file, reading ends with a field whose numbers are those of points, or
- * with an error. */
+/* Fields of lengths in files. The same field gives the same lengths in every format. Damaged content is refused with
+   one sentence that names the line. Reading any damaged file ends with an error or with a field whose indices are
+   valid. */
 #include "triangle/text/size_file.h"
 
 #include <math.h>
@@ -15,13 +15,14 @@
 
 #include "tests/files.h"
 
-/* The field h = 1 + x / 2 + y / 4 at x = 0, 2, 4 and y = -1, 0: bilinear and linear alike. */
+/* The field h = 1 + x / 2 + y / 4 at x = 0, 2, 4 and y = -1, 0. Bilinear and linear interpolation give the same
+   values. */
 enum { COLUMNS = 3, ROWS = 2, NODES = 6 };
 static const double extent[] = {0, -1, 4, 0};
 
 static double length_at(double x, double y) { return 1 + x / 2 + y / 4; }
 
-/* x runs first. */
+/* x varies fastest. */
 static const double nodes[NODES][2] = {{0, -1}, {2, -1}, {4, -1}, {0, 0}, {2, 0}, {4, 0}};
 
 static void write_text(const char *name, const char *text)
@@ -51,7 +52,7 @@ static void write_npy(const char *name, const char *type, bool by_columns, int v
         const int64_t whole = (int64_t)(4 * value);
         char raw[8];
         memcpy(raw, type[1] != 'f' ? (const void *)&whole : bytes == 4 ? (const void *)&half : &value, (size_t)bytes);
-        for (int k = 0; k < bytes; k++) /* the tests run on little-endian machines alone, as does reading */
+        for (int k = 0; k < bytes; k++) /* the tests run only on little-endian machines, as does reading */
             fputc(raw[type[0] == '>' ? bytes - 1 - k : k], file);
     }
     assert_int_equal(fclose(file), 0);
@@ -67,7 +68,7 @@ static struct tri_size_file read_good(const char *name, const double *where)
     return file;
 }
 
-/* The raster is that field, times a factor. */
+/* The raster equals that field times a factor. */
 static void check_raster(const char *name, const double *where, double factor)
 {
     struct tri_size_file file = read_good(name, where);
@@ -79,7 +80,7 @@ static void check_raster(const char *name, const double *where, double factor)
     tri_size_file_free(&file);
 }
 
-/* Each triangle's corners have their lengths, and the triangles are so many. */
+/* The corners of each triangle have their lengths, and the number of triangles is right. */
 static void check_mesh(const char *name, int64_t n)
 {
     struct tri_size_file file = read_good(name, NULL);
@@ -93,11 +94,11 @@ static void check_mesh(const char *name, int64_t n)
         const double *c = f->points.at + 2 * f->triangles.at[3 * t + 2];
         area += fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
     }
-    assert_true(area == (n > 0 ? 4 : 0)); /* of all of the field */
+    assert_true(area == (n > 0 ? 4 : 0)); /* area of the whole field */
     tri_size_file_free(&file);
 }
 
-static void test_rasters(void **state)
+static void test_rasters_give_the_lengths_of_the_field(void **state)
 {
     static const char *const types[] = {"<f8", ">f8", "<f4", ">f4", "<i4", ">i8", "|u1", "<u2", "|i1"};
     (void)state;
@@ -117,8 +118,8 @@ static void test_rasters(void **state)
     check_raster("grid.msh", NULL, 1);
 }
 
-/* No data are no lengths; an array whose extent runs downwards is turned round. */
-static void test_no_data(void **state)
+/* Places without data have no lengths. An array whose extent runs downwards is flipped. */
+static void test_places_without_data_have_no_lengths(void **state)
 {
     (void)state;
     write_text("cell.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nnodata_value 7\n7 2\n3 inf\n");
@@ -156,7 +157,7 @@ static const char view[] =
     "ST(0,-1,0, 2,-1,0, 2,0,0){.75,1.75,2};\nST(0,-1,0,2,0,0,0,0,0){.75,2,1,9,9,9};\n"
     "SP(4,0,0){3};SL(0,0,0,2,0,0){1,2};ST(2,-1,0,4,-1,0,4,0,0){1.75,2.75,3};\nST(2,-1,0,4,0,0,2,0,0){1.75,3,2};\n};\n";
 
-static void test_meshes(void **state)
+static void test_background_meshes_give_the_lengths_of_the_field(void **state)
 {
     (void)state;
     write_text("mesh.node", "6 2 2 0\n1 0 -1 .75 9\n2 2 -1 1.75 9\n3 4 -1 2.75 9\n4 0 0 1 9\n5 2 0 2 9\n6 4 0 3 9\n");
@@ -173,12 +174,12 @@ static void test_meshes(void **state)
     write_text("mesh.pos", "View \"\" { SP(0,-1,0){.75}; SP(4,0,0){3}; };\n");
     check_mesh("mesh.pos", 0);
     write_text("grid.msh", "mshid=3;euclidean-grid\ncoord=1;3\n0\n1\n4\ncoord=2;2\n-1\n0\nvalue=6;1\n"
-                           ".75\n1\n1.25\n1.5\n2.75\n3\n"); /* uneven */
+                           ".75\n1\n1.25\n1.5\n2.75\n3\n"); /* spacing is not uniform */
     check_mesh("grid.msh", 4);
 }
 
-/* A mesh of Gmsh, binary, with data of any name. */
-static void test_binary_msh(void **state)
+/* A binary mesh of Gmsh whose data have an arbitrary name. */
+static void test_binary_msh_is_read(void **state)
 {
     static const char head[] = "$MeshFormat\n4.1 1 8\n\1\0\0\0\n$EndMeshFormat\n$Nodes\n";
     static const char data[] = "\n$EndElements\n$NodeData\n1\n\"anything\"\n1\n0\n3\n0\n1\n3\n";
@@ -211,7 +212,7 @@ static void test_binary_msh(void **state)
     check_mesh("binary.msh", 1);
 }
 
-/* --- what is wrong */
+/* --- invalid content */
 
 static void check_refused(const char *name, const char *text, long line, const char *words)
 {
@@ -225,7 +226,7 @@ static void check_refused(const char *name, const char *text, long line, const c
     tri_size_file_free(&file);
 }
 
-static void test_refused(void **state)
+static void test_invalid_files_are_refused(void **state)
 {
     (void)state;
     check_refused("a.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1.25 2\n3\n", 8,
@@ -263,7 +264,7 @@ static void test_refused(void **state)
     check_refused("a.node", "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n", 0, "no length at any point");
 }
 
-static void test_refused_arrays(void **state)
+static void test_invalid_arrays_are_refused(void **state)
 {
     static const char *const types[] = {"<f2", "<c8", "|O8", "<f8"};
     (void)state;
@@ -277,7 +278,7 @@ static void test_refused_arrays(void **state)
     }
 }
 
-/* --- whatever happens to a file: cut off, and with any byte another one */
+/* --- damage: files are truncated, and each byte is replaced */
 
 static void check_any(const char *name)
 {
@@ -302,7 +303,7 @@ static void damage(const char *name)
             const char was = bytes[i];
             FILE *file = fopen(copy, "wb");
             assert_non_null(file);
-            bytes[i] = others[k]; /* the last one cuts */
+            bytes[i] = others[k]; /* the last round truncates the file */
             fwrite(bytes, 1, others[k] ? n : i, file);
             fclose(file);
             check_any(copy);
@@ -311,7 +312,7 @@ static void damage(const char *name)
     free(bytes);
 }
 
-static void test_damage(void **state)
+static void test_damaged_files_are_harmless(void **state)
 {
     (void)state;
     write_text("whole.asc", "ncols 3\nNROWS 2\nxllcenter 0\nyllcenter -1\ndx 2\ndy 1\n1 2 3\n.75 1.75 2.75\n");
@@ -331,13 +332,13 @@ static void test_damage(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rasters),
-        cmocka_unit_test(test_no_data),
-        cmocka_unit_test(test_meshes),
-        cmocka_unit_test(test_binary_msh),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_refused_arrays),
-        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_rasters_give_the_lengths_of_the_field),
+        cmocka_unit_test(test_places_without_data_have_no_lengths),
+        cmocka_unit_test(test_background_meshes_give_the_lengths_of_the_field),
+        cmocka_unit_test(test_binary_msh_is_read),
+        cmocka_unit_test(test_invalid_files_are_refused),
+        cmocka_unit_test(test_invalid_arrays_are_refused),
+        cmocka_unit_test(test_damaged_files_are_harmless),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* --size and its kin: what each value means, and what is none. */
+/* --size and related options: the meaning of each value, and values that are refused. */
 #include "drivers/mesh/size_options.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ struct taken {
     int at;
 };
 
-/* Takes the option at word 1. value NULL: there is no further word. */
+/* Parses the option at word 1. value NULL: no word follows it. */
 static bool take(struct taken *t, const char *word, const char *value)
 {
     char program[] = "triangle", first[120], second[120];
@@ -31,7 +31,7 @@ static bool take(struct taken *t, const char *word, const char *value)
 
 static struct taken nothing(void) { return (struct taken){.switches = tri_switches_none()}; }
 
-static void test_values(void **state)
+static void test_valid_values_are_parsed(void **state)
 {
     (void)state;
     struct taken t = nothing();
@@ -66,7 +66,7 @@ static void test_values(void **state)
     size_options_free(&t.options);
 }
 
-static void test_no_values(void **state)
+static void test_invalid_values_are_refused(void **state)
 {
     static const char *const wrong[][2] = {
         {"--size", "0"}, {"--size", "-3"}, {"--size", "inf"}, {"--size", "nan"}, {"--size", ""}, {"--size", "500m"},
@@ -92,8 +92,8 @@ static void test_no_values(void **state)
     assert_true(take(&t, "--size", "1") && t.error.status == TRI_BAD_INPUT);
 }
 
-/* Lengths set -q; limits alone are an error. */
-static void test_end(void **state)
+/* Lengths set -q. Limits without lengths are an error. */
+static void test_limits_need_lengths(void **state)
 {
     (void)state;
     struct taken t = nothing();
@@ -116,9 +116,9 @@ static void test_end(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),
-        cmocka_unit_test(test_no_values),
-        cmocka_unit_test(test_end),
+        cmocka_unit_test(test_valid_values_are_parsed),
+        cmocka_unit_test(test_invalid_values_are_refused),
+        cmocka_unit_test(test_limits_need_lengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Sizes in messages: three digits, in a unit that fits. */
+/* Sizes in messages have three digits and a suitable unit. */
 #include "support.h"
 #include "triangle/base/size_text.h"
 
@@ -16,7 +16,7 @@ static void test_units_fit(void **state)
         assert_string_equal(tri_size_text(cases[i].bytes).text, cases[i].text);
 }
 
-static void test_counts_can_be_read(void **state)
+static void test_counts_are_readable(void **state)
 {
     static const struct {
         double n;
@@ -31,6 +31,6 @@ static void test_counts_can_be_read(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_units_fit), cmocka_unit_test(test_counts_can_be_read)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_units_fit), cmocka_unit_test(test_counts_are_readable)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

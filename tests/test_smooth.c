@@ -1,4 +1,5 @@
-/* Smoothing (smooth.c), by one call and by blocks (smoothing.c): what moves, what stays, and what gets better. */
+/* Smoothing (smooth.c), by one call and by blocks (smoothing.c): which vertices move, which stay, and which measures
+   improve. */
 #include "support.h"
 
 #include "sched/schedule/schedule.h"
@@ -20,7 +21,7 @@ static double mean_quality(const struct tri_mesh *m)
     return sum / m->n_triangles;
 }
 
-/* The sum of 1 / q over the triangles at vertex v, if it lay at p. */
+/* The sum of 1 / q over the triangles at vertex v, with v moved to p. */
 static double sum_at(struct tri_mesh *m, tri_vertex_id v, struct tri_point p)
 {
     const struct tri_point kept = m->xy[v];
@@ -37,16 +38,16 @@ static double sum_at(struct tri_mesh *m, tri_vertex_id v, struct tri_point p)
     return sum;
 }
 
-/* A square whose one inner vertex comes from refinement: to within a little it goes where no place of a fine grid is
- * better. */
-static void test_a_vertex_goes_to_the_best_place(void **state)
+/* A square with one inner vertex, inserted by refinement. Up to a small tolerance, it moves to the best place of a fine
+   grid. */
+static void test_a_vertex_moves_to_the_best_place(void **state)
 {
     (void)state;
     enum { GRID = 200 };
     for (int k = 0; k < 20; k++) {
         struct tri_pslg pslg = support_square(1, 1, (uint32_t)k + 1);
         for (int c = 8; c < 10; c++)
-            pslg.points[c] = 0.3 + 0.4 * pslg.points[c]; /* no triangle is so flat that a step leads out of it */
+            pslg.points[c] = 0.3 + 0.4 * pslg.points[c]; /* all triangles are thick enough for a step to stay inside */
         struct tri_mesh mesh = support_generate(&pslg, &(struct tri_options){.quality = tri_quality_defaults()}, NULL);
         struct tri_quality quality = tri_quality_defaults();
         tri_vertex_id v = 4;
@@ -66,7 +67,7 @@ static void test_a_vertex_goes_to_the_best_place(void **state)
     }
 }
 
-/* The mesh of a trial after so many passes, by so many threads; judged. */
+/* The mesh of a trial after the given number of passes with the given number of threads. The mesh is checked. */
 static struct tri_mesh smoothed(const struct start *start, double block, int passes, int threads)
 {
     struct tri_quality quality = start->options.quality;
@@ -92,7 +93,7 @@ static int64_t count_bad(const struct tri_mesh *mesh)
     return n;
 }
 
-/* What lies on segments, as a sum that does not depend on numbers. */
+/* Checksum of vertices and segments on the boundary, independent of numbering. */
 static uint64_t sum_of_fixed(const struct tri_mesh *mesh)
 {
     uint64_t sum = 0;
@@ -102,7 +103,7 @@ static uint64_t sum_of_fixed(const struct tri_mesh *mesh)
     return sum;
 }
 
-/* The share of free vertices with six triangles. */
+/* The fraction of free vertices that have six triangles. */
 static double share_of_six(const struct tri_mesh *mesh)
 {
     int *degree = calloc((size_t)mesh->n_vertices, sizeof *degree), n = 0, six = 0;
@@ -117,9 +118,9 @@ static double share_of_six(const struct tri_mesh *mesh)
     return (double)six / n;
 }
 
-/* Triangles get better with each pass, none breaks the bound that kept it, and segments stay; by blocks, the mesh is
- * that of any number of threads. Passes after the first bring degrees nearer to six. */
-static void test_meshes_get_better(void **state)
+/* Triangles improve with each pass, none violates a bound that it met before, and segments do not move. With blocks,
+   the mesh is the same for any number of threads. Later passes bring degrees closer to six. */
+static void test_smoothing_improves_meshes(void **state)
 {
     (void)state;
     const struct trial trials[] = {{"letter.poly", ANGLE, -100000, 60, false, false, 0},
@@ -151,7 +152,7 @@ static void test_meshes_get_better(void **state)
     }
 }
 
-/* Bounds that hold for vertices where they are. */
+/* Bounds that depend on the positions of vertices. */
 static void test_other_bounds_are_not_smoothed(void **state)
 {
     (void)state;
@@ -170,8 +171,8 @@ static void test_other_bounds_are_not_smoothed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_vertex_goes_to_the_best_place),
-        cmocka_unit_test(test_meshes_get_better),
+        cmocka_unit_test(test_a_vertex_moves_to_the_best_place),
+        cmocka_unit_test(test_smoothing_improves_meshes),
         cmocka_unit_test(test_other_bounds_are_not_smoothed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

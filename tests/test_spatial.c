@@ -1,10 +1,10 @@
-/* Points go along the curve and come back: no trace of the order inside is left in a mesh. */
+/* Points are sorted along the curve and restored. The internal order leaves no trace in a mesh. */
 #include "support.h"
 #include "triangle/cdt/delaunay.h"
 #include "triangle/geometry/hilbert.h"
 #include "triangle/cdt/spatial.h"
 
-/* A PSLG of which every point has attributes and a marker that tell who it is. */
+/* A PSLG in which every point has attributes and a marker that identify it. */
 static struct tri_pslg named_points(enum support_kind kind, int32_t n, uint64_t seed)
 {
     struct tri_pslg pslg = support_tangle(kind, n, n / 8, seed);
@@ -65,7 +65,7 @@ static void test_sorting_follows_the_curve(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* What comes after restoring finds everything that refers to vertices in order. */
+/* After restoring, all references to vertices are consistent. */
 static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
 {
     struct tri_options finer = support_quality(25, 0.002);
@@ -75,7 +75,7 @@ static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
     support_judge(mesh, pslg, &check, false, NULL);
 }
 
-/* Refinement sees the points in spatial order. */
+/* Refinement uses the points in spatial order. */
 static enum tri_status refine_sorted(void *user, struct tri_mesh *mesh, const struct tri_quality *options,
                                      struct tri_refine_report *report, struct tri_error *error)
 {
@@ -83,8 +83,8 @@ static enum tri_status refine_sorted(void *user, struct tri_mesh *mesh, const st
     return tri_refine(mesh, options, report, error);
 }
 
-/* In one call or with a refinement of the caller's: the same; and refinement may go on. */
-static void test_restoring_after_refinement(void **state)
+/* Refinement by the same call or by the caller gives the same mesh, and refinement may continue. */
+static void test_order_is_restored_after_refinement(void **state)
 {
     (void)state;
     for (enum support_kind kind = SUPPORT_RANDOM; kind <= SUPPORT_LATTICE; kind++) {
@@ -102,7 +102,7 @@ static void test_restoring_after_refinement(void **state)
         assert_int_equal(once.n_triangles, called.n_triangles);
         for (int32_t t = 0; t < once.n_triangles; t++)
             assert_memory_equal(once.tri[t].v, called.tri[t].v, sizeof once.tri[t].v);
-        if (kind == SUPPORT_RANDOM) /* the lattice has crossings too near to each other for bounds */
+        if (kind == SUPPORT_RANDOM) /* the lattice has crossings too close together for bounds to be met */
             refine_again(&called, &pslg);
         tri_mesh_free(&once);
         tri_mesh_free(&called);
@@ -114,7 +114,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sorting_follows_the_curve),
-        cmocka_unit_test(test_restoring_after_refinement),
+        cmocka_unit_test(test_order_is_restored_after_refinement),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* Split points: near the lines of their parents, and such that the boundary never meets itself, where much of the
- * boundary lies side by side within a few units in the last place. The judge has the last word: no overlap, no vertex
- * lost, every segment kept. */
+/* Split points lie near the lines of their parents, and the boundary never intersects itself, even where much of it
+   lies within a few units in the last place. The checker confirms the mesh: no overlap, no lost vertex, every segment
+   kept. */
 #include "support.h"
 
 #include "triangle/cdt/crossing.h"
@@ -8,7 +8,8 @@
 
 enum { ROOM = 200 };
 
-/* In resolutions: half a unit in the last place in each coordinate; and one more, where that does not do. */
+/* In resolutions: half a unit in the last place in each coordinate, and one more unit in the rare cases that need
+   it. */
 static const double ROUNDING = 0.7072, BESIDE = 2.1214;
 
 static struct support_random random_numbers;
@@ -17,7 +18,7 @@ static double between(double low, double high) { return low + (high - low) * sup
 
 static int32_t below(int32_t n) { return support_below(&random_numbers, n); }
 
-/* Up to so many units in the last place away. */
+/* Moves a point by up to the given number of units in the last place. */
 static double beside(double x, int32_t ulps)
 {
     for (int32_t n = below(2 * ulps + 1) - ulps; n != 0; n += n < 0 ? 1 : -1)
@@ -25,7 +26,7 @@ static double beside(double x, int32_t ulps)
     return x;
 }
 
-/* A figure turned and moved away from the origin: p is where it was drawn. */
+/* A figure, rotated and moved away from the origin. p has the coordinates of the drawing. */
 struct frame {
     double c, s, offset;
 };
@@ -60,7 +61,7 @@ static void close_ring(struct tri_pslg *pslg, int32_t first)
         support_add_segment(pslg, v, v + 1 < pslg->n_points ? v + 1 : first);
 }
 
-/* Two figures, one on each side of a shore that both have, up to rounding. */
+/* Two figures on the two sides of a shore that they share up to rounding. */
 static struct tri_pslg shores(void)
 {
     struct tri_pslg pslg = support_pslg(ROOM, ROOM, 0, 0);
@@ -79,7 +80,7 @@ static struct tri_pslg shores(void)
     return pslg;
 }
 
-/* Holes in a square that become as thin as rounding allows, side by side. */
+/* Holes in a square, side by side, as thin as rounding allows. */
 static struct tri_pslg thin_holes(void)
 {
     struct tri_pslg pslg = support_pslg(ROOM, ROOM, 20, 0);
@@ -99,7 +100,7 @@ static struct tri_pslg thin_holes(void)
     return pslg;
 }
 
-/* A ring with spikes: out, and back to nearly the same place. */
+/* A ring with spikes: each goes out and returns to nearly the same place. */
 static struct tri_pslg spikes(void)
 {
     struct tri_pslg pslg = support_pslg(ROOM, ROOM, 0, 0);
@@ -110,7 +111,7 @@ static struct tri_pslg spikes(void)
         int32_t root = add(&pslg, &f, cos(angle), sin(angle));
         if (below(3) == 0)
             continue;
-        if (below(2)) /* a spike inwards, or outwards */
+        if (below(2)) /* a spike inwards or outwards */
             far = 1 / far;
         add(&pslg, &f, far * cos(angle), far * sin(angle));
         add_copy(&pslg, root, ulps);
@@ -119,7 +120,7 @@ static struct tri_pslg spikes(void)
     return pslg;
 }
 
-/* A polygon and holes in it, each the size of a part of a grid's cell but for a few units. */
+/* A polygon with holes. Each hole fills a part of a grid cell up to a few units in the last place. */
 static struct tri_pslg holes_wall_to_wall(void)
 {
     struct tri_pslg pslg = support_pslg(ROOM, ROOM, 30, 0);
@@ -153,7 +154,7 @@ static struct tri_pslg make_figure(int kind, uint64_t seed)
 
 static bool is_boundary(const struct tri_subsegment *s) { return s->side[0] == TRI_NONE || s->side[1] == TRI_NONE; }
 
-/* Ends of the parent, so that the mesh is on the left of the way from *a to *b. */
+/* Ends of the parent, in the order in which the mesh lies to the left of the way from *a to *b. */
 static void ends(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point *a, struct tri_point *b)
 {
     const struct tri_parent *parent = &mesh->parents[s->parent];
@@ -168,10 +169,10 @@ static void ends(const struct tri_mesh *mesh, const struct tri_subsegment *s, st
     }
 }
 
-/* How far the ends of subsegments are off the lines of their parents, in resolutions. */
+/* How far the ends of subsegments lie off the lines of their parents, in resolutions. */
 struct deviation {
     int64_t n, n_beyond_one, n_beyond_two;
-    double inner, boundary; /* largest */
+    double inner, boundary; /* largest distance inside the domain and on the boundary */
 };
 
 static void measure(const struct tri_mesh *mesh, struct deviation *d)
@@ -209,7 +210,7 @@ static void expect_good(const struct tri_mesh *mesh, const struct tri_pslg *pslg
         fail_msg("kind %d, seed %d: %s", kind, seed, text);
 }
 
-static void test_refined_boundaries_keep_to_themselves(void **state)
+static void test_refined_boundaries_do_not_intersect(void **state)
 {
     (void)state;
     const struct tri_options options[] = {refined(20, 0, false), refined(30, 0, false), refined(0, 0.05, false),
@@ -231,8 +232,8 @@ static void test_refined_boundaries_keep_to_themselves(void **state)
     assert_true(d.n_beyond_one <= d.n / 5 && d.n_beyond_two <= d.n / 20);
 }
 
-/* However often a segment is split, errors do not add up. */
-static void test_chains_keep_to_their_lines(void **state)
+/* Errors do not accumulate, regardless of how often a segment is split. */
+static void test_chains_stay_on_their_lines(void **state)
 {
     (void)state;
     struct tri_options options = support_quality(20, 0.002);
@@ -256,7 +257,7 @@ static void test_chains_keep_to_their_lines(void **state)
 
 /* --- guards */
 
-/* Does an edge's line have the other triangle on its right, or on it? Both turn counter-clockwise. */
+/* Does the other triangle lie to the right of an edge's line, or on it? Both are counter-clockwise. */
 static bool separates(const struct tri_point t[3], const struct tri_point u[3])
 {
     for (int e = 0; e < 3; e++) {
@@ -274,7 +275,7 @@ static bool disjoint(const struct tri_point t[3], const struct tri_point u[3])
     return separates(t, u) || separates(u, t);
 }
 
-/* The triangles of the boundary's parents, counter-clockwise; returns how many there are. */
+/* The triangles of the boundary's parents, counter-clockwise. Returns their number. */
 static int32_t list_guarded(const struct tri_mesh *mesh, struct tri_point (*own)[3])
 {
     int32_t n = 0;
@@ -284,7 +285,7 @@ static int32_t list_guarded(const struct tri_mesh *mesh, struct tri_point (*own)
         if (!is_boundary(s))
             continue;
         ends(mesh, s, &a, &b);
-        if (isnan(guard.x)) { /* then nothing lies beyond */
+        if (isnan(guard.x)) { /* no triangle lies beyond the parent */
             for (int32_t v = 0; v < mesh->n_vertices; v++)
                 assert_true(tri_orient2d(a, b, mesh->xy[v]) >= 0);
         } else if (tri_orient2d(a, b, guard) != 0) {
@@ -331,7 +332,7 @@ static void test_guards_do_not_overlap(void **state)
     assert_true(guarded > 1000);
 }
 
-/* --- without a triangle of its own, as in a mesh that was read, a boundary only moves inwards */
+/* --- without guards, as in a mesh that was read, split points of a boundary only move inwards */
 
 static void take_guards(struct tri_mesh *mesh)
 {
@@ -371,9 +372,9 @@ static void test_without_guards_boundaries_move_inwards(void **state)
     assert_true(inside > 1000);
 }
 
-/* --- single places */
+/* --- single split points */
 
-static void test_places_are_at_the_fraction(void **state)
+static void test_split_points_lie_at_the_fraction(void **state)
 {
     (void)state;
     struct tri_options options = support_quality(0, 0);
@@ -399,10 +400,10 @@ static void test_places_are_at_the_fraction(void **state)
     }
 }
 
-/* A strip a few units in the last place high and 10^6 wide, with areas: where its boundary had places in units of the
- * larger coordinate alone, points gathered beside it without end (15 million triangles, and no end of it, in a strip
- * 5 * 10^10 wide). */
-static void test_strips_of_a_few_ulps_end(void **state)
+/* A strip that is 10^6 wide and a few units in the last place high, with area bounds. Split points must lie at
+   multiples of the finer coordinate's unit. With units of the larger coordinate, points would gather beside the
+   boundary endlessly. */
+static void test_refinement_of_strips_of_a_few_ulps_ends(void **state)
 {
     (void)state;
     const double wide = 1e6, ulp = 0x1p-52;
@@ -415,7 +416,7 @@ static void test_strips_of_a_few_ulps_end(void **state)
     }
     struct tri_options options = support_quality(0, wide * ulp / 100);
     struct tri_report report;
-    options.quality.max_steiner = 2000; /* a tenth of that is plenty */
+    options.quality.max_steiner = 2000; /* ten times as many as needed */
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     assert_false(report.quality.hit_limit);
     assert_true(mesh.n_triangles < 200);
@@ -424,7 +425,7 @@ static void test_strips_of_a_few_ulps_end(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
+/* Subsegments at an acute vertex are split at distances that are powers of two, others in the middle. */
 static void test_shells_are_powers_of_two(void **state)
 {
     (void)state;
@@ -437,7 +438,7 @@ static void test_shells_are_powers_of_two(void **state)
     assert_true(tri_split_fraction(&mesh, &plain) == 0.5);
 }
 
-/* Every length is split between 0.35 and 0.71 of it. */
+/* Each length is split at a fraction between 0.35 and 0.71. */
 static void test_shells_are_near_the_middle(void **state)
 {
     (void)state;
@@ -460,12 +461,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shells_are_powers_of_two),
         cmocka_unit_test(test_shells_are_near_the_middle),
-        cmocka_unit_test(test_refined_boundaries_keep_to_themselves),
-        cmocka_unit_test(test_chains_keep_to_their_lines),
+        cmocka_unit_test(test_refined_boundaries_do_not_intersect),
+        cmocka_unit_test(test_chains_stay_on_their_lines),
         cmocka_unit_test(test_guards_do_not_overlap),
         cmocka_unit_test(test_without_guards_boundaries_move_inwards),
-        cmocka_unit_test(test_places_are_at_the_fraction),
-        cmocka_unit_test(test_strips_of_a_few_ulps_end),
+        cmocka_unit_test(test_split_points_lie_at_the_fraction),
+        cmocka_unit_test(test_refinement_of_strips_of_a_few_ulps_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

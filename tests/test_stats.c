@@ -1,4 +1,4 @@
-/* Counts and shapes: known meshes, Euler's formula, and the judge's own measurements. */
+/* Counts and shapes are compared with known meshes, Euler's formula, and the checker's own measurements. */
 #include "triangle/mesh/topology.h"
 
 #include "tests/support.h"
@@ -31,7 +31,7 @@ static struct tri_mesh two_triangles(double scale)
     return mesh;
 }
 
-static void test_counts(void **state)
+static void test_counts_of_a_known_mesh(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles(1);
@@ -45,8 +45,8 @@ static void test_counts(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Refinement takes no vertex from all its triangles: what was in none before is all that is in none after. */
-static void test_refined(void **state)
+/* Refinement leaves no vertex without triangles, except those that had none before. */
+static void test_refined_meshes_have_no_new_unused_vertices(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, 1);
@@ -63,8 +63,8 @@ static void test_refined(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Vertices that no triangle uses do not count; edges by Euler's formula for a disc. */
-static void test_unused(void **state)
+/* Vertices that no triangle uses do not count. The number of edges follows from Euler's formula for a disc. */
+static void test_unused_vertices_do_not_count(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, 1);
@@ -81,7 +81,7 @@ static void test_unused(void **state)
 
 static bool is_near(double a, double b) { return fabs(a - b) <= 1e-12 * fabs(b); }
 
-static void test_shapes(void **state)
+static void test_shapes_of_known_triangles(void **state)
 {
     (void)state;
     static const double scales[] = {1, 1e-300, 1e150};
@@ -90,7 +90,7 @@ static void test_shapes(void **state)
         struct tri_mesh mesh = two_triangles(scale);
         struct tri_shapes s;
         tri_measure_shapes(&s, &mesh, NULL);
-        if (i != 1) { /* areas of 1e-602 are no doubles */
+        if (i != 1) { /* an area of 1e-602 underflows */
             assert_true(is_near(s.smallest_area, 0.01 * scale * scale));
             assert_true(is_near(s.largest_area, sqrt(3) * scale * scale));
         }
@@ -109,7 +109,7 @@ static void test_shapes(void **state)
     }
 }
 
-/* Bins add up, and extremes are those that the judge finds on its own way. */
+/* The bins add up to the totals, and the extremes are those that the checker computes in its own way. */
 static void assert_as_judged(double max_area, const struct tri_executor *executor)
 {
     struct tri_pslg pslg = support_polygon(80, 9);
@@ -142,15 +142,15 @@ static void assert_as_judged(double max_area, const struct tri_executor *executo
     tri_pslg_free(&pslg);
 }
 
-static void test_against_judge(void **state)
+static void test_statistics_agree_with_the_checker(void **state)
 {
     (void)state;
     assert_as_judged(0.01, NULL);
-    assert_as_judged(5e-5, &support_backwards); /* so many that work comes in shares */
+    assert_as_judged(5e-5, &support_backwards); /* so many that the work is divided into shares */
 }
 
-/* Right angles are common and exact; they count as at most 90 degrees. */
-static void test_right_angles(void **state)
+/* Right angles are common and exact. They count as at most 90 degrees. */
+static void test_right_angles_count_as_at_most_90_degrees(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 0, 1);
@@ -165,7 +165,7 @@ static void test_right_angles(void **state)
     tri_pslg_free(&pslg);
 }
 
-static void test_empty(void **state)
+static void test_an_empty_mesh_has_zero_counts(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_points(SUPPORT_LINE, 3, 1);
@@ -186,9 +186,13 @@ static void test_empty(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_refined),
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles),
-        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_counts_of_a_known_mesh),
+        cmocka_unit_test(test_unused_vertices_do_not_count),
+        cmocka_unit_test(test_refined_meshes_have_no_new_unused_vertices),
+        cmocka_unit_test(test_shapes_of_known_triangles),
+        cmocka_unit_test(test_statistics_agree_with_the_checker),
+        cmocka_unit_test(test_right_angles_count_as_at_most_90_degrees),
+        cmocka_unit_test(test_an_empty_mesh_has_zero_counts),
     };
     return cmocka_run_group_tests_name("stats", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* How failures are told. */
+/* How failures are reported. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 
 #include "triangle/base/status.h"
 
-static void test_detail(void **state)
+static void test_errors_contain_status_file_line_and_text(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -24,14 +24,14 @@ static void test_detail(void **state)
     assert_int_equal(error.line, 0);
 }
 
-static void test_nobody_asks(void **state)
+static void test_a_null_error_is_allowed(void **state)
 {
     (void)state;
     assert_int_equal(tri_fail(NULL, TRI_STOPPED, "a.poly", 1, "%d", 1), TRI_STOPPED);
 }
 
-/* What is longer than its place is cut, and ends. */
-static void test_long_texts(void **state)
+/* A text that is too long is truncated and terminated. */
+static void test_long_texts_are_truncated(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -47,9 +47,9 @@ static void test_long_texts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_detail),
-        cmocka_unit_test(test_nobody_asks),
-        cmocka_unit_test(test_long_texts),
+        cmocka_unit_test(test_errors_contain_status_file_line_and_text),
+        cmocka_unit_test(test_a_null_error_is_allowed),
+        cmocka_unit_test(test_long_texts_are_truncated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

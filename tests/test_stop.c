@@ -1,5 +1,5 @@
-/* Work that is stopped: at every question, in every stage, the answer is TRI_STOPPED, nothing leaks, and what there is
- * of a mesh is a mesh, with which work goes on. */
+/* Stopped work: for a stop at any query in any stage, the result is TRI_STOPPED, nothing leaks, and a mesh that exists
+   is valid and can be refined further. */
 #include <stdatomic.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 #include "triangle/dropin/triangle.h"
 #include "triangle/text/write.h"
 
-/* Says yes from the question `after` on; any thread may ask. */
+/* Returns true from query number `after` on. Any thread may call it. */
 struct trigger {
     atomic_int asked;
     int after;
@@ -31,7 +31,7 @@ static void assert_legal(const struct tri_mesh *mesh, const struct tri_pslg *psl
     support_judge(mesh, pslg, &check, false, NULL);
 }
 
-/* The stage that was told last, and that in which the answer was yes first. */
+/* The stage that was reported last, and the stage in which the first true was returned. */
 struct stages {
     struct trigger trigger;
     enum tri_stage now, stopped_in;
@@ -50,7 +50,8 @@ static bool is_asked_in_stage(void *user)
     return yes;
 }
 
-/* Who stops in one stage is not told of the next. (After refinement there is a mesh, and that is told.) */
+/* After a stop in one stage, the next stage is not reported. (After refinement a mesh exists, and that stage is
+   reported.) */
 static void test_no_stage_begins_after_a_stop(void **state)
 {
     (void)state;
@@ -145,7 +146,7 @@ static void test_the_schedule_stops_anywhere(void **state)
     tri_pslg_free(&pslg);
 }
 
-static void test_reconstruction_stops(void **state)
+static void test_reconstruction_stops_anywhere(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 500, 3);
@@ -153,7 +154,7 @@ static void test_reconstruction_stops(void **state)
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL), again;
     struct support_copy copy = support_copy(&mesh);
     struct tri_elements elements = {.n = (int32_t)copy.mesh.n_triangles, .corners = copy.triangles, .n_nodes = 3};
-    for (int after = 0; after < 2; after++) { /* before anything, and before the flips */
+    for (int after = 0; after < 2; after++) { /* before the first stage, and before the flips */
         struct trigger trigger = {.after = after};
         const struct tri_stop stop = {is_asked, &trigger};
         struct tri_reconstruct_options how = {.refine = true, .stop = &stop};
@@ -165,8 +166,8 @@ static void test_reconstruction_stops(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A file is read by so many questions; each may be the last. */
-static void test_reading_and_writing_stop(void **state)
+/* Reading a file makes this many queries. Each may be the last. */
+static void test_reading_and_writing_stop_anywhere(void **state)
 {
     (void)state;
     char name[] = "stop.node";
@@ -240,10 +241,9 @@ static void test_triangulate_stops(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_stage_begins_after_a_stop),
-        cmocka_unit_test(test_generation_stops_anywhere), cmocka_unit_test(test_the_schedule_stops_anywhere),
-        cmocka_unit_test(test_reconstruction_stops),      cmocka_unit_test(test_reading_and_writing_stop),
-        cmocka_unit_test(test_triangulate_stops),
+        cmocka_unit_test(test_no_stage_begins_after_a_stop),      cmocka_unit_test(test_generation_stops_anywhere),
+        cmocka_unit_test(test_the_schedule_stops_anywhere),       cmocka_unit_test(test_reconstruction_stops_anywhere),
+        cmocka_unit_test(test_reading_and_writing_stop_anywhere), cmocka_unit_test(test_triangulate_stops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,11 @@
-/* Attributes of new vertices: those of the input's own surface at their places. */
+/* Attributes of new vertices: their values are those of the input's surface at their positions. */
 #include "triangle/mesh/surface.h"
 
 #include "support.h"
 
-/* --- a vertex in a mesh of one triangle or two */
+/* --- a vertex in a mesh of one or two triangles */
 
-/* A mesh of these points, that has room for one vertex more. */
+/* A mesh of these points, with room for one more vertex. */
 static struct tri_mesh mesh_of(const struct tri_point *at, int32_t n, const double *attributes, int32_t n_attributes)
 {
     struct tri_pslg pslg = support_pslg(n, 0, 0, 0);
@@ -25,7 +25,7 @@ static struct tri_mesh mesh_of(const struct tri_point *at, int32_t n, const doub
     return mesh;
 }
 
-/* The attributes of a new vertex there, which lies on no segment. */
+/* The attributes of a new vertex at this position, which lies on no segment. */
 static const double *made_at(struct tri_mesh *mesh, struct tri_point p)
 {
     const tri_vertex_id v = mesh->n_vertices;
@@ -35,7 +35,7 @@ static const double *made_at(struct tri_mesh *mesh, struct tri_point p)
     return mesh->attributes + (size_t)v * (size_t)mesh->n_attributes;
 }
 
-static void test_edges(void **state)
+static void test_values_on_edges_are_interpolated_linearly(void **state)
 {
     (void)state;
     struct tri_point xy[] = {{0, 0}, {4, 1}, {1, 3}};
@@ -50,8 +50,8 @@ static void test_edges(void **state)
     }
 }
 
-/* Places of a vertex that rounding, or worse, has put outside; a triangle that has hardly any area. */
-static void test_range_is_kept(void **state)
+/* Positions that lie outside because of rounding or larger errors, and a triangle of nearly zero area. */
+static void test_values_stay_in_the_range_of_the_corners(void **state)
 {
     (void)state;
     static const struct tri_point at[] = {{0.5, 1e-16}, {0.5, -1e-17}, {0.5, -1}, {7, 0}, {-7, 0}};
@@ -62,12 +62,12 @@ static void test_range_is_kept(void **state)
         const double *made = made_at(&mesh, at[i]);
         assert_true(made[0] >= 0 && made[0] <= 1 && made[1] == 5);
     }
-    assert_true(fabs(made_at(&mesh, at[1])[0] - 0.5) < 1e-15); /* on the edge that is nearest */
+    assert_true(fabs(made_at(&mesh, at[1])[0] - 0.5) < 1e-15); /* on the nearest edge */
     tri_mesh_free(&mesh);
 }
 
-/* Planes over triangles up to 10^12 times as long as they are high come out as exactly as others. */
-static void test_thin_triangles(void **state)
+/* Planes over triangles up to 10^12 times as long as high are evaluated as exactly as others. */
+static void test_thin_triangles_are_evaluated_exactly(void **state)
 {
     (void)state;
     struct support_random random = {5};
@@ -95,8 +95,8 @@ static void test_thin_triangles(void **state)
     assert_true(tried > 1000);
 }
 
-/* On the common edge of two triangles, whichever of the corners has the lower number. */
-static void test_edges_agree(void **state)
+/* The values on the common edge of two triangles do not depend on which corner has the lower number. */
+static void test_triangles_agree_on_their_common_edge(void **state)
 {
     (void)state;
     struct support_random random = {6};
@@ -110,7 +110,7 @@ static void test_edges_agree(void **state)
         const double x = xy[1].x - xy[0].x, y = xy[1].y - xy[0].y;
         if (x == 0 && y == 0)
             continue;
-        const struct tri_point p = {xy[0].x + 0.75 * x, xy[0].y + 0.75 * y}; /* exactly */
+        const struct tri_point p = {xy[0].x + 0.75 * x, xy[0].y + 0.75 * y}; /* an exact product */
         double made[2];
         for (int side = 0; side < 2; side++) {
             xy[2] = (struct tri_point){xy[side].x + (side ? y : -y), xy[side].y + (side ? -x : x)};
@@ -151,7 +151,7 @@ static struct tri_options options_of(const struct figure *figure, const struct t
     return options;
 }
 
-static void test_refined_meshes(void **state)
+static void test_refined_meshes_keep_the_surface(void **state)
 {
     (void)state;
     for (int i = 0; i < FIGURES; i++) {
@@ -171,7 +171,7 @@ static void test_refined_meshes(void **state)
     }
 }
 
-/* A crease: the square's diagonal holds 1, two corners 0. No refinement of the moment smooths it. */
+/* A crease: the square's diagonal has value 1, two corners 0. Refinement in any order keeps the crease. */
 static void test_a_crease_stays(void **state)
 {
     (void)state;
@@ -189,8 +189,8 @@ static void test_a_crease_stays(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* One vertex at a time, in any order, or all at once: the same bits. */
-static void test_the_way_does_not_matter(void **state)
+/* One vertex at a time, in any order, or all at once: the results have the same bits. */
+static void test_the_order_of_evaluation_does_not_matter(void **state)
 {
     (void)state;
     for (int i = 0; i < FIGURES; i++) {
@@ -219,7 +219,7 @@ static void test_the_way_does_not_matter(void **state)
     }
 }
 
-/* --- meshes that were read */
+/* --- meshes that were read from files */
 
 /* Refines a mesh of these triangles. */
 static struct tri_mesh refine_read(const struct tri_pslg *pslg, int32_t *corners, int32_t n, double angle, double area,
@@ -232,7 +232,7 @@ static struct tri_mesh refine_read(const struct tri_pslg *pslg, int32_t *corners
     return support_generate(pslg, &options, NULL);
 }
 
-/* The triangles of a mesh, for another. */
+/* The triangles of a mesh, as input for another. */
 static int32_t *corners_of(const struct tri_mesh *mesh)
 {
     int32_t *corners = malloc(3 * ((size_t)mesh->n_triangles + 1) * sizeof *corners);
@@ -250,8 +250,8 @@ static double area_of(const struct tri_mesh *mesh)
     return sum * mesh->unit * mesh->unit;
 }
 
-/* A mesh with straight sides of many pieces, and with holes, is read, gets other heights, and is refined. */
-static void test_meshes_that_were_read(void **state)
+/* A mesh with straight sides of many pieces and with holes is read, gets different heights, and is refined. */
+static void test_meshes_read_from_files_keep_the_surface(void **state)
 {
     (void)state;
     for (int i = 0; i < FIGURES; i++) {
@@ -281,8 +281,8 @@ static void test_meshes_that_were_read(void **state)
     }
 }
 
-/* The surface is that of the triangles as they were read, also of those that are flipped. */
-static void test_flips_come_later(void **state)
+/* The surface is that of the triangles as read, including those that are flipped later. */
+static void test_flips_do_not_change_the_surface(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_pslg(4, 0, 0, 0);
@@ -300,9 +300,9 @@ static void test_flips_come_later(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Two squares that lie side by side and share no vertex: 0 in one, 1 in the other, also where they touch. The sides
- * consist of several pieces. */
-static void test_lips_of_a_crack(void **state)
+/* Two squares side by side that share no vertex, with value 0 in one and 1 in the other, also on the common side. The
+   sides consist of several pieces. */
+static void test_the_sides_of_a_crack_keep_their_values(void **state)
 {
     (void)state;
     enum { N = 4 };
@@ -336,8 +336,8 @@ static void test_lips_of_a_crack(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Refined again and again, through a gate of one's own: still the first one's surface. */
-static void test_calls_follow_each_other(void **state)
+/* Refining repeatedly, through a caller's gate, keeps the surface of the first call. */
+static void test_later_calls_keep_the_first_surface(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 30, 8);
@@ -360,7 +360,7 @@ static void test_calls_follow_each_other(void **state)
     tri_pslg_free(&pslg);
 }
 
-static void test_no_attributes(void **state)
+static void test_meshes_without_attributes_are_allowed(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 30, 8);
@@ -377,18 +377,18 @@ static void test_no_attributes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edges),
-        cmocka_unit_test(test_range_is_kept),
-        cmocka_unit_test(test_thin_triangles),
-        cmocka_unit_test(test_edges_agree),
-        cmocka_unit_test(test_refined_meshes),
+        cmocka_unit_test(test_values_on_edges_are_interpolated_linearly),
+        cmocka_unit_test(test_values_stay_in_the_range_of_the_corners),
+        cmocka_unit_test(test_thin_triangles_are_evaluated_exactly),
+        cmocka_unit_test(test_triangles_agree_on_their_common_edge),
+        cmocka_unit_test(test_refined_meshes_keep_the_surface),
         cmocka_unit_test(test_a_crease_stays),
-        cmocka_unit_test(test_the_way_does_not_matter),
-        cmocka_unit_test(test_meshes_that_were_read),
-        cmocka_unit_test(test_flips_come_later),
-        cmocka_unit_test(test_lips_of_a_crack),
-        cmocka_unit_test(test_calls_follow_each_other),
-        cmocka_unit_test(test_no_attributes),
+        cmocka_unit_test(test_the_order_of_evaluation_does_not_matter),
+        cmocka_unit_test(test_meshes_read_from_files_keep_the_surface),
+        cmocka_unit_test(test_flips_do_not_change_the_surface),
+        cmocka_unit_test(test_the_sides_of_a_crack_keep_their_values),
+        cmocka_unit_test(test_later_calls_keep_the_first_surface),
+        cmocka_unit_test(test_meshes_without_attributes_are_allowed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

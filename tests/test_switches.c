@@ -1,4 +1,4 @@
-/* Strings of switches: the grammar of numbers, what is ignored, what follows. */
+/* Strings of switches: the grammar of numbers, ignored characters, and options derived from the switches. */
 #include "triangle/dropin/switches.h"
 
 #include <locale.h>
@@ -17,7 +17,7 @@ static struct tri_switches parsed(const char *text)
     return s;
 }
 
-static void test_nothing(void **state)
+static void test_unknown_characters_are_ignored(void **state)
 {
     (void)state;
     static const char *const empty[] = {"", "-", "{}", "R k%^&}{0123456789", "Xil", "o", "o3", "oo", "tmbdf"};
@@ -31,7 +31,7 @@ static void test_nothing(void **state)
 }
 
 /* Every letter sets its own flag and no other. */
-static void test_letters(void **state)
+static void test_each_letter_sets_its_own_flag(void **state)
 {
     (void)state;
     static const struct {
@@ -60,7 +60,7 @@ static void test_letters(void **state)
     }
 }
 
-static void test_numbers(void **state)
+static void test_numbers_are_parsed(void **state)
 {
     (void)state;
     static const struct {
@@ -86,7 +86,7 @@ static void test_numbers(void **state)
     assert_true(parsed("a1e-3").edges);
 }
 
-static void test_bad_area(void **state)
+static void test_invalid_areas_are_refused(void **state)
 {
     (void)state;
     assert_true(parsed("a0").bad_area);
@@ -96,8 +96,8 @@ static void test_bad_area(void **state)
     assert_false(parsed("a-0").bad_area);
 }
 
-/* As many digits as one likes, against strtod of the same text (in the C locale). */
-static void test_long_numbers(void **state)
+/* Numbers of any length, compared with strtod of the same text (in the C locale). */
+static void test_long_numbers_are_rounded_correctly(void **state)
 {
     (void)state;
     char text[3000], number[2900];
@@ -115,7 +115,7 @@ static void test_long_numbers(void **state)
         strcpy(text + 1, number);
         assert_true(parsed(text).min_angle == strtod(number, NULL));
     }
-    /* A tie that the last of many digits breaks: 2^53 + 1 and something. */
+    /* Nearly a tie, decided by the last of many digits: 2^53 + 1 and a small amount. */
     strcpy(text, "q9007199254740993.");
     memset(text + strlen(text), '0', 900);
     text[18 + 900] = 0;
@@ -124,7 +124,7 @@ static void test_long_numbers(void **state)
     assert_true(parsed(text).min_angle == 9007199254740994.0);
 }
 
-static void test_limit(void **state)
+static void test_the_limit_on_points_is_parsed(void **state)
 {
     (void)state;
     assert_int_equal(parsed("S").max_steiner, 0);
@@ -136,7 +136,7 @@ static void test_limit(void **state)
     assert_true(parsed("S99999999999999999999999999").max_steiner > INT64_MAX / 20);
 }
 
-static void test_counts(void **state)
+static void test_repeated_letters_are_counted(void **state)
 {
     (void)state;
     assert_int_equal(parsed("Y").protect, 1);
@@ -148,7 +148,7 @@ static void test_counts(void **state)
     assert_int_equal(s.protect, 2);
 }
 
-static void test_notes(void **state)
+static void test_ambiguous_exponents_are_noted(void **state)
 {
     (void)state;
     struct tri_switches s = parsed("pq30a1e-6Q");
@@ -163,8 +163,8 @@ static void test_notes(void **state)
     assert_int_equal(strlen(s.notes[0]), TRI_SWITCH_NOTE_CHARS - 1);
 }
 
-/* What clients of Triangle pass. */
-static void test_clients(void **state)
+/* Strings that clients of Triangle pass. */
+static void test_strings_of_clients_are_parsed(void **state)
 {
     (void)state;
     struct tri_switches s = parsed("Qz{pq30}");
@@ -178,7 +178,7 @@ static void test_clients(void **state)
     assert_true(s.segments && s.regions && s.area_lists && s.max_area == 0.1 && s.min_angle == 30 && s.protect == 2);
 }
 
-static void test_options(void **state)
+static void test_switches_become_options(void **state)
 {
     (void)state;
     struct tri_switches s = parsed("pq28.6aAa0.5DYOcS7");
@@ -189,12 +189,12 @@ static void test_options(void **state)
     assert_true(o.quality.lattice);
     s.placement = TRI_PLACEMENT_CLASSIC;
     assert_false(tri_switches_options(&s).quality.lattice);
-    s = parsed("A"); /* regions belong to segments */
+    s = parsed("A"); /* regions need segments */
     assert_false(tri_switches_options(&s).spread_regions);
     s = parsed("rpAa");
     assert_false(tri_switches_options(&s).spread_regions);
-    assert_true(tri_switches_options(&s).quality.region_areas); /* those of the triangles */
-    assert_false(tri_switches_options(&s).quality.lattice);     /* whose vertices are where they are */
+    assert_true(tri_switches_options(&s).quality.region_areas); /* the bounds are those of the triangles */
+    assert_false(tri_switches_options(&s).quality.lattice);     /* the input's vertices keep their positions */
     s = parsed("q180");
     assert_true(tri_switches_options(&s).refine && tri_switches_options(&s).quality.min_angle == 0);
     static const char *const refining[] = {"q", "q0", "a", "a1", "u", "D"};
@@ -206,7 +206,7 @@ static void test_options(void **state)
     assert_false(tri_switches_refine(&s));
 }
 
-static void test_locale(void **state)
+static void test_the_locale_does_not_matter(void **state)
 {
     (void)state;
     static const char *const commas[] = {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "fr_FR"};
@@ -223,10 +223,17 @@ static void test_locale(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing), cmocka_unit_test(test_letters),      cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_bad_area), cmocka_unit_test(test_long_numbers), cmocka_unit_test(test_limit),
-        cmocka_unit_test(test_counts),  cmocka_unit_test(test_notes),        cmocka_unit_test(test_clients),
-        cmocka_unit_test(test_options), cmocka_unit_test(test_locale),
+        cmocka_unit_test(test_unknown_characters_are_ignored),
+        cmocka_unit_test(test_each_letter_sets_its_own_flag),
+        cmocka_unit_test(test_numbers_are_parsed),
+        cmocka_unit_test(test_invalid_areas_are_refused),
+        cmocka_unit_test(test_long_numbers_are_rounded_correctly),
+        cmocka_unit_test(test_the_limit_on_points_is_parsed),
+        cmocka_unit_test(test_repeated_letters_are_counted),
+        cmocka_unit_test(test_ambiguous_exponents_are_noted),
+        cmocka_unit_test(test_strings_of_clients_are_parsed),
+        cmocka_unit_test(test_switches_become_options),
+        cmocka_unit_test(test_the_locale_does_not_matter),
     };
     return cmocka_run_group_tests_name("switches", tests, NULL, NULL);
 }

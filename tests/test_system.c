@@ -1,5 +1,6 @@
-/* The door to the system (triangle/base/system.h): files, folders, maps, threads, and what is told where they fail. */
-#define _GNU_SOURCE /* O_TMPFILE */
+/* The interface to the operating system (triangle/base/system.h): files, folders, memory maps, threads, and the errors
+   that they report. */
+#define _GNU_SOURCE /* for O_TMPFILE */
 #include <errno.h>
 #include <fcntl.h>
 #include <setjmp.h>
@@ -20,9 +21,9 @@
 #include "tests/files.h"
 #include "triangle/base/system.h"
 
-/* --- files without a name: each its own, gone with whoever has it open */
+/* --- files without a name: each is distinct, and is removed when its last user closes it */
 
-static void test_each_is_its_own(void **state)
+static void test_scratch_files_are_distinct(void **state)
 {
     (void)state;
     char found[2];
@@ -37,8 +38,8 @@ static void test_each_is_its_own(void **state)
     assert_true(tri_file_close(first) && tri_file_close(second));
 }
 
-/* One that had a name is listed under it, as deleted. */
-static void test_never_has_a_name(void **state)
+/* A file that had a name is listed under it, marked as deleted. */
+static void test_scratch_files_never_have_a_name(void **state)
 {
     (void)state;
 #ifdef O_TMPFILE
@@ -54,7 +55,7 @@ static void test_never_has_a_name(void **state)
 #endif
 }
 
-static void test_there_is_none(void **state)
+static void test_a_scratch_file_in_no_folder_is_an_error(void **state)
 {
     (void)state;
     enum { N = 100000 };
@@ -69,21 +70,21 @@ static void test_there_is_none(void **state)
 }
 
 #ifdef SUPPORT_WRAP
-static void test_no_memory(void **state)
+static void test_lack_of_memory_is_reported(void **state)
 {
     (void)state;
     const int64_t held = support_held;
     errno = 0;
     support_calls = 0;
     support_fail_at = 1;
-    assert_int_equal(tri_scratch_file("nowhere"), -1); /* only a name takes memory */
+    assert_int_equal(tri_scratch_file("nowhere"), -1); /* only the name needs memory */
     support_fail_at = INT64_MAX;
     assert_int_equal(errno, ENOMEM);
     assert_int_equal(support_held, held);
 }
 #endif
 
-/* --- maps: bytes stay while files grow, and a file that cannot grow is an error that changes nothing */
+/* --- maps: bytes are kept while files grow, and a failed growth is an error that changes nothing */
 
 static void test_bytes_stay_while_a_file_grows(void **state)
 {
@@ -103,7 +104,7 @@ static void test_bytes_stay_while_a_file_grows(void **state)
     assert_true(f.file == TRI_NO_FILE && !f.at && f.size == 0);
 }
 
-static void test_what_is_appended_is_mapped(void **state)
+static void test_appended_bytes_are_mapped(void **state)
 {
     (void)state;
     struct tri_mapped_file f = {.file = TRI_NO_FILE};
@@ -114,8 +115,8 @@ static void test_what_is_appended_is_mapped(void **state)
     tri_mapped_file_close(&f);
 }
 
-/* errno survives closing. */
-static void test_a_file_that_cannot_grow_stays(void **state)
+/* Closing leaves errno unchanged. */
+static void test_a_file_that_cannot_grow_is_unchanged(void **state)
 {
     (void)state;
     struct tri_mapped_file f = {.file = TRI_NO_FILE};
@@ -138,9 +139,9 @@ static void test_a_file_that_cannot_grow_stays(void **state)
     tri_mapped_file_close(&f);
 }
 
-/* --- files at a place */
+/* --- reading and writing at an offset */
 
-static void test_read_and_written_at_a_place(void **state)
+static void test_reading_and_writing_at_an_offset(void **state)
 {
     (void)state;
     char found[8] = "";
@@ -163,8 +164,8 @@ static void test_read_and_written_at_a_place(void **state)
     assert_int_equal(errno, ENOENT);
 }
 
-/* What goes behind its caller's back is there once it is waited for, past the cache as well as through it. */
-static void test_written_behind(void **state)
+/* Bytes written asynchronously are in the file once the caller has waited, both past the cache and through it. */
+static void test_asynchronous_writes_arrive(void **state)
 {
     (void)state;
     enum { N = 4 * TRI_PAGE_BYTES };
@@ -193,8 +194,8 @@ static void make(const char *path)
     assert_true(tri_file_close(file) && tri_path_allows(path, TRI_THERE));
 }
 
-/* Two names of one file, and a name that another file takes. */
-static void test_names(void **state)
+/* Two names of one file, and a rename over an existing name. */
+static void test_files_are_linked_and_renamed(void **state)
 {
     (void)state;
     struct tri_file_facts one, other;
@@ -240,9 +241,9 @@ static bool count_names(void *user, const char *name)
     return true;
 }
 
-/* A file gets its name when it is complete; links are not followed, and a second name is refused where the file is
- * extended. */
-static void test_files_in_a_folder(void **state)
+/* A file gets its name when it is complete. Links are not followed, and a file with a second name is refused if it is
+   to be extended. */
+static void test_files_get_names_when_complete(void **state)
 {
     (void)state;
     int names = 0;
@@ -290,8 +291,8 @@ static void *look_at_mask(void *mask)
     return NULL;
 }
 
-/* Else a crash on another thread would end the program past its handler. */
-static void test_threads_hear_of_their_own_faults_alone(void **state)
+/* Otherwise a crash on another thread would end the program without calling its handler. */
+static void test_threads_receive_only_their_own_faults(void **state)
 {
     (void)state;
     sigset_t mask;
@@ -322,7 +323,7 @@ static void test_threads_meet_in_a_monitor(void **state)
 
 /* --- time, memory, processes */
 
-static void test_facts(void **state)
+static void test_facts_about_the_machine_are_plausible(void **state)
 {
     (void)state;
     char host[64];
@@ -338,24 +339,24 @@ static void test_facts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_is_its_own),
-        cmocka_unit_test(test_never_has_a_name),
-        cmocka_unit_test(test_there_is_none),
+        cmocka_unit_test(test_scratch_files_are_distinct),
+        cmocka_unit_test(test_scratch_files_never_have_a_name),
+        cmocka_unit_test(test_a_scratch_file_in_no_folder_is_an_error),
 #ifdef SUPPORT_WRAP
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_lack_of_memory_is_reported),
 #endif
         cmocka_unit_test(test_bytes_stay_while_a_file_grows),
-        cmocka_unit_test(test_what_is_appended_is_mapped),
-        cmocka_unit_test(test_a_file_that_cannot_grow_stays),
-        cmocka_unit_test(test_read_and_written_at_a_place),
-        cmocka_unit_test(test_written_behind),
-        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_appended_bytes_are_mapped),
+        cmocka_unit_test(test_a_file_that_cannot_grow_is_unchanged),
+        cmocka_unit_test(test_reading_and_writing_at_an_offset),
+        cmocka_unit_test(test_asynchronous_writes_arrive),
+        cmocka_unit_test(test_files_are_linked_and_renamed),
         cmocka_unit_test(test_links_are_resolved),
         cmocka_unit_test(test_folder_of_a_path),
-        cmocka_unit_test(test_files_in_a_folder),
-        cmocka_unit_test(test_threads_hear_of_their_own_faults_alone),
+        cmocka_unit_test(test_files_get_names_when_complete),
+        cmocka_unit_test(test_threads_receive_only_their_own_faults),
         cmocka_unit_test(test_threads_meet_in_a_monitor),
-        cmocka_unit_test(test_facts),
+        cmocka_unit_test(test_facts_about_the_machine_are_plausible),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* What programs ask of the system beside: limits, the terminal, interrupts. */
+/* Further services of the operating system that programs use: limits, the terminal, interrupts. */
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -11,7 +11,7 @@
 
 #include "triangle/base/system.h"
 
-static void test_memory_and_disk(void **state)
+static void test_memory_and_disk_are_measured(void **state)
 {
     (void)state;
     assert_true(tri_memory_left() > 0 && tri_memory_total() > 0);
@@ -20,7 +20,7 @@ static void test_memory_and_disk(void **state)
     assert_true(tri_disk_left(".") > 0 && tri_disk_left("no/such/folder/file") == HUGE_VAL);
 }
 
-static void test_the_program_itself(void **state)
+static void test_the_program_finds_its_own_path(void **state)
 {
     (void)state;
     char path[TRI_PATH];
@@ -35,7 +35,7 @@ static void note_asked(int number) { asked = number; }
 static void note_time(void) { alarms++; }
 static void note_crash(void) {}
 
-static void test_interrupts_are_heard(void **state)
+static void test_interrupts_are_noticed(void **state)
 {
     (void)state;
     static const struct tri_interrupts handlers = {note_asked, note_time, note_crash};
@@ -55,9 +55,9 @@ static void test_interrupts_are_heard(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory_and_disk),
-        cmocka_unit_test(test_the_program_itself),
-        cmocka_unit_test(test_interrupts_are_heard),
+        cmocka_unit_test(test_memory_and_disk_are_measured),
+        cmocka_unit_test(test_the_program_finds_its_own_path),
+        cmocka_unit_test(test_interrupts_are_noticed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

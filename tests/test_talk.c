@@ -1,12 +1,13 @@
-/* Messages between ranks: what is told is what is read, in one message or several; bytes that are no message are
- * refused. This program is linked with --wrap, see allocations.h. */
+/* Messages between ranks: the receiver reads what the sender wrote, in one message or several. Invalid bytes are
+   refused.
+   This program is linked with --wrap, see allocations.h. */
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
 
 #include "sched/ranks/talk.h"
 
-/* Two sides that have the same mesh, so that ids on both are the same. */
+/* Two sides with the same mesh, so that ids on both are equal. */
 struct pair {
     struct tri_pslg pslg;
     struct tri_mesh mesh;
@@ -33,7 +34,7 @@ static void free_pair(struct pair *pair)
     tri_pslg_free(&pair->pslg);
 }
 
-/* Tells of triangles from..end - 1 in steps, in any order; false: no memory. */
+/* Sends triangles from..end - 1 in the given step, in any order. Returns false if memory ran out. */
 static bool tell(struct pair *pair, int32_t from, int32_t end, struct par_message *m, struct par_bytes *bytes)
 {
     int32_t first = pair->teller.triangle.n;
@@ -47,7 +48,7 @@ static bool tell(struct pair *pair, int32_t from, int32_t end, struct par_messag
     return memory && par_message_write(m, &pair->teller, &pair->mesh, pair->n_common, bytes);
 }
 
-/* The other side knows it, too. */
+/* Adds the same triangles on the receiving side. */
 static void catch_up(struct pair *pair)
 {
     const struct par_talk *from = &pair->teller;
@@ -100,7 +101,7 @@ static enum tri_status hear(const struct pair *pair, const struct par_bytes *byt
     return status;
 }
 
-static void test_what_is_told_is_read(void **state)
+static void test_messages_are_read_as_written(void **state)
 {
     (void)state;
     struct pair pair = new_pair();
@@ -108,7 +109,7 @@ static void test_what_is_told_is_read(void **state)
     for (int32_t part = 0; part < parts; part++) {
         struct par_message told = {0}, heard;
         struct par_bytes bytes = {0};
-        for (int32_t i = 0; part == 2 && i < 40; i += 1 + i % 3) { /* as if these were no more */
+        for (int32_t i = 0; part == 2 && i < 40; i += 1 + i % 3) { /* as if these triangles no longer existed */
             assert_true(par_ids_add(&told.gone, i));
             pair.teller.triangle.item[i] = TRI_NONE;
         }
@@ -127,7 +128,7 @@ static void test_what_is_told_is_read(void **state)
     free_pair(&pair);
 }
 
-static void test_what_is_no_message_is_refused(void **state)
+static void test_invalid_messages_are_refused(void **state)
 {
     (void)state;
     struct pair pair = new_pair();
@@ -147,7 +148,7 @@ static void test_what_is_no_message_is_refused(void **state)
         assert_int_equal(hear(&pair, &cut, &heard), TRI_INTERNAL);
         par_message_free(&heard);
     }
-    catch_up(&pair); /* what has been told is not told again */
+    catch_up(&pair); /* triangles that were sent are not sent again */
     assert_int_equal(hear(&pair, &bytes, &heard), TRI_OK);
     par_message_free(&heard);
     par_message_free(&told);
@@ -185,8 +186,8 @@ int main(void)
 #ifdef SUPPORT_WRAP
         cmocka_unit_test(test_every_allocation_may_fail),
 #endif
-        cmocka_unit_test(test_what_is_told_is_read),
-        cmocka_unit_test(test_what_is_no_message_is_refused),
+        cmocka_unit_test(test_messages_are_read_as_written),
+        cmocka_unit_test(test_invalid_messages_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* What the mesher makes of thousands of tangles (see tangles.h), each put before the judge: triangulated, with hull and
- * carved, and refined. TANGLES: how many of each family. */
+/* Meshes of thousands of tangles (see tangles.h), all of them checked: triangulated with hull, carved, and refined.
+   TANGLES: number of tangles per family. */
 #include "full.h"
 #include "tangles.h"
 #include "triangle/cdt/crossing.h"
@@ -11,7 +11,7 @@ static struct tri_options triangulated(void)
     return options;
 }
 
-/* New points are limited: rounding makes features of any smallness. */
+/* The number of new points is limited, since rounding creates arbitrarily small features. */
 static struct tri_options refined(double min_angle, bool conforming)
 {
     struct tri_options options = support_quality(min_angle, 0);
@@ -46,7 +46,7 @@ static void expect_all_good(struct tri_options options, int n)
             expect_good(family, (uint64_t)seed, options);
 }
 
-static void test_with_hull(void **state)
+static void test_tangles_with_hull_are_triangulated(void **state)
 {
     (void)state;
     struct tri_options options = triangulated();
@@ -54,20 +54,21 @@ static void test_with_hull(void **state)
     expect_all_good(options, TANGLES / every(4));
 }
 
-static void test_carved(void **state)
+static void test_carved_tangles_are_triangulated(void **state)
 {
     (void)state;
     expect_all_good(triangulated(), TANGLES / every(4));
 }
 
-static void test_refined(void **state)
+static void test_tangles_are_refined(void **state)
 {
     (void)state;
     expect_all_good(refined(20, false), TANGLES / every(4) / 6);
     expect_all_good(refined(30, true), TANGLES / every(4) / 6);
 }
 
-/* Each crossing is that of the input segments, so that errors do not add up along the one that hundreds cross. */
+/* Each crossing is computed from the input segments, so errors do not accumulate along a segment with hundreds of
+   crossings. */
 static void test_crossings_do_not_drift(void **state)
 {
     (void)state;
@@ -89,7 +90,7 @@ static void test_crossings_do_not_drift(void **state)
     assert_true(crossings > 500);
 }
 
-/* Does the subsegment leave a slit of no width beside a vertex that is as good as on it, and on its segment? */
+/* Does the subsegment leave a slit of zero width beside a vertex that lies on its segment up to rounding? */
 static bool has_slit(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_subsegment *s, int side)
 {
     int32_t segment = mesh->parents[s->parent].segment;
@@ -103,7 +104,7 @@ static bool has_slit(const struct tri_mesh *mesh, const struct tri_pslg *pslg, c
            tri_line_distance(from, to, q) <= 3 * fmax(tri_resolution(from), tri_resolution(to));
 }
 
-/* Who meets a segment up to rounding shuts the face there: an edge runs through the vertex. */
+/* If a vertex lies on a segment up to rounding, the face there is closed: an edge runs through the vertex. */
 static void expect_no_slits(int family, uint64_t seed)
 {
     struct tri_constrain_report report;
@@ -130,9 +131,9 @@ static void test_no_slits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_with_hull),
-        cmocka_unit_test(test_carved),
-        cmocka_unit_test(test_refined),
+        cmocka_unit_test(test_tangles_with_hull_are_triangulated),
+        cmocka_unit_test(test_carved_tangles_are_triangulated),
+        cmocka_unit_test(test_tangles_are_refined),
         cmocka_unit_test(test_no_slits),
         cmocka_unit_test(test_crossings_do_not_drift),
     };

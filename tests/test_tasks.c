@@ -1,4 +1,4 @@
-/* What launchers tell a program. */
+/* The number of tasks that launchers pass to a program. */
 #include "drivers/start.h"
 
 #include <setjmp.h>
@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-/* The launcher's variables, of this process: NULL: unset. Returns how many tasks there are. */
+/* Sets the launcher's variables in this process. NULL: unset. Returns the number of tasks. */
 static int tasks_of(const char *size, const char *rank, int *task)
 {
     static const char *const others[] = {"OMPI_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS"};
@@ -19,7 +19,7 @@ static int tasks_of(const char *size, const char *rank, int *task)
     return tasks_started(task);
 }
 
-static void test_tasks_as_the_launcher_says(void **state)
+static void test_the_launcher_sets_the_number_of_tasks(void **state)
 {
     int task = -1;
     (void)state;
@@ -29,8 +29,8 @@ static void test_tasks_as_the_launcher_says(void **state)
     assert_int_equal(task, 0);
 }
 
-/* A number that no int holds is no number of tasks. */
-static void test_nonsense_is_no_launcher(void **state)
+/* A number that exceeds an int is ignored. */
+static void test_invalid_variables_are_ignored(void **state)
 {
     static const char *const sizes[] = {"99999999999", "4294967298", "99999999999999999999999", "-2", "4x", "x", ""};
     int task = -1;
@@ -44,8 +44,8 @@ static void test_nonsense_is_no_launcher(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tasks_as_the_launcher_says),
-        cmocka_unit_test(test_nonsense_is_no_launcher),
+        cmocka_unit_test(test_the_launcher_sets_the_number_of_tasks),
+        cmocka_unit_test(test_invalid_variables_are_ignored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Tasks on a team's threads: each runs once, whatever becomes of threads, and the caller sees what they wrote. */
+/* Tasks on a team's threads: each task runs once, even if no threads can be created, and the caller sees the tasks'
+   results. */
 #include "allocations.h"
 
 #include <limits.h>
@@ -21,12 +22,12 @@
 enum { MOST = 1000 };
 
 struct counts {
-    int of[MOST]; /* by task: how often it has run; not atomic, so that ThreadSanitizer sees what is not ordered */
+    int of[MOST]; /* [task] number of times it has run; not atomic, so that ThreadSanitizer detects missing ordering */
 };
 
 static void count(void *context, size_t index) { ((struct counts *)context)->of[index]++; }
 
-/* cmocka's asserts belong to the main thread. */
+/* Asserts of cmocka may only run on the main thread. */
 static bool is_each_run_once(const struct tri_executor *executor, size_t n)
 {
     struct counts counts = {{0}};
@@ -58,10 +59,10 @@ static void test_each_task_runs_once(void **state)
 
 struct meeting {
     atomic_int here;
-    int left[3]; /* by task; not atomic */
+    int left[3]; /* [task] not atomic */
 };
 
-/* All threads are there at once, if the system gives them: each task waits for the others. One ends later. */
+/* All threads run at the same time if the system grants them: each task waits for the others. One ends later. */
 static void meet(void *context, size_t index)
 {
     struct meeting *meeting = context;
@@ -112,7 +113,7 @@ static void test_callers_have_teams_of_their_own(void **state)
 #define IS_CHECKED_FOR_RACES 0
 #endif
 
-/* A child has none of its parent's threads. ThreadSanitizer refuses it new ones. */
+/* A forked child has no threads of its parent. ThreadSanitizer does not let it create new ones. */
 static void test_a_forked_child_makes_its_own(void **state)
 {
     (void)state;
@@ -125,7 +126,7 @@ static void test_a_forked_child_makes_its_own(void **state)
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        alarm(60); /* instead of waiting for ever */
+        alarm(60); /* instead of waiting endlessly */
         _exit(are_jobs_done(3, 50) ? 0 : 1);
     }
     assert_int_equal(waitpid(child, &status, 0), child);
@@ -149,13 +150,13 @@ static void test_without_memory_the_caller_works_alone(void **state)
 
 static void ask(void *context, size_t index) { ((int *)context)[index] = par_threads(0, false); }
 
-static void test_how_many_there_will_be(void **state)
+static void test_the_number_of_threads_is_predicted(void **state)
 {
     (void)state;
     int asked[3] = {0};
     struct par_team team = {.threads = 3};
     const struct tri_executor executor = par_executor(&team);
-    executor.run(executor.self, 3, ask, asked); /* its other threads have the other processors */
+    executor.run(executor.self, 3, ask, asked); /* the team's other threads use the other processors */
     par_team_end(&team);
     for (int i = 0; i < 3; i++)
         assert_int_equal(asked[i], 1);
@@ -190,7 +191,7 @@ int main(void)
         cmocka_unit_test(test_callers_have_teams_of_their_own),
         cmocka_unit_test(test_a_forked_child_makes_its_own),
         cmocka_unit_test(test_without_memory_the_caller_works_alone),
-        cmocka_unit_test(test_how_many_there_will_be),
+        cmocka_unit_test(test_the_number_of_threads_is_predicted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

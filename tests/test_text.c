@@ -1,4 +1,4 @@
-/* The lexer of the text formats: records and fields of known texts, whichever way they are cut into chunks. */
+/* The lexer of the text formats returns the records and fields of known texts, for any division into chunks. */
 #include "triangle/text/text.h"
 
 #include <stdio.h>
@@ -48,8 +48,9 @@ static void test_records_and_lines(void **state)
     }
 }
 
-/* The words nan and inf are values that no coordinate can have; numbers too large for a double are none either. */
-static void test_what_is_no_number(void **state)
+/* The words nan and inf are values that a coordinate cannot have. Numbers too large for a double are refused as
+   well. */
+static void test_texts_that_are_no_numbers_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[] = {"nan\n", "1 inf", "1 -Infinity 2", "1 NaN", "1 1e999", "1 +-3", "1 -"};
@@ -69,7 +70,7 @@ static void test_what_is_no_number(void **state)
     }
 }
 
-static void test_integers(void **state)
+static void test_integers_are_parsed(void **state)
 {
     (void)state;
     struct tri_text text = load("12 -3 +4 5.75 99999999999999999999", 0);
@@ -94,8 +95,8 @@ static const char *double_it(void *user, size_t i, struct tri_fields *fields)
     return values[i] < 0 ? "is negative" : NULL;
 }
 
-/* Rows in any order; of several faults the first is told, with its line. */
-static void test_tables(void **state)
+/* Rows may come in any order. Of several faults the first is reported, with its line. */
+static void test_tables_are_read_in_any_order(void **state)
 {
     (void)state;
     for (size_t chunk = 1; chunk < 20; chunk++) {
@@ -117,7 +118,7 @@ static void test_tables(void **state)
     }
 }
 
-static void test_no_file(void **state)
+static void test_an_unreadable_file_is_an_error(void **state)
 {
     (void)state;
     struct tri_text text;
@@ -129,7 +130,7 @@ static void test_no_file(void **state)
     tri_text_free(&text);
 }
 
-static void test_empty_file(void **state)
+static void test_an_empty_file_has_no_records(void **state)
 {
     (void)state;
     struct tri_text text = load("", 0);
@@ -143,9 +144,12 @@ static void test_empty_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_records_and_lines), cmocka_unit_test(test_what_is_no_number),
-        cmocka_unit_test(test_integers),          cmocka_unit_test(test_tables),
-        cmocka_unit_test(test_no_file),           cmocka_unit_test(test_empty_file),
+        cmocka_unit_test(test_records_and_lines),
+        cmocka_unit_test(test_texts_that_are_no_numbers_are_refused),
+        cmocka_unit_test(test_integers_are_parsed),
+        cmocka_unit_test(test_tables_are_read_in_any_order),
+        cmocka_unit_test(test_an_unreadable_file_is_an_error),
+        cmocka_unit_test(test_an_empty_file_has_no_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

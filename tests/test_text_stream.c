@@ -1,4 +1,4 @@
-/* Text files of a stream of tiles are byte for byte those of the mesh in memory, whatever the estimate was. */
+/* Text files of a stream of tiles equal those of the mesh in memory byte for byte, for any estimate of its size. */
 #include "triangle/text/stream.h"
 
 #include <setjmp.h>
@@ -53,7 +53,7 @@ static void write_grid(const struct lattice *lattice, struct tri_text_options o)
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
 }
 
-/* A sink that is told of another estimate. */
+/* A sink that receives a different estimate. */
 struct teller {
     struct tri_sink to;
     double estimate;
@@ -120,7 +120,7 @@ static void compare(const struct lattice *lattice, const struct tri_text_options
     }
 }
 
-static void test_same_bytes(void **state)
+static void test_streamed_files_have_the_same_bytes(void **state)
 {
     (void)state;
     const struct lattice *all[] = {&SMALL, &PLAIN, &LARGE};
@@ -133,7 +133,7 @@ static void test_same_bytes(void **state)
         }
 }
 
-static void test_full_disk(void **state)
+static void test_a_full_disk_is_reported(void **state)
 {
     (void)state;
     struct rlimit before, limit;
@@ -151,14 +151,14 @@ static void test_full_disk(void **state)
     }
 }
 
-static void test_no_memory(void **state)
+static void test_lack_of_memory_is_reported(void **state)
 {
     (void)state;
     const struct tri_text_options options = {.markers = true, .argc = 2, .argv = words};
     enum tri_status status = TRI_NO_MEMORY;
     const int64_t held = atomic_load(&support_held);
     for (int64_t k = 1; status; k++) {
-        if (k > 8 && k < 16) /* the lattice's own */
+        if (k > 8 && k < 16) /* allocations of the lattice */
             continue;
         atomic_store(&support_calls, 0);
         atomic_store(&support_fail_at, k);
@@ -173,9 +173,9 @@ static void test_no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_same_bytes, remove_files),
-        cmocka_unit_test_teardown(test_full_disk, remove_files),
-        cmocka_unit_test_teardown(test_no_memory, remove_files),
+        cmocka_unit_test_teardown(test_streamed_files_have_the_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_a_full_disk_is_reported, remove_files),
+        cmocka_unit_test_teardown(test_lack_of_memory_is_reported, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

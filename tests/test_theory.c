@@ -1,4 +1,4 @@
-/* The lemmas of the paper, as formulas and on random meshes. */
+/* The lemmas of the paper, tested as formulas and on random meshes. */
 #include "support.h"
 
 #include "sched/schedule/prerefine.h"
@@ -7,17 +7,17 @@
 
 static const double RADIAN = 3.14159265358979324 / 180;
 
-/* Equation (2): the area bound of a pre-refinement after which no circumradius exceeds r. */
+/* Equation (2): the area bound of a pre-refinement that leaves no circumradius above r. */
 static double area_for_radius(double radius, double rho) { return radius * radius / (4 * rho * rho * rho); }
 
-/* Lemma 2: circumcentres at least 4 r apart have cavities without a common triangle or edge. */
+/* Lemma 2: circumcentres at a distance of at least 4 r have cavities without a common triangle or edge. */
 static bool are_independent(struct tri_point p, struct tri_point q, double radius)
 {
     return tri_distance2(p, q) >= 16 * radius * radius;
 }
 
-/* Definition 3: the buffer zone of p holds the triangles whose circumcentre c is nearer to p than 2 r; its cavity lies
- * within. */
+/* Definition 3: the buffer zone of p consists of the triangles whose circumcentre c is closer to p than 2 r. The cavity
+   of p lies within it. */
 static bool in_buffer_zone(struct tri_point p, struct tri_point c, double radius)
 {
     return (p.x - c.x) * (p.x - c.x) + (p.y - c.y) * (p.y - c.y) < 4 * radius * radius;
@@ -34,13 +34,13 @@ static void test_rho_is_the_inverse_of_the_angle(void **state)
         assert_near(1 / (2 * par_rho(angle)), sin(angle * RADIAN));
 }
 
-static void test_circumradius(void **state)
+static void test_circumradius_of_known_triangles(void **state)
 {
     (void)state;
     struct tri_point a = {1, 1}, b = {4, 1}, c = {1, 5};
     assert_near(par_radius2(a, b, c), 6.25);
     assert_near(par_radius2(b, c, a), 6.25);
-    assert_near(par_radius2(a, c, b), 6.25); /* whatever the orientation */
+    assert_near(par_radius2(a, c, b), 6.25); /* for any orientation */
 }
 
 /* A triangle with these two angles (degrees) and this area. */
@@ -55,7 +55,7 @@ static void make_triangle(double alpha, double beta, double area, struct tri_poi
 
 static double radius_of(const struct tri_point v[3]) { return sqrt(par_radius2(v[0], v[1], v[2])); }
 
-/* Lemma 7 and the tight bound: no triangle with angles and area within their bounds has a larger circumradius. */
+/* Lemma 7 and the tight bound: no triangle whose angles and area meet their bounds has a larger circumradius. */
 static void test_radius_bounds_hold(void **state)
 {
     (void)state;
@@ -66,7 +66,7 @@ static void test_radius_bounds_hold(void **state)
         double alpha = least + (180 - 3 * least) * support_unit(&random);
         double beta = least + (180 - 2 * least - alpha) * support_unit(&random);
         struct tri_point v[3];
-        if (fabs(alpha - 90) < 1e-3 || fabs(beta - 90) < 1e-3) /* the tangent is no help there */
+        if (fabs(alpha - 90) < 1e-3 || fabs(beta - 90) < 1e-3) /* the tangent is undefined or inaccurate here */
             continue;
         make_triangle(alpha, beta, bound * support_unit(&random) + 1e-300, v);
         double tight = par_radius_tight(bound, least);
@@ -75,7 +75,7 @@ static void test_radius_bounds_hold(void **state)
     }
 }
 
-/* The extremal triangle has two angles at the bound, and the whole area: the tight bound is its circumradius. */
+/* The extremal triangle has two angles at the bound and the whole area. Its circumradius equals the tight bound. */
 static void test_tight_bound_is_attained(void **state)
 {
     (void)state;
@@ -83,11 +83,12 @@ static void test_tight_bound_is_attained(void **state)
         struct tri_point v[3];
         make_triangle(angle, angle, 3, v);
         assert_true(fabs(radius_of(v) - par_radius_tight(3, angle)) < 1e-9 * radius_of(v));
-        /* A hundredth more of area, or less of angle, is beyond it: the bound depends on both. */
+        /* One per cent more area, or a slightly smaller angle, exceeds the bound, so the bound depends on both. */
         assert_true(par_radius_tight(3.03, angle) > radius_of(v) && par_radius_tight(3, 0.99 * angle) > radius_of(v));
     }
     assert_true(fabs(par_radius_tight(1, 20) - 2.58) < 0.005 && fabs(par_radius_lemma7(1, par_rho(20)) - 3.54) < 0.005);
-    assert_near(par_radius_tight(1, 60), par_radius_lemma7(1, par_rho(60))); /* one and the same for the equilateral */
+    assert_near(par_radius_tight(1, 60), par_radius_lemma7(1, par_rho(60))); /* both bounds agree for the equilateral
+                                                                                triangle */
 }
 
 static void test_area_for_radius_is_the_inverse_of_lemma_7(void **state)
@@ -97,11 +98,11 @@ static void test_area_for_radius_is_the_inverse_of_lemma_7(void **state)
         for (double radius = 1e-6; radius < 1e6; radius *= 7) {
             double area = area_for_radius(radius, par_rho(angle));
             assert_near(par_radius_lemma7(area, par_rho(angle)), radius);
-            assert_true(par_radius_tight(area, angle) <= radius); /* so a mesh within this area has radii below */
+            assert_true(par_radius_tight(area, angle) <= radius); /* so a mesh within this area has smaller radii */
         }
 }
 
-static void test_distances_decide(void **state)
+static void test_distances_decide_independence(void **state)
 {
     (void)state;
     struct tri_point o = {0, 0}, four = {0, 4}, less = {0, 3.9999}, two = {2, 0}, within = {1.9999, 0};
@@ -112,7 +113,7 @@ static void test_distances_decide(void **state)
     assert_false(in_buffer_zone(o, two, 1));
 }
 
-/* A mesh with radii of about one size, or (graded) of several. */
+/* A mesh whose radii are about equal or (graded) differ. */
 static struct tri_mesh make_mesh(bool graded, uint64_t seed)
 {
     struct tri_pslg pslg = support_square(1, graded ? 60 : 10, seed);
@@ -171,7 +172,7 @@ static bool has(const struct tri_cavity *cavity, int32_t t)
     return false;
 }
 
-/* Do two cavities have a triangle in common, or a triangle each on the two sides of one edge? */
+/* Do two cavities share a triangle, or contain the two triangles at one edge? */
 static bool are_apart(const struct tri_mesh *mesh, const struct tri_cavity *a, const struct tri_cavity *b)
 {
     for (int32_t i = 0; i < a->n_tri; i++) {
@@ -184,7 +185,7 @@ static bool are_apart(const struct tri_mesh *mesh, const struct tri_cavity *a, c
     return true;
 }
 
-/* The cavity of the circumcentre of a random triangle; only those that no subsegment bounds. */
+/* The cavity of the circumcentre of a random triangle. Cavities bounded by subsegments are skipped. */
 static bool find_cavity(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct support_random *random,
                         int32_t *t)
 {
@@ -216,7 +217,8 @@ static void assert_same_mesh(const struct tri_mesh *a, const struct tri_mesh *b)
     support_places_free(&there);
 }
 
-/* Lemma 1: p then q, q then p, and both at once (both cavities found before either is filled) make one mesh. */
+/* Lemma 1: inserting p then q, q then p, or both at once gives the same mesh. In the last case both cavities are found
+   before either is filled. */
 static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri_cavity *p, int32_t tp,
                                          struct tri_cavity *q, int32_t tq)
 {
@@ -237,8 +239,7 @@ static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri
     tri_mesh_free(&both);
 }
 
-/* Lemma 2: what are_independent accepts is independent. And the test says something: nearer pairs do get into each
- * other's way. */
+/* Lemma 2: points that are_independent accepts are independent. The test is not vacuous: closer pairs do interfere. */
 static void test_independent_points_have_cavities_apart(void **state)
 {
     (void)state;
@@ -267,8 +268,8 @@ static void test_independent_points_have_cavities_apart(void **state)
     tri_cavity_free(&q);
 }
 
-/* Definition 3: the cavity lies in the buffer zone; and all of it within 2 r of the point, corners included, which is
- * what the margin of a fence relies on. */
+/* Definition 3: the cavity lies in the buffer zone. The whole cavity including its corners lies within 2 r of the
+   point; the margin of a fence relies on this. */
 static void test_cavities_lie_in_the_buffer_zone(void **state)
 {
     (void)state;
@@ -292,8 +293,8 @@ static void test_cavities_lie_in_the_buffer_zone(void **state)
     tri_cavity_free(&p);
 }
 
-/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its edge; hence the
- * largest circumradius never grows. */
+/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old triangles at its edge. Hence the
+   largest circumradius never grows. */
 static void test_radius_never_grows(void **state)
 {
     (void)state;
@@ -307,7 +308,7 @@ static void test_radius_never_grows(void **state)
         for (int i = 0; i < 4000; i++) {
             if (!find_cavity(&p, &mesh, &random, &t))
                 continue;
-            double before2 = 0; /* of the cavity and what surrounds it */
+            double before2 = 0; /* largest squared radius of the cavity and the triangles around it */
             for (int32_t k = 0; k < p.n_tri; k++)
                 before2 = fmax(before2, radius2_at(&mesh, p.tri[k]));
             for (int32_t k = 0; k < p.n_edges; k++)
@@ -328,11 +329,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rho_is_the_inverse_of_the_angle),
-        cmocka_unit_test(test_circumradius),
+        cmocka_unit_test(test_circumradius_of_known_triangles),
         cmocka_unit_test(test_radius_bounds_hold),
         cmocka_unit_test(test_tight_bound_is_attained),
         cmocka_unit_test(test_area_for_radius_is_the_inverse_of_lemma_7),
-        cmocka_unit_test(test_distances_decide),
+        cmocka_unit_test(test_distances_decide_independence),
         cmocka_unit_test(test_independent_points_have_cavities_apart),
         cmocka_unit_test(test_cavities_lie_in_the_buffer_zone),
         cmocka_unit_test(test_radius_never_grows),

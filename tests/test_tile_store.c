@@ -1,4 +1,4 @@
-/* A mesh that was kept in files tile by tile makes the files of one that was there as a whole, byte for byte. */
+/* A mesh that was stored tile by tile gives the same files, byte for byte, as a mesh that was in memory as a whole. */
 #include "triangle/text/stream.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@
 #include "tests/lattice_tiles.h"
 #include "triangle/text/formats.h"
 
-/* The last has whole numbers for attributes, by which its triangles are grouped. */
+/* The last trial has integer attributes, which group its triangles. */
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, PLAIN = {11, 3, 0, 0, true, true},
                             LARGE = {230, 37, 1, 1, true, false};
 static const char *const names[] = {"x.vtu", "x.msh"};
@@ -42,7 +42,7 @@ static enum tri_status write_all(const struct tri_grid *grid, struct tri_error *
     return status;
 }
 
-/* The sink is told of the beginning, and of a mesh that counts no more, a few times. */
+/* The sink receives a few beginnings, each of which discards the mesh before it. */
 static enum tri_status write_kept(const struct lattice *lattice, bool markers, int void_meshes, const char *folder,
                                   struct tri_error *error)
 {
@@ -86,7 +86,7 @@ static void compare(const struct lattice *lattice, bool markers, int void_meshes
     }
 }
 
-static void test_same_bytes(void **state)
+static void test_stored_tiles_give_the_same_bytes(void **state)
 {
     (void)state;
     const struct lattice *all[] = {&SMALL, &PLAIN, &LARGE};
@@ -95,7 +95,7 @@ static void test_same_bytes(void **state)
             compare(all[i], k == 0, k);
 }
 
-static void test_no_place(void **state)
+static void test_a_lack_of_disk_space_is_reported(void **state)
 {
     (void)state;
     struct rlimit before, limit;
@@ -114,7 +114,7 @@ static void test_no_place(void **state)
     }
 }
 
-/* Of a work array: errno after all, once there is a limit. */
+/* The error of a work array is in errno as well if there is a limit. */
 static int fault_under(const struct tri_storage *storage, int resource, rlim_t most)
 {
     struct rlimit before, limit;
@@ -128,7 +128,7 @@ static int fault_under(const struct tri_storage *storage, int resource, rlim_t m
     return fault;
 }
 
-static void test_why_there_is_no_room(void **state)
+static void test_the_reason_for_a_failed_growth_is_reported(void **state)
 {
     (void)state;
     struct tri_tile_store *store;
@@ -142,13 +142,13 @@ static void test_why_there_is_no_room(void **state)
     tri_tile_store_free(store);
 }
 
-static void test_no_memory(void **state)
+static void test_lack_of_memory_is_reported(void **state)
 {
     (void)state;
     enum tri_status status = TRI_NO_MEMORY;
     const int64_t held = atomic_load(&support_held);
     for (int64_t k = 1; status && k < 200; k++) {
-        if (k == 2 || (k > 3 && k < 11)) /* the lattice's own */
+        if (k == 2 || (k > 3 && k < 11)) /* allocations of the lattice */
             continue;
         atomic_store(&support_calls, 0);
         atomic_store(&support_fail_at, k);
@@ -163,10 +163,10 @@ static void test_no_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_same_bytes, remove_files),
-        cmocka_unit_test_teardown(test_no_place, remove_files),
-        cmocka_unit_test(test_why_there_is_no_room),
-        cmocka_unit_test_teardown(test_no_memory, remove_files),
+        cmocka_unit_test_teardown(test_stored_tiles_give_the_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_a_lack_of_disk_space_is_reported, remove_files),
+        cmocka_unit_test(test_the_reason_for_a_failed_growth_is_reported),
+        cmocka_unit_test_teardown(test_lack_of_memory_is_reported, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

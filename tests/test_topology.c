@@ -1,4 +1,5 @@
-/* Edges, neighbours, Voronoi diagram, nodes amid edges: against naive answers and against their definitions. */
+/* Edges, neighbours, Voronoi diagram and nodes at midpoints of edges, compared with brute-force results and with their
+   definitions. */
 #include "triangle/mesh/topology.h"
 
 #include "tests/support.h"
@@ -14,7 +15,7 @@ static struct tri_mesh tangled(uint64_t seed)
     return mesh;
 }
 
-/* Two triangles of the unit square with markers 0 7 0 0 on its sides, and one attribute. */
+/* Two triangles of the unit square, with markers 0 7 0 0 on its sides and one attribute. */
 static struct tri_mesh square(void)
 {
     struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
@@ -39,7 +40,7 @@ static struct tri_mesh square(void)
     return mesh;
 }
 
-/* The triangle other than t that has both vertices; TRI_NONE. */
+/* The triangle other than t that has both vertices, or TRI_NONE. */
 static int32_t naive_neighbor(const struct tri_mesh *mesh, int32_t t, int32_t a, int32_t b)
 {
     for (int32_t u = 0; u < mesh->n_triangles; u++) {
@@ -67,11 +68,11 @@ static void test_neighbors(void **state)
             inner += found[e] != TRI_NONE && mesh.tri[t].n[e] < 0;
         }
     }
-    assert_true(inner > 0); /* neighbours across subsegments were among them */
+    assert_true(inner > 0); /* some neighbours lie across subsegments */
     tri_mesh_free(&mesh);
 }
 
-/* The list by its definition: in the order of triangles, v0v1, v1v2, v2v0, what no earlier triangle has told. */
+/* The list by its definition: for each triangle in order, the edges v0v1, v1v2, v2v0 that no earlier triangle has. */
 static void test_edge_order(void **state)
 {
     (void)state;
@@ -164,8 +165,8 @@ static void test_voronoi_edges(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A linear function is kept, inside and outside of the triangle. */
-static void test_blends(void **state)
+/* A linear function is reproduced, inside and outside the triangle. */
+static void test_blends_reproduce_linear_functions(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square();
@@ -197,7 +198,7 @@ static void test_blends(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_used(void **state)
+static void test_only_used_vertices_are_listed(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_square(1, 6, 3);
@@ -220,10 +221,13 @@ static void test_used(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_neighbors),      cmocka_unit_test(test_edge_order),
-        cmocka_unit_test(test_edge_markers),   cmocka_unit_test(test_voronoi_vertices),
-        cmocka_unit_test(test_voronoi_edges),  cmocka_unit_test(test_blends),
-        cmocka_unit_test(test_used),
+        cmocka_unit_test(test_neighbors),
+        cmocka_unit_test(test_edge_order),
+        cmocka_unit_test(test_edge_markers),
+        cmocka_unit_test(test_voronoi_vertices),
+        cmocka_unit_test(test_voronoi_edges),
+        cmocka_unit_test(test_blends_reproduce_linear_functions),
+        cmocka_unit_test(test_only_used_vertices_are_listed),
     };
     return cmocka_run_group_tests_name("topology", tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
-/* triangulate(): which field is read and written when, numbering, arrays of the caller's, every way to fail.
- *
- * Structs are poisoned before they are used: what must not be read would be followed into nowhere, what must not be
- * written would differ. The program is built once for libtriangle.a and once for libptriangle.a, and linked with --wrap
- * for malloc, calloc, realloc and free (allocations.h). */
+/* triangulate(): which fields are read and written for which switches, numbering, arrays of the caller, and all kinds
+   of failure.
+   Structs are poisoned before use. Reading a field that must not be read would crash, and writing one that must not be
+   written would be noticed. The program is built once for libtriangle.a and once for libptriangle.a, and linked with
+   --wrap for malloc, calloc, realloc and free (allocations.h). */
 #define REAL TRI_REAL
 #include "triangle/dropin/triangle.h"
 
@@ -16,7 +16,7 @@
 
 enum { POISON = 0xa5 };
 
-/* --- a figure: a rectangle with a square hole and a region, on which most letters have something to do */
+/* --- a figure to which most letters apply: a rectangle with a square hole and a region */
 
 static REAL points[16] = {0, 0, 4, 0, 4, 3, 0, 3, 1, 1, 2, 1, 2, 2, 1, 2};
 static REAL attributes[8] = {0, 4, 34, 30, 11, 12, 22, 21}; /* x + 10 y */
@@ -36,7 +36,7 @@ static struct triangulateio poisoned(void)
     return io;
 }
 
-/* Points alone; all other fields are garbage, as some clients leave them. */
+/* Points alone. All other fields are garbage, as some clients leave them. */
 static struct triangulateio points_only(REAL *xy, int n)
 {
     struct triangulateio in = poisoned();
@@ -66,7 +66,7 @@ static struct triangulateio figure(const char *switches)
     return in;
 }
 
-/* A polygon of n corners, in order; holes and regions none. */
+/* A polygon of n corners, in order, without holes and regions. */
 static struct triangulateio polygon(REAL *xy, int *ends, int n)
 {
     struct triangulateio in = points_only(xy, n);
@@ -81,7 +81,7 @@ static struct triangulateio polygon(REAL *xy, int *ends, int n)
     return in;
 }
 
-/* --- what a call writes, by its letters: the table of triangle.h */
+/* --- fields that a call writes, by its letters: the table of triangle.h */
 
 struct written {
     bool points, attributes, markers, triangles, triangle_attributes, neighbors, segments, segment_markers, lists,
@@ -97,7 +97,7 @@ static struct written expected(const char *s)
                             has(s, 'v')};
 }
 
-/* Poison, with NULL where the library is to allocate. */
+/* Fills a struct with poison. Fields that the library allocates are NULL. */
 static void prepare(const char *switches, struct triangulateio *out, struct triangulateio *vorout)
 {
     struct written w = expected(switches);
@@ -120,7 +120,7 @@ static void prepare(const char *switches, struct triangulateio *out, struct tria
     CLEAR(w.voronoi, vorout->normlist);
 }
 
-/* What a poisoned pointer looks like. */
+/* The value of a poisoned pointer. */
 static bool is_poison(const void *pointer)
 {
     void *poison;
@@ -128,7 +128,7 @@ static bool is_poison(const void *pointer)
     return pointer == poison;
 }
 
-/* Frees what the library allocated; that it did so where it should, and only there, is asserted. */
+/* Frees the arrays that the library allocated. Asserts that it allocated exactly the arrays that it should. */
 static void release(const char *switches, struct triangulateio *out, struct triangulateio *vorout)
 {
     struct written w = expected(switches);
@@ -162,7 +162,7 @@ static void release(const char *switches, struct triangulateio *out, struct tria
         }
         assert_true(arrays[i].array && !is_poison(arrays[i].array));
         if (i % 2)
-            free(arrays[i].array); /* either will do */
+            free(arrays[i].array); /* either function may free it */
         else
             trifree(arrays[i].array);
     }
@@ -185,7 +185,7 @@ static int32_t *from_zero(const int *list, int n, int base)
     return copy;
 }
 
-/* options NULL: constrained Delaunay without bounds. `in` was read with the same base and with p; NULL: unknown. */
+/* options NULL: constrained Delaunay without bounds. `in` was read with the same base and with p. NULL: unknown. */
 static void judge(const struct triangulateio *out, const struct triangulateio *in, int base, bool with_neighbors,
                   const struct tri_check_options *options)
 {
@@ -228,7 +228,7 @@ static void assert_counts(const char *s, const struct triangulateio *in, const s
     assert_int_equal(out->numberoftriangleattributes, columns);
     assert_true(out->numberofpoints >= 8 && out->numberoftriangles > 5 && out->numberofsegments >= 4);
     int middles = strstr(s, "o2") ? out->numberofedges : 0;
-    bool hole = has(s, 'p') && !has(s, 'O'); /* Euler: */
+    bool hole = has(s, 'p') && !has(s, 'O'); /* Euler's formula: */
     assert_int_equal(out->numberofpoints - middles - out->numberofedges + out->numberoftriangles, hole ? 0 : 1);
     assert_int_equal(vorout->numberofpoints, out->numberoftriangles);
     assert_int_equal(vorout->numberofpointattributes, in->numberofpointattributes);
@@ -261,12 +261,12 @@ static void test_fields_by_switch(void **state)
             assert_counts(switches, &in, &out, &vorout);
             release(switches, &out, &vorout);
             assert_int_equal(triangulate(switches, &in, &zeroed, &vorout_zeroed), 0);
-            release(switches, &zeroed, &vorout_zeroed); /* what is NULL and not written stays NULL */
+            release(switches, &zeroed, &vorout_zeroed); /* fields that are NULL and not written stay NULL */
         }
 }
 
 /* Without v, vorout may be NULL. */
-static void test_no_vorout(void **state)
+static void test_vorout_may_be_null(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out, vorout;
@@ -307,7 +307,7 @@ static void test_numbers_from_one(void **state)
 
 /* --- values */
 
-static void test_mesh_is_right(void **state)
+static void test_the_mesh_is_correct(void **state)
 {
     (void)state;
     static const char *const all[] = {"pnz", "pn", "pq30nz", "pqa.05n", "pcnz", "pq25Dnz"};
@@ -323,8 +323,9 @@ static void test_mesh_is_right(void **state)
     }
 }
 
-/* Input points come first, bit for bit; attributes are linear, so they tell the place; markers follow segments. */
-static void test_point_values(void **state)
+/* Input points come first, bit for bit. Attributes are linear, so they determine the position. Markers follow
+   segments. */
+static void test_values_of_points_are_correct(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out, vorout;
@@ -345,7 +346,7 @@ static void test_point_values(void **state)
     release("p", &out, &vorout);
 }
 
-static void test_markers_of_edges(void **state)
+static void test_markers_of_edges_are_correct(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out, vorout;
@@ -366,8 +367,8 @@ static void test_markers_of_edges(void **state)
     release("peA", &out, &vorout);
 }
 
-/* Nodes 4 to 6 lie amid the edges opposite corners 1 to 3; edge i and Voronoi edge i belong together. */
-static void test_edges_and_middles(void **state)
+/* Nodes 4 to 6 lie on the edges opposite corners 1 to 3. Edge i corresponds to Voronoi edge i. */
+static void test_midpoints_and_edges_correspond(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out, vor;
@@ -386,7 +387,7 @@ static void test_edges_and_middles(void **state)
             if (dual[side] == -1)
                 continue;
             const int *nodes = &out.trianglelist[6 * dual[side]];
-            int next = 0; /* the triangle on the left sees the edge from its first to its second end */
+            int next = 0; /* the left triangle has the edge in its own direction */
             while (next < 3 && nodes[next] != edge[side])
                 next++;
             assert_true(next < 3 && nodes[(next + 1) % 3] == edge[1 - side]);
@@ -409,7 +410,7 @@ static void test_edges_and_middles(void **state)
     release("pev", &out, &vor);
 }
 
-static void test_jettison(void **state)
+static void test_j_removes_unused_points(void **state)
 {
     (void)state;
     static REAL xy[] = {9, 9, 0, 0, 5, 5, 1, 0, 1, 1, 0, 1}; /* 0 and 2 lie outside */
@@ -439,8 +440,8 @@ static void test_jettison(void **state)
     release("p", &out, &vorout);
 }
 
-/* Coordinates beyond the range of exact arithmetic come back as they were. */
-static void test_far_coordinates(void **state)
+/* Coordinates beyond the range of exact arithmetic are returned unchanged. */
+static void test_far_coordinates_are_unchanged(void **state)
 {
     (void)state;
     REAL xy[] = {0, 0, 1.1e300, 0, 1.3e300, 1.7e300, 5e-324, 1e300};
@@ -451,8 +452,8 @@ static void test_far_coordinates(void **state)
     release("", &out, &vorout);
 }
 
-/* A without regions: no column. */
-static void test_no_regions(void **state)
+/* With A but without regions, there is no column for them. */
+static void test_without_regions_there_is_no_attribute(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out, vorout;
@@ -463,9 +464,9 @@ static void test_no_regions(void **state)
     release("p", &out, &vorout);
 }
 
-/* --- arrays of the caller's */
+/* --- arrays of the caller */
 
-static void test_caller_arrays(void **state)
+static void test_arrays_of_the_caller_are_filled(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), made, out = poisoned(), vormade, vorout = poisoned();
@@ -508,8 +509,8 @@ static void test_caller_arrays(void **state)
     release("peAnv", &made, &vormade);
 }
 
-/* The segments, too: those that are no edges of the mesh are read last. */
-static void test_segments_in_place(void **state)
+/* The segments as well: those that are not edges of the mesh are read last. */
+static void test_segments_may_be_replaced_in_place(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2, 1, 1};
@@ -531,8 +532,8 @@ static void test_segments_in_place(void **state)
     SAME(markers + 4, ((int[]){77, 88}), 2);
 }
 
-/* The points of `out` may be those of `in`, also where they move (j). */
-static void test_in_place(void **state)
+/* The points of `out` may be those of `in`, even if they are moved (j). */
+static void test_points_may_be_replaced_in_place(void **state)
 {
     (void)state;
     static const char *const all[] = {"pqz", "pqjz"};
@@ -573,7 +574,7 @@ static void test_in_place(void **state)
 
 /* --- nothing to triangulate */
 
-static void test_no_triangles(void **state)
+static void test_inputs_without_triangles_give_empty_meshes(void **state)
 {
     (void)state;
     static REAL line[] = {0, 0, 1, 1, 2, 2, 3, 3}, square[] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -589,7 +590,7 @@ static void test_no_triangles(void **state)
         release(all[k], &out, &vorout);
     }
     struct triangulateio in = polygon(square, ends, 4), out, vorout;
-    in.numberofsegments = 3; /* not closed: all is outside */
+    in.numberofsegments = 3; /* not closed, so all triangles are outside */
     run("pzn", &in, &out, &vorout);
     assert_int_equal(out.numberoftriangles, 0);
     release("pn", &out, &vorout);
@@ -610,7 +611,7 @@ static void listen(void *user, int is_error, const char *text)
     snprintf(told->text, sizeof told->text, "%s", text);
 }
 
-/* What an error leaves of a struct: all but the counts. */
+/* The state of a struct after an error: unchanged except for the counts. */
 static void clear_counts(struct triangulateio *io)
 {
     io->numberofpoints = io->numberofpointattributes = io->numberoftriangles = io->numberofcorners = 0;
@@ -618,7 +619,7 @@ static void clear_counts(struct triangulateio *io)
     io->numberofedges = 0;
 }
 
-/* The call fails with one message, and changes nothing but counts, which become 0. */
+/* The call fails with one message. It changes nothing but counts, which become 0. */
 static void assert_fails(const char *switches, const struct triangulateio *in, bool with_vorout, int code,
                          const char *word)
 {
@@ -644,7 +645,7 @@ static void assert_fails(const char *switches, const struct triangulateio *in, b
     assert_memory_equal(&out, &out_before, sizeof out);
 }
 
-static void test_bad_points(void **state)
+static void test_invalid_points_are_refused(void **state)
 {
     (void)state;
     static const REAL odd[] = {NAN, INFINITY, -INFINITY};
@@ -671,7 +672,7 @@ static void test_bad_points(void **state)
     assert_fails("z", &in, true, TRIANGULATE_BAD_INPUT, "three");
 }
 
-static void test_bad_counts(void **state)
+static void test_invalid_counts_are_refused(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz");
@@ -697,7 +698,7 @@ static void test_bad_counts(void **state)
     assert_fails("z", &in, true, TRIANGULATE_TOO_LARGE, "mesh can hold");
 }
 
-static void test_bad_calls(void **state)
+static void test_invalid_calls_are_refused(void **state)
 {
     (void)state;
     struct triangulateio in = figure("pz"), out = poisoned(), before = poisoned();
@@ -713,12 +714,12 @@ static void test_bad_calls(void **state)
     struct triangulateio both = figure("pz");
     memcpy(&before, &both, sizeof both);
     assert_int_equal(triangulate("pa0z", &both, &both, NULL), TRIANGULATE_BAD_INPUT);
-    assert_memory_equal(&both, &before, sizeof both); /* the input is not lost */
+    assert_memory_equal(&both, &before, sizeof both); /* the input is unchanged */
     trifree(NULL);
 }
 
-/* What is odd but has a meaning is told, unless Q. */
-static void test_remarks(void **state)
+/* Unusual but valid input is reported, unless Q is given. */
+static void test_unusual_input_is_reported(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 4, 0, 4, 4, 0, 4, 4, 4};
@@ -736,12 +737,12 @@ static void test_remarks(void **state)
         assert_int_equal(triangulate_with(switches, &in, &out, NULL, &options), 0);
         assert_int_equal(out.numberoftriangles, 2);
         assert_int_equal(told.errors, 0);
-        assert_int_equal(told.remarks, quiet ? 0 : 3); /* w, one duplicate, segments that are none */
+        assert_int_equal(told.remarks, quiet ? 0 : 3); /* w, one duplicate, dropped segments */
         release(switches, &out, &vorout);
     }
     struct told told = {0};
     struct triangulate_options options = {.message = listen, .message_user = &told};
-    prepare("pez", &out, &vorout); /* the e of 1e-2 is a switch: that is what the remark says */
+    prepare("pez", &out, &vorout); /* the e of 1e-2 is a switch, which is what the remark says */
     assert_int_equal(triangulate_with("pq40a1e-2z", &in, &out, NULL, &options), 0);
     assert_int_equal(told.remarks, 4);
     release("pe", &out, &vorout);
@@ -752,7 +753,7 @@ static void test_remarks(void **state)
     release("pe", &out, &vorout);
 }
 
-/* Triangle's library takes counts below 0 for none. */
+/* Triangle's library treats negative counts as 0. */
 static void test_negative_counts_mean_none(void **state)
 {
     (void)state;
@@ -765,8 +766,8 @@ static void test_negative_counts_mean_none(void **state)
     release("p", &out, &vorout);
 }
 
-/* Without a struct for it there is no diagram. */
-static void test_no_struct_for_the_diagram(void **state)
+/* Without a struct for the diagram, none is made. */
+static void test_without_vorout_there_is_no_diagram(void **state)
 {
     (void)state;
     struct told told = {0};
@@ -778,9 +779,9 @@ static void test_no_struct_for_the_diagram(void **state)
     release("p", &out, &vorout);
 }
 
-/* --- words for who does not ask */
+/* --- messages without options */
 
-/* What triangulate(), or triangulate_with() without options, writes to standard error. */
+/* The text that triangulate(), or triangulate_with() without options, writes to standard error. */
 static void listen_to_stderr(const char *switches, struct triangulateio *in, bool with, char text[600])
 {
     struct triangulateio out = {0};
@@ -808,7 +809,7 @@ static void listen_to_stderr(const char *switches, struct triangulateio *in, boo
     trifree(out.edgemarkerlist);
 }
 
-static void test_words_for_who_does_not_ask(void **state)
+static void test_messages_without_options_go_to_stderr(void **state)
 {
     (void)state;
     static REAL one_place[] = {1, 1, 1, 1, 1, 1}, xy[] = {0, 0, 1, 0, 1, 1, 0, 1, 0, 1};
@@ -825,7 +826,7 @@ static void test_words_for_who_does_not_ask(void **state)
         {xy, 4, far, 5, "p", "triangulate: segment 5 names point 6 of 4: numbers count from 1 here; it is skipped\n"},
         {xy, 4, fine, 4, "pa1e-05", "triangulate: -a1e-05: numbers of switches have no exponent"},
         {xy, 4, fine, 4, "p", ""},
-        {xy, 5, fine, 4, "p", ""}, /* what is odd, but harmless: a duplicate */
+        {xy, 5, fine, 4, "p", ""}, /* unusual but harmless: a duplicate */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[600], quiet[16];
@@ -838,15 +839,15 @@ static void test_words_for_who_does_not_ask(void **state)
         listen_to_stderr(cases[i].switches, &in, false, text);
         if (strncmp(text, cases[i].wanted, strlen(cases[i].wanted) + !*cases[i].wanted) != 0)
             fail_msg("case %zu: %s", i, text);
-        listen_to_stderr(quiet, &in, false, text); /* errors alone */
+        listen_to_stderr(quiet, &in, false, text); /* errors only */
         assert_true(!*text == (i > 1) && !strncmp(text, cases[i].wanted, strlen(text) ? strlen(cases[i].wanted) : 0));
         listen_to_stderr(cases[i].switches, &in, true, text);
         assert_string_equal(text, "");
     }
 }
 
-/* Why a mesh is empty is told to a function also with Q. */
-static void test_an_empty_mesh_is_told(void **state)
+/* The reason why a mesh is empty is passed to a message function even with Q. */
+static void test_the_reason_for_an_empty_mesh_is_reported(void **state)
 {
     (void)state;
     static int open[] = {0, 1, 1, 2, 2, 3};
@@ -867,8 +868,8 @@ static void test_an_empty_mesh_is_told(void **state)
     }
 }
 
-/* Segments that name points at the ends of the range of int, from 1. */
-static void test_far_indices(void **state)
+/* Segments refer to points at the ends of the range of int, counted from 1. */
+static void test_extreme_indices_are_refused(void **state)
 {
     (void)state;
     static int ends[] = {1, 2, 2, 3, 3, 4, 4, 1, INT32_MIN, 1, 1, INT32_MAX, 0, 2, 9, 1};
@@ -881,7 +882,7 @@ static void test_far_indices(void **state)
 }
 
 #ifdef SUPPORT_WRAP
-/* Each allocation fails once, alone or with all that follow. */
+/* Each allocation fails once, alone or with all later ones. */
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -912,14 +913,14 @@ static void test_every_allocation_may_fail(void **state)
                     assert_true(!failed || !ever_after);
                     release(all[s], &out, &vorout);
                     assert_int_equal(support_held, held);
-                    code = failed; /* that one could do without; go on */
+                    code = failed; /* the allocation was optional: continue */
                 }
             }
         }
 }
 #endif
 
-/* --- inputs from public trouble reports */
+/* --- inputs from public bug reports */
 
 static void test_hole_outside(void **state)
 {
@@ -945,7 +946,7 @@ static void test_hole_outside(void **state)
     }
 }
 
-static void test_endless_loop(void **state)
+static void test_input_that_hung_triangle_is_meshed(void **state)
 {
     (void)state;
     static REAL xy[] = {6.899643741648033,  10.556739733611963, 6.8743893086546723, 10.577559204153792,
@@ -983,7 +984,7 @@ static void test_duplicates_used_by_segments(void **state)
     assert_int_equal(out.numberofedges, 10);
     assert_int_equal(out.numberofsegments, 8);
     for (int i = 0; i < 12; i++)
-        assert_true(out.trianglelist[i] != 4); /* the lower number stands for both */
+        assert_true(out.trianglelist[i] != 4); /* the lower number represents both */
     judge(&out, &in, 0, false, NULL);
     release("pe", &out, &vorout);
     run("pzj", &in, &out, &vorout);
@@ -999,7 +1000,7 @@ static void test_duplicates_used_by_segments(void **state)
     release("p", &out, &vorout);
 }
 
-/* A bound that cannot be reached ends all the same. */
+/* Refinement ends even if the bound cannot be reached. */
 static void test_unreachable_angle(void **state)
 {
     (void)state;
@@ -1033,7 +1034,7 @@ static void test_comma_locale(void **state)
 
 /* --- refining a mesh (r) */
 
-/* The mesh of `out` as input; the fields that r must not read stay garbage. */
+/* The mesh of `out` as input. The fields that r must not read remain garbage. */
 static struct triangulateio as_input(const struct triangulateio *out)
 {
     struct triangulateio in = points_only(out->pointlist, out->numberofpoints);
@@ -1059,7 +1060,7 @@ static void test_refine_a_mesh(void **state)
     prepare("prz", &fine, &vorout);
     fine.triangleattributelist = NULL;
     assert_int_equal(triangulate("prq30a.02z", &again, &fine, &vorout), 0);
-    assert_true(is_poison(fine.holelist) && is_poison(fine.regionlist)); /* passed on unseen */
+    assert_true(is_poison(fine.holelist) && is_poison(fine.regionlist)); /* copied without being read */
     assert_true(fine.numberoftriangles > 4 * coarse.numberoftriangles);
     assert_int_equal(fine.numberoftriangleattributes, 1);
     SAME(fine.pointlist, coarse.pointlist, 2 * coarse.numberofpoints);
@@ -1072,8 +1073,8 @@ static void test_refine_a_mesh(void **state)
     release("pA", &coarse, &vorout);
 }
 
-/* A segment that is no edge of the mesh is passed on behind the others, unless one of its ends is left out. */
-static void test_loose_segments(void **state)
+/* A segment that is not an edge of the mesh is copied after the others, unless one of its ends is removed. */
+static void test_segments_that_are_no_edges_are_copied(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2, 5, 5};
@@ -1097,7 +1098,7 @@ static void test_loose_segments(void **state)
         int sum = 0;
         for (int s = 0; s < 5; s++)
             sum += out.segmentmarkerlist[s];
-        assert_int_equal(sum, 7 + 8 + 3); /* the other sides have 1 */
+        assert_int_equal(sum, 7 + 8 + 3); /* the other sides have marker 1 */
         release(switches, &out, &vorout);
     }
     struct told told = {0};
@@ -1109,8 +1110,8 @@ static void test_loose_segments(void **state)
     release("rp", &out, &vorout);
 }
 
-/* Triangles have their corners, or these and the middles of their edges. */
-static void test_bad_corners(void **state)
+/* Triangles have three corners, or three corners and the midpoints of their edges. */
+static void test_invalid_numbers_of_corners_are_refused(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -1126,8 +1127,9 @@ static void test_bad_corners(void **state)
     }
 }
 
-/* A mesh that is not Delaunay is kept as it is, but made Delaunay before it is refined, also where it is fine. */
-static void test_not_delaunay(void **state)
+/* A mesh that is not Delaunay is left unchanged. If refinement is requested, it is made Delaunay first, even if no
+   triangle is bad. */
+static void test_meshes_are_made_delaunay_before_refinement(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 3, -1, 2, 2, -1, 3, 100, 0, 130, -10, 120, 20, 90, 30};
@@ -1145,8 +1147,8 @@ static void test_not_delaunay(void **state)
     release("r", &out, &vorout);
 }
 
-/* Bounds of single triangles: below the diagonal y = x of a rhombus, not above. */
-static void test_areas_of_triangles(void **state)
+/* Bounds of single triangles: below the diagonal y = x of a rhombus there are bounds, above it there are none. */
+static void test_areas_of_triangles_are_bounds(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 3, -1, 2, 2, -1, 3}, areas[] = {0.01, -1};
@@ -1165,7 +1167,7 @@ static void test_areas_of_triangles(void **state)
         const REAL *c = &out.pointlist[2 * v[2] - 2];
         double x = (a[0] + b[0] + c[0]) / 3, y = (a[1] + b[1] + c[1]) / 3;
         double area = ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])) / 2;
-        on_bounded += x > y + 0.2 && area > 0.01; /* no segment keeps the border where it was */
+        on_bounded += x > y + 0.2 && area > 0.01; /* no segment keeps the border in place */
         on_free += x < y && area > 0.1;
     }
     assert_int_equal(on_bounded, 0);
@@ -1173,13 +1175,13 @@ static void test_areas_of_triangles(void **state)
     release("r", &out, &vorout);
 }
 
-/* Gives every triangle of `mesh` two attributes: the number of its component between segments, and its own. */
+/* Gives every triangle of `mesh` two attributes: the number of its component between segments, and its own number. */
 static void number_components(struct triangulateio *mesh)
 {
     int n = mesh->numberoftriangles, *stack = malloc(((size_t)n + 1) * sizeof *stack), components = 0;
     mesh->numberoftriangleattributes = 2;
     mesh->triangleattributelist = calloc(2 * (size_t)n + 1, sizeof(REAL));
-    REAL *component = mesh->triangleattributelist; /* of every second */
+    REAL *component = mesh->triangleattributelist; /* the component of every second triangle */
     for (int first = 0; first < n; first++) {
         component[2 * first + 1] = first;
         if (component[2 * first] != 0)
@@ -1218,8 +1220,8 @@ static void free_arrays(struct triangulateio *mesh)
     free(mesh->segmentmarkerlist);
 }
 
-/* Attributes do not cross segments, be the triangles so flat and so far from the origin that where a centroid lies
- * cannot be told. */
+/* Attributes do not cross segments, even if triangles are so flat and so far from the origin that the position of a
+   centroid is lost to rounding. */
 static void test_attributes_keep_their_side(void **state)
 {
     (void)state;
@@ -1265,7 +1267,7 @@ static int too_long(void *user, const REAL *a, const REAL *b, const REAL *c, REA
     return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) > 0.25;
 }
 
-static void test_bad_meshes(void **state)
+static void test_invalid_meshes_are_refused(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2};
@@ -1279,7 +1281,7 @@ static void test_bad_meshes(void **state)
     assert_fails("rz", &mesh, true, TRIANGULATE_BAD_INPUT, "triangle 0");
     mesh.trianglelist = low;
     assert_fails("rz", &mesh, true, TRIANGULATE_BAD_INPUT, "triangle 1");
-    assert_fails("r", &mesh, true, TRIANGULATE_BAD_INPUT, "triangle 1"); /* from 1, vertex 0 is none */
+    assert_fails("r", &mesh, true, TRIANGULATE_BAD_INPUT, "triangle 1"); /* counted from 1, vertex 0 does not exist */
     mesh.trianglelist = good;
     mesh.numberofcorners = 2;
     assert_fails("rz", &mesh, true, TRIANGULATE_BAD_INPUT, "2 corners");
@@ -1294,7 +1296,7 @@ static void test_bad_meshes(void **state)
 }
 
 /* As MeshPy refines: `a` without a list of areas means no bounds. */
-static void test_mesh_without_areas(void **state)
+static void test_meshes_without_areas_have_no_bounds(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2};
@@ -1314,8 +1316,8 @@ static void test_mesh_without_areas(void **state)
     release("rzn", &out, &vorout);
 }
 
-/* Nodes amid edges are left out, other points that no triangle uses are kept. */
-static void test_mesh_with_middles(void **state)
+/* Nodes at midpoints of edges are removed. Other points that no triangle uses are kept. */
+static void test_midpoints_of_edges_are_removed(void **state)
 {
     (void)state;
     static REAL xy[] = {0, 0, 1, 0, 1, 1, 0, 1, .5, 0, 1, .5, .5, .5, .5, 1, 0, .5, 9, 9};
@@ -1345,7 +1347,7 @@ static void test_mesh_with_middles(void **state)
 
 /* --- size test */
 
-static void test_size_test_of_options(void **state)
+static void test_the_size_test_of_the_options_is_called(void **state)
 {
     (void)state;
     struct asked asked = {0};
@@ -1366,13 +1368,13 @@ static void test_size_test_of_options(void **state)
     int before = asked.calls;
     prepare("pz", &out, &vorout);
     assert_int_equal(triangulate_with("pqz", &in, &out, NULL, &options), 0);
-    assert_int_equal(asked.calls, before); /* without u nobody asks */
+    assert_int_equal(asked.calls, before); /* without u the test is not called */
     release("p", &out, &vorout);
 }
 
-/* --- clients, by the switches that they pass */
+/* --- clients, with the switches that they pass */
 
-static void test_switches_of_clients(void **state)
+static void test_switches_of_clients_are_accepted(void **state)
 {
     (void)state;
     static const char *const all[] = {
@@ -1396,7 +1398,7 @@ static void test_switches_of_clients(void **state)
     }
 }
 
-/* --- the same again, and at the same time */
+/* --- the same call again, and concurrent calls */
 
 static void *mesh_often(void *user)
 {
@@ -1421,7 +1423,7 @@ static void *mesh_often(void *user)
     return good;
 }
 
-static void test_two_at_once(void **state)
+static void test_concurrent_calls_give_the_same_mesh(void **state)
 {
     (void)state;
     pthread_t threads[4];
@@ -1439,48 +1441,48 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fields_by_switch),
-        cmocka_unit_test(test_no_vorout),
+        cmocka_unit_test(test_vorout_may_be_null),
         cmocka_unit_test(test_numbers_from_one),
-        cmocka_unit_test(test_mesh_is_right),
-        cmocka_unit_test(test_point_values),
-        cmocka_unit_test(test_markers_of_edges),
-        cmocka_unit_test(test_edges_and_middles),
-        cmocka_unit_test(test_jettison),
-        cmocka_unit_test(test_far_coordinates),
-        cmocka_unit_test(test_no_regions),
-        cmocka_unit_test(test_caller_arrays),
-        cmocka_unit_test(test_in_place),
-        cmocka_unit_test(test_segments_in_place),
-        cmocka_unit_test(test_no_triangles),
-        cmocka_unit_test(test_bad_points),
-        cmocka_unit_test(test_bad_counts),
-        cmocka_unit_test(test_bad_calls),
-        cmocka_unit_test(test_remarks),
+        cmocka_unit_test(test_the_mesh_is_correct),
+        cmocka_unit_test(test_values_of_points_are_correct),
+        cmocka_unit_test(test_markers_of_edges_are_correct),
+        cmocka_unit_test(test_midpoints_and_edges_correspond),
+        cmocka_unit_test(test_j_removes_unused_points),
+        cmocka_unit_test(test_far_coordinates_are_unchanged),
+        cmocka_unit_test(test_without_regions_there_is_no_attribute),
+        cmocka_unit_test(test_arrays_of_the_caller_are_filled),
+        cmocka_unit_test(test_points_may_be_replaced_in_place),
+        cmocka_unit_test(test_segments_may_be_replaced_in_place),
+        cmocka_unit_test(test_inputs_without_triangles_give_empty_meshes),
+        cmocka_unit_test(test_invalid_points_are_refused),
+        cmocka_unit_test(test_invalid_counts_are_refused),
+        cmocka_unit_test(test_invalid_calls_are_refused),
+        cmocka_unit_test(test_unusual_input_is_reported),
         cmocka_unit_test(test_negative_counts_mean_none),
-        cmocka_unit_test(test_no_struct_for_the_diagram),
-        cmocka_unit_test(test_far_indices),
-        cmocka_unit_test(test_words_for_who_does_not_ask),
-        cmocka_unit_test(test_an_empty_mesh_is_told),
+        cmocka_unit_test(test_without_vorout_there_is_no_diagram),
+        cmocka_unit_test(test_extreme_indices_are_refused),
+        cmocka_unit_test(test_messages_without_options_go_to_stderr),
+        cmocka_unit_test(test_the_reason_for_an_empty_mesh_is_reported),
 #ifdef SUPPORT_WRAP
         cmocka_unit_test(test_every_allocation_may_fail),
 #endif
         cmocka_unit_test(test_hole_outside),
-        cmocka_unit_test(test_endless_loop),
+        cmocka_unit_test(test_input_that_hung_triangle_is_meshed),
         cmocka_unit_test(test_duplicates_used_by_segments),
         cmocka_unit_test(test_unreachable_angle),
         cmocka_unit_test(test_comma_locale),
         cmocka_unit_test(test_refine_a_mesh),
-        cmocka_unit_test(test_loose_segments),
-        cmocka_unit_test(test_bad_corners),
-        cmocka_unit_test(test_not_delaunay),
-        cmocka_unit_test(test_areas_of_triangles),
+        cmocka_unit_test(test_segments_that_are_no_edges_are_copied),
+        cmocka_unit_test(test_invalid_numbers_of_corners_are_refused),
+        cmocka_unit_test(test_meshes_are_made_delaunay_before_refinement),
+        cmocka_unit_test(test_areas_of_triangles_are_bounds),
         cmocka_unit_test(test_attributes_keep_their_side),
-        cmocka_unit_test(test_bad_meshes),
-        cmocka_unit_test(test_mesh_without_areas),
-        cmocka_unit_test(test_mesh_with_middles),
-        cmocka_unit_test(test_size_test_of_options),
-        cmocka_unit_test(test_switches_of_clients),
-        cmocka_unit_test(test_two_at_once),
+        cmocka_unit_test(test_invalid_meshes_are_refused),
+        cmocka_unit_test(test_meshes_without_areas_have_no_bounds),
+        cmocka_unit_test(test_midpoints_of_edges_are_removed),
+        cmocka_unit_test(test_the_size_test_of_the_options_is_called),
+        cmocka_unit_test(test_switches_of_clients_are_accepted),
+        cmocka_unit_test(test_concurrent_calls_give_the_same_mesh),
     };
     return cmocka_run_group_tests_name("triangulate", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* triangulate() with float coordinates (SINGLE), as a client of such a library sees it. */
+/* triangulate() with float coordinates (SINGLE), as used by a client of such a library. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

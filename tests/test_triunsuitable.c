@@ -1,4 +1,4 @@
-/* A client that brings its own triunsuitable, which the library finds when it is linked. */
+/* A client that defines its own triunsuitable, which the linker gives to the library. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 
 static struct {
     int calls;
-    REAL bound; /* length of edges */
+    REAL bound; /* maximum length of edges */
 } test;
 
 static REAL length2(const REAL *a, const REAL *b)
@@ -22,7 +22,7 @@ static REAL length2(const REAL *a, const REAL *b)
     return x * x + y * y;
 }
 
-/* Clients write into the corners as they please, since Triangle gives no const. */
+/* Clients may write into the corners, since Triangle does not declare them const. */
 int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area)
 {
     REAL longest2 = fmax(length2(origin, destination), fmax(length2(destination, apex), length2(apex, origin)));
@@ -50,7 +50,7 @@ static void release(struct triangulateio *out)
     trifree(out->segmentmarkerlist);
 }
 
-static void test_it_is_asked(void **state)
+static void test_triunsuitable_is_called(void **state)
 {
     (void)state;
     struct triangulateio out;
@@ -66,7 +66,7 @@ static void test_it_is_asked(void **state)
     release(&out);
 }
 
-static void test_only_with_u(void **state)
+static void test_triunsuitable_is_called_only_with_u(void **state)
 {
     (void)state;
     struct triangulateio out;
@@ -84,7 +84,7 @@ static int is_large(void *user, const REAL *a, const REAL *b, const REAL *c, REA
     return area > 0.2;
 }
 
-static void test_options_come_first(void **state)
+static void test_a_size_test_of_the_options_comes_first(void **state)
 {
     (void)state;
     struct triangulateio out;
@@ -100,9 +100,9 @@ static void test_options_come_first(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_it_is_asked),
-        cmocka_unit_test(test_only_with_u),
-        cmocka_unit_test(test_options_come_first),
+        cmocka_unit_test(test_triunsuitable_is_called),
+        cmocka_unit_test(test_triunsuitable_is_called_only_with_u),
+        cmocka_unit_test(test_a_size_test_of_the_options_comes_first),
     };
     return cmocka_run_group_tests_name("triunsuitable", tests, NULL, NULL);
 }

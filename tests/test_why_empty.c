@@ -1,17 +1,17 @@
-/* The sentences against a table; and their truth: what they ask for makes a mesh. */
+/* Compares the sentences with a table and verifies them: following the advice gives a mesh. */
 #include <stdio.h>
 
 #include "full.h"
 #include "support.h"
 #include "triangle/cdt/why_empty.h"
 
-/* Two squares, the second in the first, and five points on a line beside them. */
+/* Two squares, the second inside the first, and five points on a line beside them. */
 static const double SPOTS[13][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 1}, {3, 1}, {3, 3}, {1, 3},
                                     {9, 0}, {9, 1}, {9, 2}, {9, 3}, {9, 0}};
 
 struct figure {
-    const char *empty, *skipped; /* expected; counted from 0 */
-    int32_t first, n_points;     /* of SPOTS */
+    const char *empty, *skipped; /* expected text, counted from 0 */
+    int32_t first, n_points;     /* in SPOTS */
     int32_t segments[20], n_segments;
     double holes[4];
     int32_t n_holes;
@@ -26,7 +26,7 @@ static const struct figure FIGURES[] = {
     {"", "", 0, 4, {OUTER}, 4, {0}, 0, false, false},
     {"", "", 0, 8, {OUTER, INNER}, 8, {2, 2}, 1, false, false},
     {"", "", 0, 8, {OUTER, 4, 5}, 5, {0}, 0, false, false},
-    {"", "", 0, 8, {OPEN_OUTER, INNER}, 7, {0}, 0, false, false}, /* the inner one is meshed */
+    {"", "", 0, 8, {OPEN_OUTER, INNER}, 7, {0}, 0, false, false}, /* the inner square is meshed */
     {"", "", 0, 4, {OPEN_OUTER}, 3, {0}, 0, true, false},
     {"the outline is open at points 0 and 3", "", 0, 4, {OPEN_OUTER}, 3, {0}, 0, false, false},
     {"the outline is open at points 0 and 3", "", 0, 4, {OPEN_OUTER}, 3, {0}, 0, false, true},
@@ -78,7 +78,7 @@ static struct tri_pslg pslg_of(const struct figure *f)
     return pslg;
 }
 
-/* What is told of the figure; how many triangles it has. */
+/* Checks the text that is reported for the figure. Returns its number of triangles. */
 static int32_t notes_of(const struct tri_pslg *pslg, bool keep_hull, bool even_odd, int32_t base,
                         struct tri_report *report)
 {
@@ -94,7 +94,7 @@ static int32_t notes_of(const struct tri_pslg *pslg, bool keep_hull, bool even_o
     return n;
 }
 
-static void test_sentences(void **state)
+static void test_sentences_match_the_table(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof FIGURES / sizeof *FIGURES; i++) {
@@ -111,7 +111,7 @@ static void test_sentences(void **state)
     }
 }
 
-/* The same figure counted from 1: each number is one more, but for counts. */
+/* The same figure counted from 1: each number is one larger, except counts. */
 static void test_numbers_from_one(void **state)
 {
     (void)state;
@@ -135,7 +135,7 @@ static void test_numbers_from_one(void **state)
 }
 
 /* Numbers at the ends of their range. */
-static void test_longest_sentences(void **state)
+static void test_the_longest_sentences_fit(void **state)
 {
     (void)state;
     struct tri_notes notes;
@@ -151,9 +151,9 @@ static void test_longest_sentences(void **state)
     }
 }
 
-/* --- truth */
+/* --- advice is correct */
 
-/* Random points, segments most of which come in chains, and perhaps holes. On a lattice segments overlap. */
+/* Random points, segments of which most form chains, and perhaps holes. On a lattice, segments overlap. */
 static struct tri_pslg draw(struct support_random *random, bool lattice)
 {
     int32_t n = 4 + support_below(random, 12), m = 1 + support_below(random, n + 2);
@@ -179,7 +179,7 @@ static bool fills(struct tri_pslg pslg, bool keep_hull, bool even_odd)
     return notes_of(&pslg, keep_hull, even_odd, 0, &report) > 0;
 }
 
-/* No face of the figure stays empty once the hole that is told, or all of them, are gone. */
+/* No face of the figure stays empty once the reported hole, or all of them, are removed. */
 static void check_holes(const struct tri_pslg *pslg, const struct tri_empty *why, bool keep_hull, bool even_odd)
 {
     struct tri_report report;
@@ -214,13 +214,14 @@ static void check(struct tri_pslg *pslg, bool keep_hull, bool even_odd, int32_t 
     }
 }
 
-static void test_truth(void **state)
+static void test_following_the_advice_gives_a_mesh(void **state)
 {
     (void)state;
     struct support_random random = {17};
     int32_t seen[TRI_EMPTY_HOLES + 1] = {0};
     for (int i = 0; i < (is_full() ? 50000 : 4000); i++) {
-        bool lattice = support_below(&random, 2) == 0; /* where by the even-odd rule the closing one may be cancelled */
+        bool lattice = support_below(&random, 2) == 0; /* the even-odd rule may cancel the closing segment on a
+                                                          lattice */
         struct tri_pslg pslg = draw(&random, lattice);
         check(&pslg, support_below(&random, 6) == 0, !lattice && support_below(&random, 3) == 0, seen);
         tri_pslg_free(&pslg);
@@ -233,10 +234,10 @@ static void test_truth(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sentences),
+        cmocka_unit_test(test_sentences_match_the_table),
         cmocka_unit_test(test_numbers_from_one),
-        cmocka_unit_test(test_longest_sentences),
-        cmocka_unit_test(test_truth),
+        cmocka_unit_test(test_the_longest_sentences_fit),
+        cmocka_unit_test(test_following_the_advice_gives_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The worklist of bad triangles, against looking at every triangle. */
+/* Compares the worklist of bad triangles with a search over every triangle. */
 #include "sched/schedule/worklist.h"
 
 #include "sched/schedule/prerefine.h"
@@ -29,7 +29,7 @@ static void test_a_set_holds_what_is_listed(void **state)
     free(triangles.item);
 }
 
-/* A square with enough points for several shares, and bounds that about half of its triangles miss. */
+/* A square with enough points for several shares, and bounds that about half of its triangles violate. */
 static struct tri_mesh half_bad(struct tri_quality *quality)
 {
     struct tri_pslg pslg = support_square(1, 50000, 3);
@@ -61,7 +61,7 @@ static void assert_holds_all_bad(const struct par_ids *worklist, const struct tr
     free(all);
 }
 
-static void test_fill(void **state)
+static void test_the_worklist_holds_all_bad_triangles(void **state)
 {
     (void)state;
     struct tri_quality quality;
@@ -76,8 +76,8 @@ static void test_fill(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* After some refinement only the newborn are judged; the worklist is the same as if all were. */
-static void test_fill_again(void **state)
+/* After some refinement only new triangles are judged. The worklist is the same as if all were judged. */
+static void test_only_new_triangles_are_judged_again(void **state)
 {
     (void)state;
     struct tri_quality quality;
@@ -101,8 +101,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slots_grow),
         cmocka_unit_test(test_a_set_holds_what_is_listed),
-        cmocka_unit_test(test_fill),
-        cmocka_unit_test(test_fill_again),
+        cmocka_unit_test(test_the_worklist_holds_all_bad_triangles),
+        cmocka_unit_test(test_only_new_triangles_are_judged_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
