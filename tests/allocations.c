@@ -1,4 +1,4 @@
-/* The functions that --wrap puts in place of the allocator. */
+/* The functions that --wrap substitutes for the allocator. */
 #include "allocations.h"
 
 #include <errno.h>

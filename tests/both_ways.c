@@ -1,4 +1,4 @@
-/* The judge in memory and in parts. */
+/* Runs the checker in memory and in parts. */
 #include "both_ways.h"
 
 #include <setjmp.h>
@@ -26,14 +26,14 @@ enum tri_status check_both_ways(const struct tri_check_mesh *mesh, const struct 
                               const struct tri_check_options *options, struct tri_check_report *report,
                               struct tri_error *error)
 {
-    enum { SMALL = 500 }; /* triangles; else it takes too long */
+    enum { SMALL = 500 }; /* maximum number of triangles, since the comparison is slow */
     enum tri_status status = tri_check(mesh, input, options, report, error);
     struct tri_check_source source = tri_check_source_of(mesh);
     struct tri_check_report again;
     source.memory = 1;
     if (status == TRI_OK && mesh->n_triangles <= SMALL) {
         assert_int_equal(tri_check_from(&source, input, options, &again, error), TRI_OK);
-        if (report->item[TRI_CHECK_EDGES].state == TRI_CHECK_FAILED) /* parts may tell another kind */
+        if (report->item[TRI_CHECK_EDGES].state == TRI_CHECK_FAILED) /* parts may report another kind */
             assert_false(tri_check_passed(&again));
         else
             assert_same_reports(report, &again);

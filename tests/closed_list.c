@@ -1,4 +1,4 @@
-/* Linked with the list of sources of a shared library: what the list lacks is an error of the linker. */
+/* Linked with the source list of a shared library. If a file is missing from the list, linking fails. */
 int main(void)
 {
     return 0;

@@ -1,8 +1,8 @@
-"""For each k the k-th allocation of a program fails: it must end with exit code 1 and one line on standard error, and
-touch no file; or, where it can do without, with the very files of a run that lacked nothing.
+"""For each k, the k-th allocation of a program fails. The program must then end with exit code 1 and one line on
+standard error, and change no file. If the allocation was optional, it must write the same files as a normal run.
 
 Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER few | all | NUMBER...
-Of the cases below a few small ones, all, or those; see failing_malloc.c for the shim.
+Runs a few small cases, all cases, or the cases with these numbers. failing_malloc.c describes the shim.
 """
 
 import os
@@ -42,8 +42,8 @@ ALL = FEW + [
     ("meshplot", "x.vtu -c region -o x.svg", ["section.poly", "export:section -pqA x.vtu"]),
 ]
 
-LONGEST = 60  # seconds of one run
-MOST, MOST_OF_FEW = 80, 60  # runs of a case in each mode
+LONGEST = 60  # time limit of one run in seconds
+MOST, MOST_OF_FEW = 80, 60  # maximum number of runs per case in each mode
 
 
 LENGTHS = {  # files for --size
@@ -57,7 +57,7 @@ LENGTHS = {  # files for --size
 
 
 def prepare(folder, inputs, bin_folder, data):
-    """A fresh folder with the inputs of a case."""
+    """Makes a fresh folder with the inputs of a case."""
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     for item in inputs:
@@ -84,7 +84,7 @@ def prepare(folder, inputs, bin_folder, data):
 
 
 def contents(folder):
-    """What the files hold; reports tell seconds, so that of them only the being there counts."""
+    """Contents of the files. Reports contain times, so only their presence is compared."""
     found = {}
     for name in sorted(os.listdir(folder)):
         with open(f"{folder}/{name}", "rb") as file:
@@ -93,7 +93,7 @@ def contents(folder):
 
 
 def restore(folder, before):
-    """The folder as it was."""
+    """Restores the folder to its former contents."""
     for name in os.listdir(folder):
         if name not in before:
             os.remove(f"{folder}/{name}")
@@ -106,7 +106,7 @@ def restore(folder, before):
 
 
 def chosen(n, most):
-    """The numbers 1 to n; of very many, the first and then as many again, evenly."""
+    """The numbers 1 to n. If n is very large: the first ones, then the same number again, evenly spaced."""
     if n <= most:
         return range(1, n + 1)
     half = most // 2
@@ -114,7 +114,7 @@ def chosen(n, most):
 
 
 def run(program, words, folder, variables):
-    """One run: exit code and both streams."""
+    """Runs the program once. Returns the exit code and both streams."""
     environment = {**os.environ, **variables}
     done = subprocess.run([program, *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, timeout=LONGEST, check=False)
@@ -122,7 +122,7 @@ def run(program, words, folder, variables):
 
 
 def judge(code, failure, error, before, after, whole):
-    """What is wrong with a run during which memory was short; an empty text: nothing."""
+    """Describes the fault of a run during which memory was short. An empty text means no fault."""
     if code == 0:
         return "" if after == whole else f"exit code 0, but files differ: {sorted(after)} for {sorted(whole)}"
     if code != failure:
@@ -134,13 +134,13 @@ def judge(code, failure, error, before, after, whole):
 
 
 def needs_memory(program):
-    """Does it use libraries that crash or hang when an allocation of their own fails?"""
+    """Does the program use libraries that crash or hang when one of their own allocations fails?"""
     libraries = subprocess.run(["ldd", program], stdout=subprocess.PIPE, check=True).stdout
-    return b"libomp" in libraries or b"libcairo" in libraries  # LLVM's OpenMP; drawing
+    return b"libomp" in libraries or b"libcairo" in libraries  # LLVM's OpenMP; cairo for drawing
 
 
 def try_case(case, most, bin_folder, data, shim, work):
-    """Faults found, as texts; and the number of runs."""
+    """Returns the faults found, as texts, and the number of runs."""
     program, words, inputs = case[0], case[1].split(), case[2]
     folder, count = f"{work}/case", f"{work}/count"
     path = f"{bin_folder}/{program}"
@@ -171,7 +171,7 @@ def main():
     bin_folder, data, shim, work = sys.argv[1:5]
     os.makedirs(work, exist_ok=True)
     shutil.copy(shim, f"{work}/failing.so")
-    shim = "../failing.so"  # seen from the folder of a case: LD_PRELOAD takes a blank for the end of a name
+    shim = "../failing.so"  # relative to the folder of a case, because LD_PRELOAD splits paths at blanks
     named = {"few": FEW, "all": ALL}
     cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
     most = MOST_OF_FEW if cases is FEW else MOST

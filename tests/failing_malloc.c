@@ -1,15 +1,15 @@
-/* A library to be loaded before all others (LD_PRELOAD): one call of malloc, calloc, realloc or aligned_alloc fails, or
- * that and all later ones, in any program; or one by which the program itself writes.
+/* A library for LD_PRELOAD: one call of malloc, calloc, realloc or aligned_alloc fails, or that call and all later
+ * ones. It works with any program. It can also make writes of the program fail.
  *
  *   PTRIANGLE_FAIL_AT=K     the K-th call fails, counted from 1
- *   PTRIANGLE_FAIL_AFTER=1  so do all behind it
- *   PTRIANGLE_FAIL_KILL=1   instead the process is killed
- *   PTRIANGLE_FAIL_OWN=1    only calls of the program itself are counted, not those of libraries
- *   PTRIANGLE_FAIL_WRITE=K  the K-th call of pwrite finds the disk full, and so do all behind it
+ *   PTRIANGLE_FAIL_AFTER=1  all later calls fail as well
+ *   PTRIANGLE_FAIL_KILL=1   the process is killed instead
+ *   PTRIANGLE_FAIL_OWN=1    counts only calls of the program itself, not those of libraries
+ *   PTRIANGLE_FAIL_WRITE=K  the K-th call of pwrite and all later ones report a full disk
  *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
  *
- * Calls of the dynamic linker and of OpenMP's library are not counted: that prints a line and ends the program, and
- * nothing can be done about it (sched/schedule/threads.h). */
+ * Calls of the dynamic linker and of the OpenMP library are not counted. If an allocation of OpenMP fails, it prints a
+ * line and ends the program, which cannot be prevented (sched/schedule/threads.h). */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -58,7 +58,7 @@ __attribute__((destructor)) static void end(void)
     }
 }
 
-/* In its executable, or in the module that holds all of it but the start (drivers/start.c). */
+/* The address lies in the executable, or in the module that contains all code except the start (drivers/start.c). */
 static bool is_of_the_program(const char *file) { return !strstr(file, ".so") || strstr(file, "ptriangle.so"); }
 
 static bool counts(const void *caller)

@@ -1,11 +1,11 @@
-/* Preloaded into a rank: its MPI fails at the PTRIANGLE_LOST_AT-th look whether something has come, as where the error
- * handler returns. */
+/* Preloaded into a rank: MPI fails at the PTRIANGLE_LOST_AT-th probe for messages, as if the error handler had
+ * returned. */
 #include <mpi.h>
 #include <stdlib.h>
 
 int MPI_Testall(int count, MPI_Request requests[], int *flag, MPI_Status statuses[])
 {
-    static long looks; /* one thread of a rank speaks with others */
+    static long looks; /* number of probes; only one thread of a rank communicates */
     const char *at = getenv("PTRIANGLE_LOST_AT");
     if (at && ++looks >= atol(at))
         return MPI_ERR_OTHER;

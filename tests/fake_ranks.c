@@ -9,7 +9,7 @@
 
 static void wait_for_all(struct fake_world *world) { pthread_barrier_wait(&world->barrier); }
 
-/* Do all make the same call? Else MPI would fail, or mix up what they tell each other. */
+/* Do all ranks make the same call? If not, real MPI would fail or mix up the messages. */
 static bool are_together(const struct fake_world *world, int32_t width)
 {
     bool same = true;

@@ -1,6 +1,7 @@
 #!/bin/sh
-# House rules that a command can see (CONTRIBUTING.md). Usage: house_rules.sh SOURCE_ROOT C_COMPILER [FOLDER_OF_HDF5_H]
-# Prints one line per breach; exit code 1 if there is any.
+# House rules that a command can check (CONTRIBUTING.md). Usage: house_rules.sh SOURCE_ROOT C_COMPILER
+# [FOLDER_OF_HDF5_H]
+# Prints one line per breach. Exit code 1 if there is any.
 set -u
 root=$1
 cc=$2
@@ -13,8 +14,8 @@ breach() {
     breaches=$((breaches + 1))
 }
 
-# Code without comments, "FILE:LINE: CODE": what remains is what the compiler sees. Strings stay; a /* in one would fool
-# it.
+# Code without comments, as "FILE:LINE: CODE", which is what the compiler sees. Strings are kept, so a /* inside a
+# string would be mistaken for a comment.
 code=$(mktemp)
 trap 'rm -f "$code"' EXIT
 awk '{
@@ -45,7 +46,7 @@ refuse() {
     [ -z "$found" ] || breach "$reason: $found"
 }
 
-# 1. Every source file stands in a list, every list entry is a file.
+# 1. Every source file is in a list, and every list entry is a file.
 for file in triangle/*/*.c triangle/*/*.cpp sched/*/*.c; do
     [ -f "$file" ] || continue
     grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
@@ -56,7 +57,7 @@ for file in tests/test_*.c; do
     grep -qE "ptriangle_test\(${name%.c}[ )]" tests/CMakeLists.txt || breach "$file is not registered in tests/CMakeLists.txt"
 done
 
-# ... and has a test program of its name, but where that of another name goes through it.
+# ... and has a test program of its name, unless the test of another name covers it.
 tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
@@ -98,9 +99,9 @@ for file in triangle/*/*.c triangle/*/*.cpp sched/*/*.c; do
     [ -f "tests/test_$(tested_by "$file").c" ] || breach "$file has no test program"
 done
 
-# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads. The folders in triangle/ may
-# include the mesher, the mesher none of them, and they none of each other. Exceptions: api/ is the door to all, dropin/
-# runs its stages (generate.h), and the files of hdf5/ are outputs of text/.
+# 2. Calls go from drivers/ to sched/ to triangle/, never back, and only sched/ uses threads. Folders in triangle/ may
+# include the mesher. The mesher includes none of them, and they do not include each other. Exceptions: api/ includes
+# them all, dropin/ runs the stages of api/ (generate.h), and the files of hdf5/ are outputs of text/.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper folder' \
     triangle/*/*.[ch] triangle/*/*.cpp
 refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper folder' sched/*/*.[ch]
@@ -125,76 +126,78 @@ refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, 
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|threads)\.h>|tri_(thread_(start|join)|monitor_)' 'knows threads' \
     $(ls triangle/*/*.[ch] triangle/*/*.cpp | grep -v '^triangle/base/system')
 
-# One door to the system, triangle/base/system.h: nobody else names what C's own library has not. The exceptions stand
-# with their reasons in CONTRIBUTING.md ("The door to the system").
+# The interface to the system is triangle/base/system.h: no other file uses names beyond those of C's own library. The
+# exceptions and their reasons are in CONTRIBUTING.md ("The door to the system").
 # shellcheck disable=SC2046 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*<((sys|net|netinet|arpa|mach)/|(aio|dirent|dlfcn|fcntl|getopt|malloc|netdb|poll|pthread|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|ucontext|unistd|utime|windows|io)\.h>)|_(POSIX_C|GNU|DEFAULT|XOPEN|DARWIN_C)_SOURCE|(^|[^a-z_>.])(open_memstream|posix_memalign|strerror_r|fileno|fdopen|dprintf|popen|setenv|mkstemp|strdup|clock_gettime|nanosleep|ssize_t|off_t)([^a-z_]|$)' \
     'calls the system past triangle/base/system.h' \
     $(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] |
         grep -v -e '^triangle/base/system_' -e '^drivers/start\.c$' -e '^drivers/words\.h$')
 
-# The sweep and the ranks stand above the headers of the schedule: only sched/schedule/*.c, which choose between them,
+# The sweep and the ranks are built on the headers of the schedule. Only sched/schedule/*.c, which choose between them,
 # include both.
-refuse '#[[:space:]]*include[[:space:]]*"sched/(tiles|checkpoint|ranks)/' 'includes what stands above it' sched/schedule/*.h
-refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/tiles/*.[ch] \
+refuse '#[[:space:]]*include[[:space:]]*"sched/(tiles|checkpoint|ranks)/' 'includes a header of a higher layer' sched/schedule/*.h
+refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes a header of a higher layer' sched/tiles/*.[ch] \
     sched/checkpoint/*.[ch]
 
-# The sequential program knows no schedule, nor do the stages that it shares with the parallel one
+# The sequential program includes no schedule, nor do the stages that it shares with the parallel program
 # (drivers/mesh/stages.h).
 # shellcheck disable=SC2046 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/mesh/triangle.c \
     $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_/]+' | sed 's/$/.c/; p; s/c$/h/')
 
-# One file runs anything in parallel: all else hands tasks to an executor.
+# Only one file runs work in parallel. All other files pass tasks to an executor.
 others=$(ls sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] | grep -vxE 'sched/schedule/(threads|team)\.c' | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/schedule/team.c' $others
 
-# Arrays grow in one way; the mesh's own lie where a storage has them, or at a cache line.
+# All arrays grow by the same function. Arrays of the mesh lie in a storage, or are aligned to a cache line.
 others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] drivers/*.[ch] drivers/*/*.[ch] |
     grep -vx -e triangle/base/grow.h -e triangle/mesh/mesh.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '[^a-z_]realloc\(' 'grows an array without triangle/base/grow.h' $others
 
-# One file knows MPI, so that all else can be compiled, and tried, without.
+# Only one file includes MPI, so that all others can be compiled and tested without it.
 others=$(ls triangle/*/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $others
 
-# The judge knows nothing of the judged but input, predicates and tools: nobody is judge of his own cause.
+# The checker uses nothing of the mesher except input, predicates and tools, since it must be independent of the code
+# that it checks.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
         grep -vE '^triangle/(check/[a-z_]+\.[ch]|mesh/pslg\.h|geometry/(predicates|expansion|point)\.h|base/(status|arithmetic|executor|grow|order|system)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 
-# The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
-# (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
+# The schedule controls refinement through its hooks. Judging triangles and inserting points are internal to the mesher.
+# (api/ and dropin/ are the library's interfaces, and sched/ has its own versions of them.)
 hooks='mesh/(mesh|fence|surface)|refine/(refine|census|smooth)|size/estimate|api/(generate|opaque_mesh)|dropin/(triangle|call)'
 tools='base/[a-z_]+|geometry/(hilbert|point|shape)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
 [ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
 
-# 3. Libraries neither print nor end the process nor touch the locale, but for the one line of triangulate().
+# 3. Libraries do not print, end the process or change the locale. The only exception is the one line of triangulate().
 others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] |
     grep -vx triangle/dropin/aloud.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
     'prints, exits or touches the locale' $others
 
-# 4. No line of code is longer than 120 characters. (Lines of scripts and of CMake may hold a longer word or pattern.)
+# 4. No line of code is longer than 120 characters. (Lines of scripts and of CMake may contain a longer word or
+# pattern.)
 long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] \
     drivers/*.[ch] drivers/*/*.[ch] tests/*.[ch] tests/*/*.[ch] tests/*/*/*.c* include/*/*.h \
     bench/*.py python/*/*.py tests/*.py tests/*/*.py tools/*.py | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
-# ... and none of the documents, but for rows of tables.
+# ... and no line of the documents, except rows of tables.
 long=$(LC_ALL=C.UTF-8 grep -nE '^[^|].{120,}' ./*.md docs/*.md data/*.md | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
-# ... and no struct of sched/ and drivers/ has more than 20 fields, those of structs inside it among them. Options and
-# reports may have more.
+# ... and no struct of sched/ and drivers/ has more than 20 fields, including the fields of structs inside it. Options
+# and reports may have more.
 crowded=$(grep -E '^(sched|drivers)/' "$code" | awk '
     name == "" && /^[^ ]* (typedef |static |const )*(struct|union)( [a-z0-9_]+)? \{ *$/ { name = $0; fields = 0; next }
     name != "" && /^[^ ]* \}/ { if (fields > 20) print name " " fields " fields"; name = "" }
@@ -204,7 +207,8 @@ crowded=$(grep -E '^(sched|drivers)/' "$code" | awk '
     }' | grep -vE ' struct (par_options|par_report|long_options) ')
 [ -z "$crowded" ] || breach "more than 20 fields: $crowded"
 
-# 5. Each header compiles alone; those of hdf5/ where HDF5 is there; that for MPI in its client (tests/client/ranks.c).
+# 5. Each header compiles alone. Headers of hdf5/ are compiled if HDF5 is installed. The header for MPI is compiled in
+# its client (tests/client/ranks.c).
 for file in include/*/*.h triangle/*/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
     case $file in triangle/hdf5/*) [ -n "$hdf5" ] || continue ;; include/ptriangle/mpi.h) continue ;; esac
@@ -212,7 +216,7 @@ for file in include/*/*.h triangle/*/*.h sched/*/*.h; do
         -fsyntax-only -x c -include "$file" /dev/null || breach "$file does not compile alone"
 done
 
-# 6. The top folder holds what is listed here; what a run has left there is not committed.
+# 6. The top folder contains only the entries listed here. Files left by a run must not be committed.
 known='\.(ci|clang-format|clang-tidy|gitattributes|github|gitignore)|[A-Z]+(\.md)?|CMake(Lists\.txt|Presets\.json)'
 known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|examples|include|python|sched|tests|tools|triangle|web"
 if [ -e .git ] && command -v git >/dev/null; then

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Ranks that are killed at random moments, and gone on with by others: kill_chains.py PROGRAM MPIRUN DATA SEED COUNT.
+"""Kills ranks at random moments and resumes with others: kill_chains.py PROGRAM MPIRUN DATA SEED COUNT.
 
-A chain makes one mesh: a number of ranks, drawn anew for each run, goes on from the checkpoint of those before, until
-none is killed: one rank, several, all by SIGTERM, or the launcher; at any moment, or while the files of all are
-written. After each kill all ranks must end, with a failure, and what has its final name by then is as it should be; in
-the end the files are those of one process, and neither a checkpoint nor a temporary file is left. PROGRAM is one of a
-build with tests, for the environment variable that makes blocks small. Exit code: 0 where all chains are good."""
+A chain makes one mesh. Each run has a random number of ranks and resumes from the checkpoint of the run before, until a
+run is not killed. A kill hits one rank, several, all by SIGTERM, or the launcher. It happens at any moment, or while
+all ranks write files. After each kill all ranks must end with a failure, and files that have their final names must be
+correct. Finally the files must equal those of one process, and neither a checkpoint nor a temporary file may be left.
+PROGRAM must come from a build with tests, because an environment variable makes blocks small. Exit code: 0 if all
+chains succeed."""
 import hashlib
 import os
 import random
@@ -27,7 +28,7 @@ INPUTS = [  # name, switches, triangles of a block, bound on memory or None
     ("square_random1000", "pq20a0.0000009", "", "130M"),
     ("square_random1000", "pq33a0.000001", "", "130M"),
 ]
-OUTPUTS = [["{}"], ["{}.h5"], ["{}", "{}.h5"]]  # what all ranks write: .node, .ele and .poly; HDF5; both
+OUTPUTS = [["{}"], ["{}.h5"], ["{}", "{}.h5"]]  # files that all ranks write: .node, .ele and .poly; HDF5; both
 RANKS = [2, 2, 3, 3, 4, 5, 6, 9]
 RECORD = 'echo $$ >"pid.${OMPI_COMM_WORLD_RANK:-$PMI_RANK}"; exec "$0" "$@"'
 
@@ -40,7 +41,7 @@ def environment(block):
 
 
 def digests(base):
-    """Of the files of a mesh, by suffix, but for comments and what names a file."""
+    """Contents of the files of a mesh, by suffix, without comments and file names."""
     sums = {}
     for name in (n for n in os.listdir(".") if n.startswith(base + ".") and not n.endswith(".xdmf")):
         with open(name, "rb") as file:
@@ -71,7 +72,7 @@ def pids():
 
 
 def send(pid, what):
-    """It may have ended by itself."""
+    """Kills a process. It may have ended by itself."""
     try:
         os.kill(pid, what)
     except ProcessLookupError:
@@ -91,7 +92,7 @@ def kill(how, launcher):
 
 
 def wait_for_writing(launcher):
-    """Until the files of all grow, or it has ended."""
+    """Waits until the files of all ranks grow, or the run has ended."""
     def written():
         size = 0
         for name in temporaries():
@@ -105,7 +106,7 @@ def wait_for_writing(launcher):
 
 
 def end_of(launcher, errors):
-    """Its exit code once it, and all ranks, have ended; None: they hang."""
+    """Returns the exit code once the run and all its ranks have ended, or None if they hang."""
     began = time.time()
     try:
         code = launcher.wait(HANG)
@@ -123,8 +124,8 @@ def end_of(launcher, errors):
 
 
 def wait_for_numbers():
-    """Until nobody has the numbers of ranks that are gone, or for a while: what took over those of a dead launcher asks
-    for them when it likes, and as long as one is in sight its temporary files are taken for those of one at work."""
+    """Waits, for a limited time, until the process numbers of ended ranks are free. The process that inherits children
+    of a dead launcher may reap them late. Until then, their temporary files are mistaken for files in use."""
     began = time.time()
     while any(os.path.exists(f"/proc/{pid}") for pid in pids().values()) and time.time() - began < 20:
         time.sleep(0.05)
@@ -139,8 +140,8 @@ def is_there(pid):
 
 
 def run_once(command, block, seconds, while_written, errors):
-    """Kills somebody after so many seconds, from the beginning or from that of writing, unless they are None. Returns
-    the exit code and who was killed."""
+    """Kills ranks or the launcher after the given seconds, counted from the beginning or from the start of writing.
+    None: no kill. Returns the exit code and a description of what was killed."""
     for name in list(os.listdir(".")):
         if name.startswith("pid."):
             os.remove(name)
@@ -159,7 +160,7 @@ def run_once(command, block, seconds, while_written, errors):
 
 
 def chain(program, mpirun, source, number):
-    """Returns what is wrong with it, and how it went."""
+    """Runs one chain. Returns its fault, if any, and its history."""
     name, switches, block, memory = random.choice(INPUTS)
     shutil.copy(os.path.join(source, name + ".poly"), "in.poly")
     os.mkdir("scratch")

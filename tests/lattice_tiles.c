@@ -1,4 +1,4 @@
-/* Items by their numbers, and tiles of them. */
+/* Items by number, and tiles of them. */
 #include "tests/lattice_tiles.h"
 
 #include <stdlib.h>
@@ -68,7 +68,7 @@ static void fill_cells(const struct lattice *l, struct buffers *b, const struct 
 
 enum { POINTS = 1, TRIANGLES = 2, SEGMENTS = 4 };
 
-/* n rows of points, or of what is below them, to the sink; the tile moves on behind them. */
+/* Sends n rows of points, or of the triangles below them, to the sink. The tile then begins after them. */
 static enum tri_status hand_rows(const struct lattice *l, const struct tri_sink *sink, struct tri_tile *tile,
                                  struct buffers *b, int32_t n, int what, struct tri_error *error)
 {

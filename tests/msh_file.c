@@ -21,7 +21,7 @@ static uint64_t take_bits(struct bytes *b, int n)
     uint64_t bits = 0;
     assert_true(b->end - b->at >= n);
     for (int i = 0; i < n; i++)
-        bits |= (uint64_t)*b->at++ << (8 * i); /* the files have the lowest byte first */
+        bits |= (uint64_t)*b->at++ << (8 * i); /* the files are little-endian */
     return bits;
 }
 
@@ -37,7 +37,10 @@ static double take_f64(struct bytes *b)
     return value;
 }
 
-/* What stands between "$NAME\n" and "\n$EndNAME\n"; false: there is no such section. */
+/* Finds the section between "$NAME
+   " and "
+   $EndNAME
+   ". Returns false if it does not exist. */
 static bool find_section(const struct bytes *all, const char *name, struct bytes *section)
 {
     char begin[64], end[64];
@@ -54,7 +57,7 @@ static bool find_section(const struct bytes *all, const char *name, struct bytes
     return true;
 }
 
-/* Its box, physical tags, and pieces of its boundary. */
+/* Skips the box, physical tags, and pieces of the boundary of an entity. */
 static void take_shape(struct bytes *b, struct msh_entity *e)
 {
     double box[6];
@@ -101,7 +104,7 @@ static const struct msh_entity *entity_of(const struct msh_file *msh, int32_t di
     const struct msh_entity *found = NULL;
     for (int i = 0; i < msh->n_entities; i++)
         if (msh->entity[i].dimension == dimension && msh->entity[i].tag == tag) {
-            assert_null(found); /* tags are an entity's own */
+            assert_null(found); /* each tag is used only once */
             found = &msh->entity[i];
         }
     assert_non_null(found);
@@ -122,10 +125,10 @@ static struct totals take_totals(struct bytes *b)
     return t;
 }
 
-/* What stands before the nodes or elements of an entity. */
+/* The header of the nodes or elements of an entity. */
 struct block {
     const struct msh_entity *entity;
-    int32_t kind; /* of nodes whether they have parameters, of elements their type */
+    int32_t kind; /* nodes: whether they have parameters; elements: their type */
     int64_t n;
 };
 
@@ -203,7 +206,7 @@ void msh_read(struct msh_file *msh, const char *path)
     take_entities(msh, &section, false);
     if (find_section(&all, "PartitionedEntities", &section)) {
         msh->n_parts = take_i64(&section);
-        assert_int_equal(take_i64(&section), 0); /* ghosts */
+        assert_int_equal(take_i64(&section), 0); /* ghost elements */
         take_entities(msh, &section, true);
     }
     assert_true(find_section(&all, "Nodes", &section));

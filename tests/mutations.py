@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""mutations.py BINARIES: breaks a finished mesh in one way after the other; trianglecheck must name each fault, and say
-the same in every word with next to no memory.
+"""mutations.py BINARIES: damages a valid mesh in many ways. trianglecheck must name each fault, and must print exactly
+the same when it has almost no memory.
 
-BINARIES is the folder of triangle and trianglecheck. The mesh itself must pass."""
+BINARIES is the folder of triangle and trianglecheck. The undamaged mesh must pass."""
 import copy
 import math
 import pathlib
@@ -19,11 +19,12 @@ POINTS = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0],  # a square,
 SEGMENTS = [[0, 1, 2], [1, 2, 3], [2, 3, 0], [3, 0, 0], [4, 5, 0], [5, 6, 0], [6, 7, 0], [7, 4, 0], [8, 9, 7],
             [10, 11, 4], [11, 12, 4], [12, 13, 4], [13, 10, 4], [15, 16, 5]]
 HOLES = [[4, 4]]
-REGIONS = [[9.5, 9.75, 3], [7, 2, 1], [8, 2, 2]]  # the corner, and twice the face
+REGIONS = [[9.5, 9.75, 3], [7, 2, 1], [8, 2, 2]]  # the corner, and the face twice
 
 
 class Mesh:
-    """Points and segments with a marker each, triangles, their neighbours or None; the input they are judged by."""
+    """Points and segments with a marker each, triangles, and their neighbours (or None). Also the input that the mesh
+    is checked against."""
 
     def __init__(self, base):
         self.points = [[float(r[0]), float(r[1]), int(r[-1])] for r in rows(base, ".node")]
@@ -54,22 +55,22 @@ class Mesh:
         return {(c[k], c[k - 2]): t for t, c in enumerate(self.triangles) for k in range(3)}
 
     def inner(self):
-        """A triangle without subsegments."""
+        """Returns a triangle without subsegments."""
         walls, edges = {frozenset(s[:2]) for s in self.segments}, self.edges()
         return next(t for t, c in enumerate(self.triangles)
                     if all(frozenset((c[k], c[k - 2])) not in walls and (c[k - 2], c[k]) in edges for k in range(3)))
 
     def free(self):
-        """A vertex that is neither of the input nor on a subsegment."""
+        """Returns a vertex that is neither an input vertex nor on a subsegment."""
         walls = {v for s in self.segments for v in s[:2]}
         return next(v for c in self.triangles for v in c if v >= len(POINTS) and v not in walls)
 
     def wall(self, marker):
-        """A subsegment with that marker."""
+        """Returns a subsegment with that marker."""
         return next(k for k, s in enumerate(self.segments) if s[2] == marker)
 
     def remove(self, triangles):
-        """And the edges where the mesh ends then become subsegments, as a careless mesher would have it."""
+        """Also makes the boundary edges subsegments, as a careless mesher would."""
         self.triangles = [c for t, c in enumerate(self.triangles) if t not in triangles]
         self.attributes = [a for t, a in enumerate(self.attributes) if t not in triangles]
         self.list_border()
@@ -115,7 +116,7 @@ def write_input(base, points, segments, holes):
     pathlib.Path(base + ".poly").write_text("\n".join(lines) + "\n")
 
 
-# --- ways to break a mesh: each returns nothing, or further options for the judge
+# --- ways to damage a mesh: each returns None, or further options for the checker
 
 MUTATIONS = []
 
@@ -378,7 +379,7 @@ def mesh_twice(m):
 
 @mutation("no overlap")
 def torn_at_a_vertex(m):
-    """A triangle at a boundary vertex gets a copy of it."""
+    """A triangle at a boundary vertex gets a copy of the vertex."""
     v = m.segments[m.wall(1)][0]
     t = next(t for t, c in enumerate(m.triangles) if v in c)
     m.points.append(list(m.points[v]))
@@ -388,7 +389,7 @@ def torn_at_a_vertex(m):
 
 @mutation("Delaunay")
 def edge_flipped(m):
-    """The first edge whose quadrilateral is strictly convex."""
+    """Returns the first edge whose quadrilateral is strictly convex."""
     edges, walls = m.edges(), {frozenset(s[:2]) for s in m.segments}
 
     def turn(p, q, r):
@@ -466,7 +467,7 @@ def smallest(m):
 
 
 def faults(binaries, base, options):
-    """Names of the kinds of fault found; None: the files were refused."""
+    """Returns the names of the kinds of fault found, or None if the files were refused."""
     command = [binaries / "trianglecheck", base, "--poly", base + "_input.poly", *options]
     run, again = (subprocess.run(command + more, capture_output=True, text=True, timeout=60)
                   for more in ([], ["--memory", "1", "--scratch", pathlib.Path(base).parent]))

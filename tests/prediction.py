@@ -1,4 +1,4 @@
-"""List scheduling of measured blocks, the shares that follow, and the same on ranks (bench/prediction.py).
+"""Tests bench/prediction.py: list scheduling of measured blocks, the shares that result, and the same on ranks.
 
 Usage: python3 tests/prediction.py SOURCE"""
 import sys
@@ -7,7 +7,7 @@ import unittest
 sys.path.insert(0, sys.argv.pop(1) + "/bench")
 import prediction  # noqa: E402
 
-SIDE, SWAPS = 5, 3  # the first: of a mesh of 2 x 2 tiles, in blocks
+SIDE, SWAPS = 5, 3  # the first: a mesh of 2 x 2 tiles, in blocks
 
 
 def block(schedule, turn, phase, number, seconds):
@@ -15,7 +15,7 @@ def block(schedule, turn, phase, number, seconds):
 
 
 def four_tiles(schedule=0):
-    """Seconds: 1 in tiles, 1/4 in blocks over two of them, half of that at rims, 1/16 in the middle."""
+    """Seconds: 1 in tiles, 1/4 in blocks over two tiles, half of that at the border, 1/16 in the middle."""
     side = [0.125, 1, 0.25, 1, 0.125]
     return [block(schedule, 0, 2 * (c % 2 == 0) + (r % 2 == 0), c * SIDE + r, side[c] * side[r])
             for c in range(SIDE) for r in range(SIDE)]
@@ -32,12 +32,12 @@ def replayed(ranks, times=1, blocks=None, schedule=0):
 
 class Threads(unittest.TestCase):
     def test_largest_first(self):
-        """3 3 2 2 2 on two threads: largest first ends at 7, one above the best."""
+        """3 3 2 2 2 on two threads: scheduling the largest first ends at 7, one above the optimum."""
         for threads, seconds in ((1, 12), (2, 7), (3, 5), (4, 4), (256, 3)):
             self.assertAlmostEqual(prediction.makespan([2, 3, 2, 3, 2], threads), seconds)
 
     def test_phases_follow_each_other(self):
-        """Also where the next schedule begins with the same round and phase."""
+        """The same when the next schedule begins with the same round and phase."""
         blocks = [block(0, 0, 0, 0, 1), block(0, 0, 0, 1, 1), block(1, 0, 0, 2, 4), block(1, 0, 0, 5, 1),
                   block(1, 0, 1, 6, 2), block(1, 1, 0, 7, 8), block(1, 1, 0, 9, 8)]
         for threads, first, seconds in ((1, 0, 25), (2, 0, 1 + 4 + 2 + 8), (2, 1, 8), (2, 2, 0)):
@@ -63,20 +63,22 @@ class Ranks(unittest.TestCase):
         self.assert_near(replayed(1, 3), refine_seconds=9 * 6.25, alone_seconds=9 * 0.5, hand_out_seconds=9 * 2)
 
     def test_two_ranks_meet_along_a_column(self):
-        """Each has a column. Between them lie five blocks, which one of them lends and the other refines."""
+        """Each rank has a column. Five blocks lie between them: one rank lends its part, and the other refines it."""
         refine = 2.5 + 2.5 * (0.125 + 0.25)
         self.assert_near(replayed(2), refine_seconds=refine, bytes=5 * 1000, most_bytes_of_a_rank=5 * 500,
                          messages=2 * SWAPS, merge_seconds=5 * 0.25, hand_out_seconds=1,
                          processor_seconds_of_busiest=0.5 + refine + 5 * 0.25 + 1)
 
     def test_four_ranks_meet_at_a_corner(self):
-        """Each has a tile: three lend to the first for the block in the middle. Of 100 some have nothing."""
+        """Each rank has a tile. Three ranks lend to the first for the block in the middle. Of 100 ranks, some have no
+        tile."""
         for ranks in 4, 100:
             self.assert_near(replayed(ranks), refine_seconds=1 + 0.375 + 0.375 + 0.375 * 0.375,
                              bytes=(2 + 2 + 7) * 1000, messages=(2 + 2 + 5) * SWAPS)
 
     def test_a_second_schedule_is_shared(self):
-        """Messages of a tenth and half the packing; a coarse mesh before, and a round behind."""
+        """Messages that take a tenth of the time and half the packing, with a coarse mesh before and a round after
+        them."""
         one = replayed(2)
         two = replayed(2, 1, [block(0, 0, 0, 6, 100), *four_tiles(1), *four_tiles(2), block(2, 1, 0, 6, 4)], 1)
         self.assert_near(two, alone_seconds=one["alone_seconds"] + 4, hand_out_seconds=one["hand_out_seconds"],

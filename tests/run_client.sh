@@ -2,8 +2,8 @@
 # Installs a build into a scratch prefix, moves the prefix, and builds and runs tests/client/ against it: as a C project
 # through find_package, and by hand through pkg-config.
 # A client of Triangle's interface is linked to the sequential and to the parallel library, and must print the same.
-# MPIEXEC, MPI_C_COMPILER: launcher and compiler of the MPI of the build; empty: it has none.
-# PTRIANGLE_MODULE_DIR: that of the modules, from that of the programs; empty: there are none.
+# MPIEXEC, MPI_C_COMPILER: launcher and compiler of the build's MPI; empty if it has none.
+# PTRIANGLE_MODULE_DIR: path from the folder of the programs to that of the modules; empty if there are none.
 # Usage: run_client.sh BUILD_DIR WORK_DIR CMAKE C_COMPILER
 set -eu
 build=$1
@@ -36,13 +36,13 @@ fi
 pc=$(find "$work/prefix" -name ptriangle.pc)
 PKG_CONFIG_PATH=$(dirname "$pc")
 export PKG_CONFIG_PATH
-eval "set -- $(pkg-config --cflags --libs ptriangle)" # words as for a shell: blanks in a path are quoted
+eval "set -- $(pkg-config --cflags --libs ptriangle)" # split into words by a shell, since blanks in a path are quoted
 "$cc" -std=c11 "$client/client.c" -o "$work/by_hand" "$@"
 "$work/by_hand" "$square"
 
 echo "== a client of Triangle, relinked"
-directory=$(dirname "$(dirname "$pc")") # of the libraries
-# takes PROGRAM yes|no: is it the parallel triangulate() that was linked?
+directory=$(dirname "$(dirname "$pc")") # the folder of the libraries
+# takes PROGRAM yes|no: was the parallel triangulate() linked?
 takes() {
     if nm "$1" | grep -q ' par_refine$'; then found=yes; else found=no; fi
     [ "$found" = "$2" ] || { echo "$1: parallel: $found, expected $2" >&2; exit 1; }
@@ -69,7 +69,7 @@ fi
 
 echo "== a stream"
 if [ -x "$work/cmake/stream" ]; then
-    for memory in 0 30; do # all there is, and less than the mesh takes
+    for memory in 0 30; do # no limit, and less memory than the mesh needs
         "$work/cmake/stream" "$square" 20 0.000003 $memory "$work"
     done | uniq >"$work/streams.txt"
     cat "$work/streams.txt"

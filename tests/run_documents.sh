@@ -1,5 +1,5 @@
 #!/bin/sh
-# Help, manual page and completion of a program know the same options, and those are the options that it takes.
+# Help, manual page and completion of a program list the same options, and these are the options that it accepts.
 # Usage: run_documents.sh SOURCE_ROOT BUILD_DIR WORK_DIR
 set -u
 root=$1
@@ -19,7 +19,7 @@ for program in triangle ptriangle trianglecheck meshplot; do
     page=$build/documents/$program.1
     "$build/bin/$program" --help >help.txt || fault "$program --help: exit code $?"
     "$build/bin/$program" --version | grep -qx "$program [0-9.]*" || fault "$program --version"
-    # What the sources take: tables of {"name", ...}.
+    # Options that the sources accept: tables of {"name", ...}.
     case $program in
     ptriangle) source="$root/drivers/mesh/long_options.c $root/drivers/mesh/size_options.c" ;;
     triangle) source=$root/drivers/mesh/size_options.c ;;
@@ -27,19 +27,19 @@ for program in triangle ptriangle trianglecheck meshplot; do
     esac
     # shellcheck disable=SC2086 # one word a file
     taken=$(grep -ohE '\{"[a-z-]+", *([A-Z]|(required|no)_argument)' $source | sed 's/{"\([a-z-]*\)".*/--\1/')
-    [ $program = triangle ] || [ "$(echo "$taken" | wc -l)" -gt 10 ] || fault "$program: which options does $source take?"
+    [ $program = triangle ] || [ "$(echo "$taken" | wc -l)" -gt 10 ] || fault "$program: no options found in $source"
     told=$(grep -E '^ {2,8}-' help.txt | grep -oE -e '--[a-z-]+')
     for option in $taken; do
-        echo "$told" | grep -qxe "$option" || fault "$program: no word about $option"
+        echo "$told" | grep -qxe "$option" || fault "$program: $option is not documented"
     done
     for option in $(grep -oE -e '(^|[ (])--[a-z-]+' help.txt | tr -d ' (' | grep -vxe --name | sort -u); do
-        echo "$told" | grep -qxe "$option" || fault "$program: --help speaks of $option, which is none of its options"
+        echo "$told" | grep -qxe "$option" || fault "$program: --help mentions $option, which is not an option"
     done
     # shellcheck disable=SC2016 # for the other shell
     completed=$(bash -c '. "$1"; COMP_WORDS=("$2" -); COMP_CWORD=1; "_$2_words"; printf "%s\n" "${COMPREPLY[@]}"' \
         bash "$build/documents/$program" "$program") || fault "$program: completion"
     for option in $told; do
-        [ $program = triangle ] || echo "$taken" | grep -qxe "$option" || fault "$program: $option is told, but not taken"
+        [ $program = triangle ] || echo "$taken" | grep -qxe "$option" || fault "$program: $option is documented, but not accepted"
         echo "$completed" | grep -qxe "$option" || fault "$program: $option is not completed"
         sed 's/\\-/-/g' "$page" | grep -qE -e "^\.B .*$option( |,|\$)" || fault "$program: $option is not in $page"
     done

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs `triangle` on every line of data/expected.txt and compares what it wrote with the facts there; every mesh is put
-# before `trianglecheck`. Usage: run_expected.sh BIN_DIR DATA_DIR WORK_DIR
+# Runs `triangle` on every line of data/expected.txt and compares its output with the facts given there. Every mesh is
+# checked by `trianglecheck`. Usage: run_expected.sh BIN_DIR DATA_DIR WORK_DIR
 set -u
 bin=$1
 data=$2
@@ -32,7 +32,7 @@ meshed() { # meshed FILE SWITCHES VERTICES TRIANGLES
     found="$(first_count "$base.node") $(first_count "$base.ele")"
     [ "$found" = "$3 $4" ] || fault "$1 $2: vertices, triangles $found instead of $3 $4"
     convex=""
-    case $2:$4 in *:0) ;; *c*:* | -Q:*) convex=--convex ;; esac # carved whole, nothing is convex
+    case $2:$4 in *:0) ;; *c*:* | -Q:*) convex=--convex ;; esac # an empty mesh has no hull
     # shellcheck disable=SC2086 # one word or none
     "$bin/trianglecheck" --poly "$1" $convex "$base" >out.txt 2>&1 || fault "$1 $2: trianglecheck: $(tail -n 1 out.txt)"
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Exact arithmetic survives whatever compiler options there are: what would break it is refused where a file is compiled
-# by hand, and loses against the options of CMake.
+# Exact arithmetic does not depend on compiler options. Options that would break it are refused when a file is compiled
+# by hand, and overridden by the options of CMake.
 # Usage: run_flags.sh SOURCE_ROOT WORK_DIR CMAKE C_COMPILER CXX_COMPILER
 set -u
 root=$1
@@ -32,7 +32,7 @@ for option in -ffast-math -Ofast -ffinite-math-only; do
     compiles geometry/predicates.c -O2 $option && fault "predicates.c compiles with $option"
     grep -q 'fast-math' by_hand.log || fault "$option is refused for another reason: $(head -n 3 by_hand.log)"
 done
-# The x87, where the compiler has it; what s390x compilers call 1 is fit for use.
+# The x87, if the compiler supports it. The evaluation method 1 of s390x compilers is acceptable.
 if [ "$(evaluation -mfpmath=387)" = 2 ]; then
     compiles geometry/predicates.c -mfpmath=387 && fault "predicates.c compiles for the x87"
     grep -q 'rounded to double' by_hand.log || fault "the x87 is refused for another reason: $(head -n 3 by_hand.log)"
@@ -48,7 +48,7 @@ EOF
     [ $? -eq $((method == 2)) ] || fault "FLT_EVAL_METHOD $method: $(head -n 3 by_hand.log)"
 done
 
-# --- by CMake: what is compiled, and what linking adds
+# --- by CMake: options for compiling, and those added for linking
 options="-Ofast -ffast-math -funsafe-math-optimizations -ffp-contract=fast"
 "$cmake" -S "$root" -B build -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_BUILD_TYPE=None \
     -DCMAKE_C_FLAGS="$options" -DCMAKE_CXX_FLAGS="$options" >configure.log 2>&1 || fault "cmake: $(tail -n 3 configure.log)"
@@ -57,11 +57,11 @@ commands=$(grep '"command":' build/compile_commands.json)
 loser=$(echo "$commands" | grep -vE ' -ffast-math .* -fno-fast-math .*-ffp-contract=off ' | head -n 1)
 [ -z "$loser" ] || fault "options of the user win: $loser"
 echo "$commands" | grep -q -e ' -Ofast ' && fault "-Ofast reaches the compiler"
-# As JSON has it: a backslash before quotes and backslashes.
+# As in JSON: quotes and backslashes are escaped by a backslash.
 command=$(echo "$commands" | sed -n 's/.*"command": "\(.*predicates\.c.*\)",*$/\1/p' | sed 's/\\\(["\\]\)/\1/g')
 sh -c "cd build && $command" ||
     fault "predicates.c does not compile by CMake with $options"
-link=build/CMakeFiles/checkerboard.dir/link.txt # where make builds
+link=build/CMakeFiles/checkerboard.dir/link.txt # for make builds
 if [ -f $link ]; then
     grep -q -e ' -funsafe-math-optimizations .* -fno-fast-math -fno-unsafe-math-optimizations ' $link ||
         fault "options of the user win when linking: $(cat $link)"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles triangle/dropin/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice,
+# Compiles triangle/dropin/triangle.h in every way in which known clients include Triangle's header: alone, twice,
 # within a namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the
 # other public headers in C++.
 # Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
@@ -9,12 +9,12 @@ work=$2
 cc=$3
 cxx=$4
 mkdir -p "$work/only"
-cp "$root/triangle/dropin/triangle.h" "$work/only/" # nothing else can be included from here
+cp "$root/triangle/dropin/triangle.h" "$work/only/" # no other header can be included from here
 cd "$work" || exit 2
 failed=0
 count=0
 
-# What a client does. REAL_TYPE is the type that the fields must have.
+# Typical code of a client. REAL_TYPE is the type that the fields must have.
 body='
 static void use(struct PREFIXtriangulateio *in, struct PREFIXtriangulateio *out, REAL_TYPE *xy, int *list)
 {
@@ -49,7 +49,8 @@ try() {
     fi
 }
 
-# client PREFIX REAL_TYPE PRELUDE: writes client.c and client.cpp; in the latter the struct goes by its plain name.
+# client PREFIX REAL_TYPE PRELUDE: writes client.c and client.cpp. In client.cpp the struct is named without the
+# keyword.
 client() {
     printf '%s\n%s\n' "$3" "$body" | sed "s/PREFIX/$1/g; s/REAL_TYPE/$2/g" >client.c
     sed 's/struct \([a-z:]*triangulateio\)/\1/g; s/= {0}/= {}/' client.c >client.cpp
@@ -143,7 +144,7 @@ $real
     in_cxx yes
 done
 
-# A coordinate type that the library does not have.
+# A coordinate type that the library was not built with.
 client '' float '#define REAL float
 #include "triangle.h"'
 in_c no
@@ -154,7 +155,7 @@ client '' double '#define SINGLE
 in_c no
 in_cxx no
 
-# The library's own headers, in clients that take no warning, and what they declare has C linkage.
+# The library's own headers, in clients compiled without warnings. All declarations have C linkage.
 headers=$(sed -n 's/^ *include\/\(ptriangle\/[a-z_]*\.h\).*/\1/p' "$root/cmake/sources.cmake")
 [ "$(echo "$headers" | wc -l)" -eq 5 ] || { echo "header: there are not five public headers"; failed=1; }
 cp -r "$root/include/ptriangle" only/

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws a mesh of two triangles in every way, and sees to it that colours, sizes, refusals and exit codes are right.
+# Draws a mesh of two triangles in every way, and checks colours, sizes, refusals and exit codes.
 # Usage: run_meshplot.sh BIN_DIR WORK_DIR
 set -u
 plot=$1/meshplot
@@ -11,11 +11,11 @@ fault() {
     faults=$((faults + 1))
 }
 
-draws() { # draws OPTION...: exit code 0
+draws() { # draws OPTION...: expects exit code 0
     "$plot" mesh.1 "$@" >out.txt 2>&1 || fault "$*: exit code $?: $(head -n 1 out.txt)"
 }
 
-refuses() { # refuses CODE OPTION...: that exit code, a word on stderr, no picture
+refuses() { # refuses CODE OPTION...: expects that exit code, a message on stderr, and no picture
     wanted=$1
     shift
     rm -f no.*
@@ -27,14 +27,14 @@ refuses() { # refuses CODE OPTION...: that exit code, a word on stderr, no pictu
     [ -z "$left" ] || fault "$*: left $left"
 }
 
-fills() { # fills FILE: different fill colours of the polygons in an SVG
+fills() { # fills FILE: number of different fill colours of the polygons in an SVG
     grep '<path' "$1" | grep -o 'fill[:=]"*rgb([^)]*)' | sort -u | wc -l
 }
 
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work" || exit 2
-echo leak:libfontconfig >suppressions.txt # what LeakSanitizer finds there is not ours
+echo leak:libfontconfig >suppressions.txt # leaks that LeakSanitizer finds there are not ours
 export LSAN_OPTIONS="suppressions=$work/suppressions.txt:print_suppressions=0"
 printf '4 2 0 0\n1 0 0\n2 4 0\n3 4 1\n4 0 3\n' >mesh.1.node
 printf '2 3 1\n1 1 2 3 7\n2 1 3 4 9\n' >mesh.1.ele
@@ -55,7 +55,7 @@ for colour in quality area region block; do
 done
 [ "$(fills none.svg)" -eq 1 ] || fault "none.svg has $(fills none.svg) colours instead of 1"
 
-# More triangles than are drawn: densities, unless the window shows few enough.
+# More triangles than are drawn one by one: densities, unless the window contains few enough.
 export PTRIANGLE_TEST_TRIANGLES=1
 draws -o many.png --size 300 --color area
 grep -q '^meshplot: there are more than 1 triangles to show: a picture of densities' out.txt || fault "not a word of it"
@@ -68,14 +68,14 @@ unset PTRIANGLE_TEST_TRIANGLES
 width=$(od -An -tu1 -j16 -N4 quality.png | awk '{ print $1 * 16777216 + $2 * 65536 + $3 * 256 + $4 }')
 [ "$width" = 300 ] || fault "quality.png is $width pixels wide instead of 300"
 
-# A window that shows the upper triangle alone, deep inside it.
+# A window deep inside the upper triangle.
 draws -o window.svg --window 0.4,1.4,0.5,1.5 --edges off --segments off --legend off
 [ "$(fills window.svg)" -eq 1 ] || fault "window.svg has $(fills window.svg) colours instead of 1"
 draws -o deep.png --window 0.4,1.4,0.400000000001,1.400000000001 --edges on --mark 0,0,1,1 --title deep
 cp mesh.1.node points.node
 cp mesh.1.node loose.node
 cp mesh.1.ele loose.ele
-printf '0 2 0 1\n1 1\n1 -7 2 1\n0\n' >loose.poly # the place of no vertex is not looked up
+printf '0 2 0 1\n1 1\n1 -7 2 1\n0\n' >loose.poly # the coordinates of the missing vertex are not read
 "$plot" loose -o loose.svg >out.txt 2>&1 || fault "a segment that names no vertex: $(head -n 1 out.txt)"
 "$plot" points -o points.png >out.txt 2>&1 || fault "points alone: $(head -n 1 out.txt)"
 
@@ -89,14 +89,14 @@ refuses 1 missing -o no.png
 printf '2 3 0\n1 1 2 3\n' >mesh.1.ele
 refuses 1 mesh.1 -o no.png
 
-# a signal while it waits for its input, from a pipe: its number, one line, no file
+# a signal while it reads its input from a pipe: exit code 128 + number, one line, no file
 mkfifo held.node
 cp mesh.1.ele held.ele
 "$plot" held -o no.png >out.txt 2>err.txt &
 job=$!
 (sleep 60 && : <held.node) >/dev/null 2>&1 & # the next line waits for a reader
 guard=$!
-exec 3>held.node # once it has begun to read
+exec 3>held.node # returns once the program has begun to read
 kill $guard
 kill -TERM $job
 wait $job

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Real ranks: the client tests/client/ranks.c under every MPI of this machine, with more ranks than cores, on inputs of
+# Real ranks: runs the client tests/client/ranks.c under every installed MPI, with more ranks than cores, on inputs of
 # several kinds. A hang is a failure: each run has a time limit.
-# Usage: run_mpi.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER "RANKS..." [OPTIONS...]; one number of ranks: one input
+# Usage: run_mpi.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER "RANKS..." [OPTIONS...]
+# With a single number of ranks, only one input is tested.
 set -u
 root=$1
 build=$2
@@ -17,7 +18,7 @@ OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader,tcp OMPI_MCA_mpi_yie
 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # from OpenMPI 5 on
 export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMP_NUM_THREADS
-OMPI_CC=$compiler MPICH_CC=$compiler # that of the libraries: it knows their OpenMP
+OMPI_CC=$compiler MPICH_CC=$compiler # the compiler of the libraries, which matches their OpenMP
 export OMPI_CC MPICH_CC OMPI_MCA_rmaps_base_oversubscribe OMPI_MCA_btl OMPI_MCA_mpi_yield_when_idle
 
 # try WANTED_CODE RANKS FILE ANGLE AREA
@@ -44,7 +45,7 @@ for mpi in openmpi mpich; do
         { failed=1; continue; }
     for n in $counts; do
         try 0 "$n" "$root/data/letter.poly" 30 0.0005
-        [ "$counts" != "$n" ] || continue # one number alone: a quick look
+        [ "$counts" != "$n" ] || continue # a single number: a quick test
         try 0 "$n" "$root/data/coast/norway_sea.poly" 25 5e6
         try 0 "$n" "$root/data/square.poly" 33 0.00001
         try 0 "$n" "$root/data/section.poly" 30 0.005

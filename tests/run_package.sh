@@ -1,6 +1,7 @@
 #!/bin/sh
-# The package as others take it: static from a build that is there, shared from one of its own, and as a subproject.
-# Clients are a project of C++ alone, the C clients of tests/client/, and what pkg-config says.
+# Builds the package in the forms that users need: static from an existing build, shared from a build of its own, and as
+# a subproject. Clients are a project in pure C++, the C clients of tests/client/, and commands built from pkg-config's
+# output.
 # Usage: run_package.sh SOURCE_ROOT BUILD_DIR WORK_DIR CMAKE C_COMPILER CXX_COMPILER
 set -eu
 root=$1
@@ -13,7 +14,7 @@ client=$root/tests/client
 
 fail() { echo "package: $*" >&2; exit 1; }
 
-# errors LOG: what went wrong in a build of several jobs, whose last lines may be those of a job that went well
+# errors LOG: prints the errors of a parallel build, whose last lines may belong to a job that succeeded
 errors() { grep -iE -A 2 'error|undefined' "$1" | head -n 20; tail -n 5 "$1"; }
 
 configure() { # configure FOLDER OPTION...
@@ -23,7 +24,7 @@ configure() { # configure FOLDER OPTION...
         >"$folder.log" 2>&1 || fail "$folder: $(tail -n 5 "$folder.log")"
 }
 
-use() { # use PREFIX FOLDER: builds and runs all clients against the package there
+use() { # use PREFIX FOLDER: builds and runs all clients with the package installed there
     "$cmake" -S "$client/cxx" -B "$2/cxx" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$1" >"$2.cxx.log" 2>&1 ||
         fail "find_package in C++: $(tail -n 5 "$2.cxx.log")"
     "$cmake" --build "$2/cxx" >>"$2.cxx.log" 2>&1 || fail "clients in C++: $(tail -n 20 "$2.cxx.log")"
@@ -52,20 +53,20 @@ echo "== shared, under another prefix of names"
 configure shared -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_PROGRAMS=OFF -DPTRIANGLE_PREFIX=pt-
 "$cmake" --build shared --parallel 2 >shared.log 2>&1 || fail "shared: $(errors shared.log)"
 "$cmake" --install shared --prefix "$work/staged" >install.log
-mv staged prefix # an installed tree may be moved
+mv staged prefix # an installed tree can be moved
 [ -z "$(find prefix -name '*.a')" ] || fail "static libraries among the shared ones"
-ln -s pt-triangle.h prefix/include/triangle.h # the clients know it by this name
+ln -s pt-triangle.h prefix/include/triangle.h # the clients include it by this name
 libraries=$(dirname "$(find prefix -name libptriangle.so)")
 mkdir shared_clients
 use "$work/prefix" shared_clients
 for name in pt-triangle tritext tricheck ptriangle ptriangle-mpi; do
-    [ "$name" != ptriangle-mpi ] || [ -e "$libraries/lib$name.so" ] || continue # where there is no MPI
+    [ "$name" != ptriangle-mpi ] || [ -e "$libraries/lib$name.so" ] || continue # skipped without MPI
     [ -e "$libraries/lib$name.so.0.1.0" ] || fail "no lib$name.so.0.1.0"
     readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.0\.1\]" || fail "soname of $name"
     nm -D --defined-only "$libraries/lib$name.so" | awk '{ print $3 }'
 done | sort -u >exported.txt
 absent=none
-[ -e "$libraries/libptriangle-mpi.so" ] || absent=par_stream_on # all that the library for MPI exports
+[ -e "$libraries/libptriangle-mpi.so" ] || absent=par_stream_on # the one extra name that the library for MPI exports
 sed -n 's/^ *\([a-z0-9_]*\);.*$/\1/p' "$root/cmake/exports.map" | grep -vx $absent | sort >listed.txt
 diff listed.txt exported.txt || fail "what is exported is not what is listed"
 for name in $(sed -n 's/^ *\(\(tri\|par\)_[a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map" | grep -vx $absent); do
@@ -76,7 +77,7 @@ LD_LIBRARY_PATH=$work/$libraries
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
 [ "$(pkg-config --modversion pt-triangle)" = 0.1.0 ] || fail "version of pt-triangle.pc"
 for package in pt-triangle ptriangle; do
-    eval "set -- $(pkg-config --cflags --libs $package)" # words as for a shell
+    eval "set -- $(pkg-config --cflags --libs $package)" # split into words by a shell
     "$cc" -std=c11 "$client/dropin.c" "$@" -o by_hand
     ./by_hand | cmp - shared_clients.sequential
 done
@@ -98,7 +99,7 @@ alone/bin/pt-trianglecheck square.1 --poly square.poly --min-angle 30 --quiet
 PKG_CONFIG_PATH=$(dirname "$(find "$work/alone" -name pt-triangle.pc)")
 export PKG_CONFIG_PATH
 mkdir alone/as_triangle
-cp alone/include/pt-triangle.h alone/as_triangle/triangle.h # the client knows it by this name
+cp alone/include/pt-triangle.h alone/as_triangle/triangle.h # the client includes it by this name
 for package in pt-triangle ptriangle; do
     eval "set -- $(pkg-config --cflags --libs $package)"
     "$cc" -std=c11 "$client/dropin.c" -Ialone/as_triangle "$@" -o by_hand

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Runs the examples of README.md, which has at most 9,000 characters, and of docs/*.md as they stand:
+# Runs the examples of README.md, which may have at most 9,000 characters, and of docs/*.md without changes:
 # - Lines indented by four blanks that begin with one of the programs run on the files of data/ and must return 0. Runs
-#   that make a million triangles and more get --dry-run and no --resume. Launchers (srun, mpirun) are left out.
-# - Blocks ```sh run as scripts, those of one document in one folder, with the files of data/ in it and in data/ below.
-#   If a block ```text follows, each of its lines must occur in the output, in this order, except lines `...`.
+# that make a million triangles or more get --dry-run and no --resume. Launchers (srun, mpirun) are removed.
+# - Blocks ```sh run as scripts. Those of one document share a folder, with the files of data/ in it and in data/ below.
+# If a block ```text follows, each of its lines must occur in the output, in this order, except lines `...`.
 # - Blocks whose first line names a file (```c plate.c) are written to that file in the folder of the document.
 # Usage: run_readme.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER [CMAKE]
 set -u
@@ -28,7 +28,7 @@ PATH=$build/bin:$PATH
 
 [ "$(wc -m <"$root/README.md")" -le 9000 ] || fault "README.md has more than 9,000 characters"
 
-# Lines of code, with the next one where they end in a backslash, from the name of the program on.
+# Lines of code from the name of the program on, joined with the next line if they end in a backslash.
 sed -e :join -e '/\\$/{' -e N -e 's/ *\\\n */ /' -e 'b join' -e '}' "$root/README.md" "$root"/docs/*.md |
     sed -nE 's/^ {4,}((srun|mpirun) .* )?((triangle|ptriangle|trianglecheck|meshplot) .*)/\3/p' |
     sed -E 's/#.*//; /1\.73e-9|a0\.0001 /{ s/$/ --dry-run/; s/ --resume [a-z]+//; }' >commands.txt
@@ -42,7 +42,7 @@ while read -r program arguments; do
     fault "$program $arguments: exit code $code: $(tail -n 1 out.txt)"
 done <commands.txt
 
-# blocks DOCUMENT: its files, and N.sh and N.txt for each script and the output that it shows.
+# blocks DOCUMENT: writes its files, and N.sh and N.txt for each script and its expected output.
 blocks() {
     awk '
         /^```/ && inside { close(file); inside = 0; next }
@@ -66,14 +66,14 @@ blocks() {
         inside { print >file }' "$1"
 }
 
-# shows OUTPUT EXPECTED: the first line of EXPECTED that OUTPUT lacks, or has too early
+# shows OUTPUT EXPECTED: prints the first line of EXPECTED that is missing from OUTPUT or occurs too early
 shows() {
     awk 'NR == FNR { have[++n] = $0; next }
         $0 == "..." || $0 == "" { next }
         { for (i++; i <= n && have[i] != $0; i++); if (i > n) { print; exit } }' "$1" "$2"
 }
 
-# needed SCRIPT: the first program that the script runs and this machine or build lacks
+# needed SCRIPT: prints the first program that the script runs and that this machine or build does not have
 needed() {
     for program in triangle ptriangle trianglecheck meshplot; do
         ! grep -qE "^$program " "$1" || [ -x "$build/bin/$program" ] || { echo "$program"; return; }

@@ -1,5 +1,5 @@
-"""The Spack recipe is right Python, and names options that CMake has. Spack itself is not needed: its words are stood
-in for.
+"""Checks that the Spack recipe is valid Python and uses only options that CMake defines. Spack itself is not needed:
+its functions are replaced by stubs.
 
 Usage: spack_recipe.py SOURCE_ROOT
 """
@@ -11,7 +11,7 @@ import types
 
 
 class CMakePackage:
-    """Takes the place of Spack's: notes what is defined."""
+    """Stub for a function of Spack. Records the definitions."""
 
     def __init__(self, on):
         self.spec = types.SimpleNamespace(satisfies=lambda text: on == (text[0] == "+"))

@@ -1,4 +1,4 @@
-/* See the header. A generator has a tangle with ROOM for points and segments, and fills it. */
+/* See the header. A generator receives a tangle with ROOM for points and segments, and fills it. */
 #include "tangles.h"
 
 enum { ROOM = 700 };
@@ -43,14 +43,14 @@ static void add_random_points(struct tangle *t, int32_t n, double low, double hi
     }
 }
 
-/* A rounded point of the unit circle: a turn about it is a rotation but for rounding. */
+/* A rounded point of the unit circle. Rotations about it are exact up to rounding. */
 static struct tri_point direction(struct tangle *t)
 {
     double s = between(t, -1, 1), square = s * s, turn = below(t, 2) ? 1 : -1;
     return (struct tri_point){turn * (1 - square) / (1 + square), turn * 2 * s / (1 + square)};
 }
 
-/* The rounded point at a fraction of the way from point a to point b. */
+/* The rounded point at the given fraction of the way from point a to point b. */
 static struct tri_point part_way(const struct tangle *t, int32_t a, int32_t b, double fraction)
 {
     const double *p = t->pslg.points + 2 * a, *q = t->pslg.points + 2 * b;
@@ -93,7 +93,7 @@ static void turned_grid(struct tangle *t)
     add_random_segments(t, 3 * side);
 }
 
-/* Parts of one segment, up to rounding, and what crosses them. */
+/* Parts of one segment, up to rounding, and segments that cross them. */
 static void overlaps(struct tangle *t)
 {
     add_random_points(t, 2, 0, 10);
@@ -111,7 +111,7 @@ static void overlaps(struct tangle *t)
     }
 }
 
-/* Coordinates from 2^10 to 2^52: in the end a handful of places. */
+/* Coordinates from 2^10 to 2^52. At the upper end only a handful of positions exist. */
 static void far_away(struct tangle *t)
 {
     double offset = ldexp(1, 10 + below(t, 43));
@@ -133,7 +133,7 @@ static void ulps_around_a_line(struct tangle *t)
     add_random_segments(t, t->pslg.n_points);
 }
 
-/* Long segments past a small figure at the origin, where coordinates are much finer than at their ends. */
+/* Long segments that pass a small figure at the origin, where coordinates are much finer than at their ends. */
 static void mixed_scales(struct tangle *t)
 {
     double size = ldexp(1, -below(t, 60));
@@ -162,7 +162,7 @@ static void random_segments(struct tangle *t)
     add_random_segments(t, t->pslg.n_points);
 }
 
-/* A polygon, and another with corners on its sides, rounded to a grid: an overlay of two maps. */
+/* A polygon, and another with corners on the first one's sides, rounded to a grid: an overlay of two maps. */
 static void rounded_copy(struct tangle *t)
 {
     int32_t n = 5 + below(t, 15);
@@ -182,7 +182,7 @@ static void rounded_copy(struct tangle *t)
     }
 }
 
-/* A long segment that hundreds cross, which hardly cross each other. */
+/* A long segment crossed by hundreds of others, which rarely cross each other. */
 static void many_across(struct tangle *t)
 {
     add_point(t, -3, -1 - unit(t));

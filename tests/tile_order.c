@@ -1,4 +1,5 @@
-/* Neighbours in the arrays are compared by keys; for places along a curve there is the sort that has a test itself. */
+/* Neighbours in the arrays are compared by keys. Positions along a curve are sorted by the sort that has its own
+   test. */
 #include "tile_order.h"
 
 #include "support.h"
@@ -22,14 +23,14 @@ static void assert_before(const int64_t a[3], const int64_t b[3])
     assert_true(a[k] < b[k]);
 }
 
-/* Vertices first .. end - 1 are those of one tile. */
+/* Vertices first .. end - 1 belong to one tile. */
 static void assert_along_a_curve(const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
     size_t n = (size_t)(end - first);
     int32_t *order = malloc((n + 1) * sizeof *order);
     uint64_t *scratch = malloc((2 * n + 1) * sizeof *scratch);
     assert_true(order && scratch);
-    for (size_t i = 0; i < n; i++) /* the sort must not find them in order */
+    for (size_t i = 0; i < n; i++) /* reversed, so that the sort has work to do */
         order[i] = end - 1 - (int32_t)i;
     tri_hilbert_order_coarse(mesh->xy, order, (int32_t)n, scratch);
     for (size_t i = 0; i < n; i++)

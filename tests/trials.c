@@ -11,7 +11,7 @@ static double total_area(const struct tri_mesh *mesh)
     return sum * mesh->unit * mesh->unit;
 }
 
-/* For about so many triangles, over a mesh. */
+/* Lengths that give about the target number of triangles over a mesh. */
 static struct tri_lengths *lengths_for(const struct tri_mesh *mesh, double target)
 {
     const double h = 0.55 * sqrt(total_area(mesh) / (TRI_EQUILATERAL * target)), value[] = {h, 3 * h, h, 3 * h};
@@ -61,6 +61,7 @@ struct start trials_start_of(const struct trial *trial)
 
 void trials_free(struct start *start)
 {
-    tri_lengths_free((struct tri_lengths *)start->options.quality.lengths); /* borrowed by all but this file */
+    tri_lengths_free((struct tri_lengths *)start->options.quality.lengths); /* only this file owns the lengths; all
+                                                                               other files borrow them */
     tri_pslg_free(&start->pslg);
 }

@@ -1,4 +1,4 @@
-/* Input of a fuzz target as a stream of small choices; behind its end all are 0. */
+/* Reads the input of a fuzz target as a stream of small choices. After its end, all choices are 0. */
 #ifndef TESTS_FUZZ_BYTES_H
 #define TESTS_FUZZ_BYTES_H
 
@@ -24,8 +24,8 @@ static inline double bytes_double(struct bytes *b)
     return x;
 }
 
-/* A coordinate: a small whole number, one decimal, a number within some ulps of one decimal, or any double at all,
- * which may be infinite or not a number. */
+/* A coordinate: a small integer, a number with one decimal, a number within some ulps of such a number, or any double,
+ * including infinities and NaN. */
 static inline double bytes_coordinate(struct bytes *b, int32_t mode)
 {
     switch (mode) {

@@ -1,6 +1,6 @@
-/* Fuzz target: from a planar straight line graph to a mesh, judged as in tests/torture. Compiled a second time with
- * FUZZ_SCHEDULE, it refines by the schedule with tiny cells, on one thread and on three. Kinds of faults that the
- * environment variable PTRIANGLE_FUZZ_IGNORE names, with commas between them, are let pass. */
+/* Fuzz target: makes a mesh of a planar straight line graph and checks it as in tests/torture. It is compiled a second
+ * time with FUZZ_SCHEDULE, which refines by the schedule with tiny cells, on one thread and on three. The environment
+ * variable PTRIANGLE_FUZZ_IGNORE lists kinds of faults to ignore, separated by commas. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -28,7 +28,7 @@ static void take_figure(struct bytes *b, struct figure *f)
     for (int32_t i = 0; i < points; i++)
         take_point(b, f, mode);
     for (int32_t i = 0; i < segments; i++) {
-        int32_t from = bytes_below(b, points + 1) - 1, to = bytes_below(b, points); /* -1 names no point */
+        int32_t from = bytes_below(b, points + 1) - 1, to = bytes_below(b, points); /* -1 refers to no point */
         figure_segment(f, from, to);
     }
     for (int32_t i = 0; i < holes; i++) {
@@ -63,7 +63,7 @@ static void take_switches(struct bytes *b, struct torture_case *c)
     c->block = SCHEDULE ? 20 << (angle / 34) : 0;
 }
 
-/* Figures all of whose coordinates are subnormal are. */
+/* Figures whose coordinates are all subnormal are refused. */
 static bool is_refused(const struct tri_pslg *pslg)
 {
     struct tri_mesh mesh;

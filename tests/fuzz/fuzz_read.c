@@ -1,6 +1,6 @@
-/* Fuzz target: the readers of text files. The first byte chooses format and options, the second the length of chunks;
- * the rest is the file, or two files with a zero byte between them. Whatever it holds, the reader returns, and reads
- * the same whichever way the text is cut into chunks. */
+/* Fuzz target: the readers of text files. The first byte selects format and options, the second the length of chunks.
+ * The rest is the file, or two files separated by a zero byte. For any content the reader returns, and its result does
+ * not depend on the division into chunks. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -83,7 +83,7 @@ static void compare(const struct reading *a, const struct reading *b)
             "so do numbers");
 }
 
-/* What the headers promise of what has been read. */
+/* Checks the promises that the headers make about content that was read. */
 static void judge(const struct reading *r)
 {
     const struct tri_pslg *p = &r->pslg;

@@ -1,6 +1,6 @@
-/* Fuzz target: fields of lengths in files. The first byte chooses the format, the rest is the file. Whatever it holds,
- * the reader returns a field whose numbers are those of points, or one sentence; and of a field that the mesher takes
- * each length is above 0. */
+/* Fuzz target: fields of lengths in files. The first byte selects the format, the rest is the file. For any content the
+ * reader returns a field with valid indices, or one sentence. If the mesher accepts the field, each length is
+ * positive. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-/* Fuzz target: triangulate() with any switches and any arrays that its contract allows. Whatever they hold, it returns;
- * after an error nothing has changed; else, where no mesh was given (which may overlap itself), the output is a
- * mesh. */
+/* Fuzz target: triangulate() with any switches and any arrays that its contract allows. For any content it returns.
+ * After an error nothing has changed. Otherwise the output is a mesh, unless the input was a mesh, which may overlap
+ * itself. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -29,7 +29,7 @@ static void take_reals(struct bytes *b, double *to, int n, int32_t mode)
 static void take_indices(struct bytes *b, int *to, int n, int points)
 {
     for (int i = 0; i < n; i++)
-        to[i] = bytes_below(b, points + 3) - 1; /* some name no point */
+        to[i] = bytes_below(b, points + 3) - 1; /* some ends refer to no point */
 }
 
 static void take_arrays(struct bytes *b, struct arrays *a)
@@ -65,7 +65,7 @@ static void take_arrays(struct bytes *b, struct arrays *a)
     in->regionlist = a->regions;
 }
 
-/* Letters, numbers and noise; at the end a limit on points, so that each run is short. */
+/* Letters, numbers and noise, followed by a limit on points, so that each run is short. */
 static void take_switches(struct bytes *b, char *to, size_t size)
 {
     static const char *const words[] = {"p", "r", "q", "q20", "q30", "q33.5", "a", "a1", "a0.01", "u", "A", "c",
@@ -97,8 +97,8 @@ static void require(bool condition, const char *what, const char *switches)
 
 static bool is_mesh_fault(int kind) { return kind <= TRI_CHECK_OVERLAP; }
 
-/* Do all coordinates that are not 0 have about the same size? Where not, the smallest count as 0, but are handed back
- * as they came. */
+/* Do all nonzero coordinates have about the same magnitude? If not, the smallest count as 0, but are returned
+ * unchanged. */
 static bool is_even(const struct triangulateio *out)
 {
     double least = INFINITY, largest = 0;
@@ -110,7 +110,7 @@ static bool is_even(const struct triangulateio *out)
     return least >= largest * 0x1p-200;
 }
 
-/* The triangles are a mesh of the points. */
+/* Checks that the triangles are a mesh of the points. */
 static void judge(const struct triangulateio *out, const char *switches)
 {
     int32_t base = strchr(switches, 'z') ? 0 : 1, n = out->numberoftriangles;
@@ -137,7 +137,7 @@ static void free_all(struct triangulateio *io)
                       io->triangleattributelist, io->trianglearealist, io->neighborlist, io->segmentlist,
                       io->segmentmarkerlist, io->edgelist, io->edgemarkerlist, io->normlist};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-        trifree(arrays[i]); /* holes and regions are the input's */
+        trifree(arrays[i]); /* holes and regions belong to the input */
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

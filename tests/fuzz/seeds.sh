@@ -1,12 +1,12 @@
 #!/bin/sh
-# Makes the seed corpora of the fuzz targets: the small files of data/ behind the two bytes that choose how they are
-# read, and a few beginnings for the others. Usage: seeds.sh DATA_DIR CORPUS_DIR
+# Makes the seed corpora of the fuzz targets: the small files of data/, preceded by the two bytes that select how to
+# read them, and a few seeds for the other targets. Usage: seeds.sh DATA_DIR CORPUS_DIR
 set -eu
 data=$1
 corpus=$2
 mkdir -p "$corpus/read" "$corpus/sizes" "$corpus/triangulate" "$corpus/mesh" "$corpus/schedule"
 
-seed() { # seed BYTES FILE...: one seed of these bytes and the files
+seed() { # seed BYTES FILE...: makes one seed of these bytes and the files
     name=$(basename "$2" | tr . _)_$(printf '%s' "$1" | tr -dc 0-9)
     { printf "$1" && shift && cat "$@"; } >"$corpus/read/$name"
 }
@@ -21,8 +21,8 @@ printf '\003\0011 6 1\n1 1 2 3 4 5 6 0.5\n' >"$corpus/read/ele6"
 printf '\004\0102 3 0\n1 1 2 3\n2 3 2 4\n\0002\n1 0.5\n2 -1\n' >"$corpus/read/area"
 printf '\002\0100 2 0 0\n3 0\n1 1 2\n2 2 3\n3 3 1\n0\n\0003 2 0 0\n1 0 0\n2 1 0\n3 0 1\n' >"$corpus/read/poly_node"
 
-# A square with a diagonal and a crossing; points of one decimal in rows; the same for triangulate() with all it can
-# write.
+# A square with a diagonal and a crossing; points with one decimal in rows; the same for triangulate() with all its
+# outputs.
 for target in mesh schedule; do
     printf '\000\003\006\001\001\000\000\007\000\007\007\000\007\003\001\005\006\001\003\001\002\002\003\003\004\000\001\002\003\004\004\005\005\030\024\020' \
         >"$corpus/$target/square"

@@ -1,4 +1,4 @@
-/* Draws the figure, a change to all of it, and switches. */
+/* Draws the figure, a transformation of the whole figure, and switches. */
 #include "tests/torture/case.h"
 
 #include "triangle/text/read.h"
@@ -51,8 +51,7 @@ static void map_points(double *points, int32_t n, size_t stride, const struct af
     }
 }
 
-/* A change to all of the figure, now and then: turned, stretched, moved, made larger or smaller, slanted; or rounded to
- * a grid. */
+/* Sometimes transforms the whole figure: rotated, stretched, moved, scaled, slanted, or rounded to a grid. */
 static void vary(struct figure *f)
 {
     struct tri_pslg *p = &f->pslg;
@@ -85,8 +84,8 @@ static void add_attributes(struct figure *f)
 
 /* --- switches */
 
-/* An area bound so that the figure has no more than some thousand triangles, and regions no more than some ten
- * thousand; 0 where an area has no ordinary number. */
+/* An area bound that limits the figure to a few thousand triangles and regions to some ten thousand. 0 if an area is
+ * not a normal number. */
 static double draw_area(struct figure *f)
 {
     struct figure_bounds b = figure_bounds(&f->pslg);
@@ -236,7 +235,7 @@ bool case_write(const struct torture_case *c, const char *path, const char *faul
     return fclose(out) == 0;
 }
 
-/* The reader's arrays as a figure, which owns and may shrink them. */
+/* The reader's arrays as a figure, which owns them and may shrink them. */
 bool case_read(struct torture_case *c, const char *path)
 {
     struct tri_read_options options = {.default_base = 1, .want_regions = true};

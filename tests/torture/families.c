@@ -1,4 +1,4 @@
-/* All families in one row. */
+/* All families in one array. */
 #include "tests/torture/families.h"
 
 static const struct family *const tables[] = {families_near, families_shape, families_map};

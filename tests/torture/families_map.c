@@ -1,4 +1,4 @@
-/* Maps: polygons that cover the plane, their borders written down more than once. */
+/* Maps: polygons that cover the plane, with borders that are stored more than once. */
 #include "tests/torture/families.h"
 
 enum { MOST_CELLS = 8 };
@@ -9,7 +9,7 @@ static void add_layer(struct figure *f, double y, int32_t attribute)
     figure_region(f, x, y, attribute, area);
 }
 
-/* Layers of ground between wavy lines, each a region with an area bound of its own. */
+/* Layers of soil between wavy lines, each a region with its own area bound. */
 static void make_layers(struct figure *f)
 {
     int32_t layers = figure_size(f, 2, 8), n = figure_whole(f, 1, 12), before = -1;
@@ -31,7 +31,7 @@ static void make_layers(struct figure *f)
     }
 }
 
-/* A map of n by n cells with corners out of place. */
+/* A map of n by n cells with displaced corners. */
 struct map {
     int32_t n;
     struct tri_point corner[MOST_CELLS + 1][MOST_CELLS + 1];
@@ -49,7 +49,7 @@ static struct map draw_map(struct figure *f, double size, double jitter)
     return map;
 }
 
-/* One side of a cell: its first corner, and sometimes points on it that the neighbour may not have. */
+/* One side of a cell: its first corner, and sometimes points that the neighbour may not have on this side. */
 static void draw_side(struct figure *f, struct tri_point a, struct tri_point b, double unit, double detail)
 {
     int32_t n = figure_chance(f, detail) ? figure_whole(f, 2, 5) : 1;
@@ -59,7 +59,7 @@ static void draw_side(struct figure *f, struct tri_point a, struct tri_point b, 
     }
 }
 
-/* Every cell a polygon of its own. */
+/* Makes every cell a polygon of its own. */
 static void draw_cells(struct figure *f, const struct map *map, double unit, double detail)
 {
     for (int32_t j = 0; j < map->n; j++) {
@@ -74,7 +74,7 @@ static void draw_cells(struct figure *f, const struct map *map, double unit, dou
     }
 }
 
-/* Slivers between borders that each neighbour has rounded on its own. */
+/* Slivers between borders that each neighbour has rounded separately. */
 static void make_slivers(struct figure *f)
 {
     double size = figure_power(f, 0, 3);
@@ -92,7 +92,7 @@ static void make_overlay(struct figure *f)
     }
 }
 
-/* The same map twice, the second time a little out of place. */
+/* The same map twice, the second time slightly displaced. */
 static void make_shifted_copy(struct figure *f)
 {
     double size = figure_power(f, 0, 2), shift = size * figure_ten_to(figure_whole(f, -17, -6));
@@ -107,7 +107,7 @@ static void make_shifted_copy(struct figure *f)
     draw_cells(f, &map, 0, 0.2);
 }
 
-/* Lines side by side, each drawn so often, a little out of place; in a grid every second one crosses the others. */
+/* Lines side by side, each drawn several times, slightly displaced. In a grid every second line crosses the others. */
 static void draw_hatching(struct figure *f, bool grid, int32_t copies, double shift)
 {
     struct tri_point turn = figure_on_circle(figure_chance(f, 0.3) ? 0 : figure_real(f, 0, 1));
@@ -126,7 +126,7 @@ static void draw_hatching(struct figure *f, bool grid, int32_t copies, double sh
         figure_box(f, -2, -2, 4, 4);
 }
 
-/* Borders that were computed twice or three times: hatchings, grids, maps. */
+/* Borders that were computed two or three times: hatchings, grids, maps. */
 static void make_doubled(struct figure *f)
 {
     int32_t kind = figure_whole(f, 0, 2), copies = figure_whole(f, 2, 3);
@@ -147,7 +147,7 @@ static void make_doubled(struct figure *f)
     }
 }
 
-/* Polygons that touch themselves: corners on sides, borders run twice, eights. */
+/* Polygons that touch themselves: corners on sides, borders traversed twice, figures of eight. */
 static void make_self_touching(struct figure *f)
 {
     int32_t n = figure_size(f, 4, 30), first = f->pslg.n_points;
@@ -157,7 +157,7 @@ static void make_self_touching(struct figure *f)
         figure_point(f, r * p.x, r * p.y);
     }
     figure_loop(f, first, n);
-    for (int32_t k = figure_size(f, 1, 6); k > 0; k--) { /* in to a side or a corner, and back */
+    for (int32_t k = figure_size(f, 1, 6); k > 0; k--) { /* inwards to a side or a corner, and back */
         int32_t side = figure_whole(f, first, first + n - 2), other = figure_whole(f, first, first + n - 2);
         struct tri_point p = figure_along(f, side, side + 1, figure_real(f, 0, 1));
         struct tri_point q = figure_along(f, other, other + 1, figure_real(f, 0, 1));

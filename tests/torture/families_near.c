@@ -1,8 +1,8 @@
-/* Near-degenerate figures: points within a few ulps of a segment, segments that overlap up to rounding, crossings
- * beside each other, circles through many points. */
+/* Near-degenerate figures: points within a few ulps of a segment, segments that overlap up to rounding, crossings close
+ * to each other, circles through many points. */
 #include "tests/torture/families.h"
 
-/* Random points in a box of so many units. */
+/* Random points in a box of the given size. */
 static void scatter(struct figure *f, int32_t n, double size)
 {
     for (int32_t i = 0; i < n; i++)
@@ -15,7 +15,7 @@ static void connect(struct figure *f, int32_t segments)
         figure_draw_segment(f, 0, f->pslg.n_points - 1);
 }
 
-/* Now and then a box around it all. */
+/* Sometimes adds a box around the figure. */
 static void enclose(struct figure *f)
 {
     struct figure_bounds b = figure_bounds(&f->pslg);
@@ -53,7 +53,7 @@ static void make_lattice(struct figure *f)
     connect(f, figure_size(f, 0, 30));
 }
 
-/* Points a few ulps off segments. */
+/* Points a few ulps away from segments. */
 static void make_near_segment(struct figure *f)
 {
     int32_t lines = figure_size(f, 1, 8), n = figure_size(f, 1, 30);
@@ -71,7 +71,7 @@ static void make_near_segment(struct figure *f)
     enclose(f);
 }
 
-/* Segments on one line, as far as rounding allows, and others that cross them. */
+/* Segments on one line, as exactly as rounding allows, and others that cross them. */
 static void make_overlaps(struct figure *f)
 {
     int32_t lines = figure_size(f, 1, 4);
@@ -135,7 +135,7 @@ static void make_rotated_grid(struct figure *f)
         int32_t column = figure_whole(f, 0, n), low = figure_whole(f, 0, m), high = figure_whole(f, 0, m);
         figure_segment(f, low * (n + 1) + column, high * (n + 1) + column);
     }
-    if (figure_chance(f, 0.5)) /* diagonals run through many points */
+    if (figure_chance(f, 0.5)) /* diagonals pass through many points */
         connect(f, figure_size(f, 1, 12));
     enclose(f);
 }
@@ -149,7 +149,7 @@ static void make_crossings(struct figure *f)
     enclose(f);
 }
 
-/* Bars across bars, no vertex where they cross; sometimes so near that crossings fall on one place. */
+/* Bars across bars, without vertices at their crossings, which sometimes fall onto one place. */
 static void make_crossing_grid(struct figure *f)
 {
     int32_t n = figure_size(f, 2, 15), m = figure_size(f, 2, 15);
@@ -165,7 +165,7 @@ static void make_crossing_grid(struct figure *f)
     }
 }
 
-/* Ends of segments on other segments, up to rounding. */
+/* Ends of segments that lie on other segments, up to rounding. */
 static void make_t_junctions(struct figure *f)
 {
     int32_t n = figure_size(f, 2, 30);
@@ -193,7 +193,7 @@ static void make_duplicates(struct figure *f)
         figure_point(f, same ? p.x : figure_ulps(p.x, 1), same ? p.y : figure_ulps(p.y, figure_whole(f, -1, 1)));
     }
     connect(f, figure_size(f, 3, 30));
-    for (int32_t i = figure_whole(f, 0, 5); i > 0; i--) { /* again, backwards, and to itself */
+    for (int32_t i = figure_whole(f, 0, 5); i > 0; i--) { /* duplicated, reversed, of length zero */
         const int32_t *v = f->pslg.segments + 2 * (size_t)figure_whole(f, 0, f->pslg.n_segments - 1);
         int32_t a = v[0], b = v[1];
         figure_segment(f, b, figure_chance(f, 0.8) ? a : b);
@@ -201,7 +201,7 @@ static void make_duplicates(struct figure *f)
     enclose(f);
 }
 
-/* Lines through one point, as far as rounding allows. */
+/* Lines through one point, as exactly as rounding allows. */
 static void make_concurrent(struct figure *f)
 {
     int32_t n = figure_size(f, 3, 25);
@@ -218,7 +218,7 @@ static void make_concurrent(struct figure *f)
     enclose(f);
 }
 
-/* A bundle of segments from nearly one place to nearly another. */
+/* A bundle of segments whose ends nearly coincide on each side. */
 static void make_bundle(struct figure *f)
 {
     int32_t n = figure_size(f, 2, 20);
@@ -234,7 +234,7 @@ static void make_bundle(struct figure *f)
     figure_box(f, -length, -length, 4 * length, 4 * length);
 }
 
-/* Few digits are left beside a large offset. */
+/* A large offset, which leaves few digits for the figure. */
 static void make_offset(struct figure *f)
 {
     int32_t n = figure_size(f, 4, 30), exponent = figure_whole(f, 10, 15);
@@ -250,7 +250,7 @@ static void make_offset(struct figure *f)
     enclose(f);
 }
 
-/* A chain of subdivided segments, and the straight segment between its ends. */
+/* A subdivided chain, and the straight segment between its ends. */
 static void make_chords(struct figure *f)
 {
     int32_t chains = figure_size(f, 1, 5);

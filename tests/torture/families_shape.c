@@ -1,7 +1,7 @@
-/* Figures that are hard to fill: small angles, thin gaps, many holes, sizes far apart. */
+/* Figures that are hard to mesh: small angles, thin gaps, many holes, very different sizes. */
 #include "tests/torture/families.h"
 
-/* An angle of 1e-12 to 10 degrees, as a wedge in a box or as a triangle of its own. */
+/* An angle of 1e-12 to 10 degrees, as a wedge in a box or as a separate triangle. */
 static void make_tiny_angle(struct figure *f)
 {
     int32_t wedges = figure_size(f, 1, 4);
@@ -90,7 +90,7 @@ static void make_star(struct figure *f)
         figure_box(f, -2, -2, 4, 4);
 }
 
-/* A hub whose incident end on a chain. */
+/* A hub whose segments end on a chain. */
 static void make_fan(struct figure *f)
 {
     int32_t n = figure_size(f, 3, 60);
@@ -137,7 +137,7 @@ static void make_holes(struct figure *f)
     }
 }
 
-/* Two borders that face each other across next to nothing. */
+/* Two borders opposite each other across a tiny gap. */
 static void make_thin_gap(struct figure *f)
 {
     int32_t n = figure_size(f, 1, 25), first = f->pslg.n_points;
@@ -168,7 +168,7 @@ static void make_zigzag(struct figure *f)
         figure_box(f, -1, -1, 0.1 * n + 2, 14);
 }
 
-/* Midpoints displaced, over and over. */
+/* Midpoints that are displaced repeatedly. */
 static void make_coast(struct figure *f)
 {
     enum { MOST = 1 << 9 };
@@ -206,7 +206,7 @@ static void make_spiral(struct figure *f)
         figure_box(f, -2, -2, 4, 4);
 }
 
-/* Fine features beside the origin of a large figure, where coordinates have more digits than elsewhere. */
+/* Fine details at the origin of a large figure, where coordinates have more digits than elsewhere. */
 static void make_mixed_scales(struct figure *f)
 {
     double large = figure_power(f, 2, 6), ratio = figure_power(f, -12, -3);
@@ -221,7 +221,7 @@ static void make_mixed_scales(struct figure *f)
     }
 }
 
-/* Ordinary figures at the ends of the range of numbers. */
+/* Ordinary figures at the ends of the range of floating-point numbers. */
 static void make_scale(struct figure *f)
 {
     int32_t exponent = figure_chance(f, 0.5) ? figure_whole(f, -300, 300) : figure_chance(f, 0.5) ? 300 : -300;
@@ -241,7 +241,7 @@ static void make_scale(struct figure *f)
         figure_hole(f, 0.9 * scale, 0.9 * scale);
 }
 
-/* Hole and region points far outside, and just outside. */
+/* Hole and region points far outside and just outside. */
 static void make_far_points(struct figure *f)
 {
     double size = figure_power(f, figure_chance(f, 0.3) ? -200 : -3, 3);
@@ -277,7 +277,7 @@ static void make_parabolas(struct figure *f)
         figure_box(f, -2, -3 * bulge - 1, 4, 6 * bulge + 2);
 }
 
-/* Points that lie closer and closer to a corner. */
+/* Points that approach a corner in decreasing steps. */
 static void make_graded(struct figure *f)
 {
     int32_t n = figure_size(f, 4, 60);

@@ -1,4 +1,4 @@
-/* Growing arrays, and chance. */
+/* Growing arrays, and random numbers. */
 #include "tests/torture/figure.h"
 
 #include <stdio.h>
@@ -15,7 +15,7 @@ static void *grown(void *old, int32_t n, size_t item)
     return array;
 }
 
-/* More room for what has n items; returns the new room. */
+/* Makes room for more than n items. Returns the new capacity. */
 static bool must_grow(struct figure *f, int what, int32_t n)
 {
     if (n < f->room[what])
@@ -37,7 +37,7 @@ void figure_free(struct figure *figure)
     *figure = (struct figure){0};
 }
 
-/* --- chance */
+/* --- random numbers */
 
 bool figure_chance(struct figure *f, double probability) { return support_unit(&f->random) < probability; }
 
@@ -88,7 +88,7 @@ double figure_ten_to(int32_t exponent)
     return exponent < 0 ? 1 / power : power;
 }
 
-/* Taylor series of an eighth of a turn, at most, and symmetry. */
+/* Taylor series for at most an eighth of a turn, extended by symmetry. */
 struct tri_point figure_on_circle(double turns)
 {
     turns -= floor(turns);

@@ -1,4 +1,4 @@
-/* The stages of a run, as the programs have them, each result before the judges. */
+/* The stages of a run, as in the programs. Each result is checked. */
 #include "tests/torture/judge.h"
 
 #include "sched/schedule/schedule.h"
@@ -30,9 +30,9 @@ static void enter(struct verdict *verdict, const char *stage)
     snprintf(verdict->stage, sizeof verdict->stage, "%s", stage);
 }
 
-/* --- making */
+/* --- making a mesh */
 
-/* Edges no longer than a fifth of the way to the corner of the figure, or than a hundredth of the figure. */
+/* Size test: no edge is longer than a fifth of its distance from the figure's corner, or a hundredth of the figure. */
 struct size_test {
     double corner[2], least2;
 };
@@ -76,7 +76,7 @@ static enum tri_status refine(struct outcome *o, int threads, struct tri_error *
     return status;
 }
 
-/* With how many threads to make what. */
+/* The outcome to fill, and the number of threads to use. */
 struct making {
     struct outcome *outcome;
     int threads;
@@ -86,7 +86,7 @@ static enum tri_status refine_call(void *user, struct tri_mesh *mesh, const stru
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     const struct making *making = user;
-    (void)mesh, (void)options, (void)report; /* those of the outcome */
+    (void)mesh, (void)options, (void)report; /* the results are in the outcome */
     return refine(making->outcome, making->threads, error);
 }
 
@@ -102,10 +102,9 @@ static enum tri_status generate(struct outcome *o, const struct tri_pslg *pslg, 
     return status;
 }
 
-/* --- judging */
+/* --- checking a mesh */
 
-/* The input as a mesh keeps it: coordinates smaller than 2^-216 of the largest count as 0. The points are the caller's
- * to free. */
+/* The input as stored in a mesh: coordinates below 2^-216 of the largest count as 0. The caller frees the points. */
 static struct tri_pslg kept_input(const struct outcome *o, const struct tri_pslg *pslg)
 {
     struct tri_pslg input = *pslg;
@@ -185,7 +184,7 @@ static bool same_meshes(const struct tri_mesh *a, const struct tri_mesh *b)
            same_bytes(a->sub, b->sub, a->n_subs, sizeof *a->sub) && same_triangles(a, b);
 }
 
-/* The first mesh by three threads. */
+/* The first mesh, made by three threads. */
 static void judge_threads(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     struct tri_error error = {0};
@@ -199,7 +198,7 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
     tri_mesh_free(&o.mesh);
 }
 
-/* The points alone: in one leaf by one thread, and in tiny ones by three. */
+/* Only the points: in one leaf by one thread, and in tiny leaves by three. */
 static void judge_points(const struct torture_case *c, struct verdict *verdict)
 {
     struct par_team team = {.threads = 3};
@@ -215,7 +214,7 @@ static void judge_points(const struct torture_case *c, struct verdict *verdict)
     tri_mesh_free(&parts);
 }
 
-/* --- how many triangles */
+/* --- number of triangles */
 
 static int32_t triangles_of(const struct torture_case *as, const struct outcome *first, const struct tri_pslg *pslg,
                             struct verdict *verdict)
@@ -229,11 +228,11 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
     return n;
 }
 
-/* So many times the triangles of another way to make the mesh are a run-away: for angles, edges become a sixth of the
- * features around them (README). */
+/* The mesh is a run-away if it has more than this multiple of the triangles of a reference mesh. For angles, the limit
+ * allows edges of a sixth of the surrounding features (README). */
 enum { RUN_AWAY = 36, TIMES = 4, FEW = 3000 };
 
-/* The schedule's mesh, by the rules of one call in another order. */
+/* The schedule's mesh follows the rules of one call, in a different order. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     struct torture_case sequential = *first->of;
@@ -245,14 +244,14 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
                     (int)one_call);
 }
 
-/* Against the angle that theory promises. */
+/* Compared with a mesh at the angle for which the theory has a guarantee. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const struct tri_quality *asked = &first->options.quality;
     struct outcome less = *first;
     const double angle = asked->min_angle;
     if (first->mesh.n_triangles < FEW || angle <= PROMISED || first->switches.protect > 0)
-        return; /* where segments must stay as they are theory promises nothing */
+        return; /* if segments must not change, the theory guarantees nothing */
     enter(verdict, "meshing at a smaller angle");
     less.options.quality.min_angle = PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
@@ -261,9 +260,9 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
                     (int)n, PROMISED);
 }
 
-/* --- whether it ends */
+/* --- termination */
 
-/* So many points a figure can ask for at most, as the mesh that has been made counts them; see judge_end. */
+/* An upper bound on the points that a figure can request, as counted by the finished mesh. See judge_end. */
 static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
 {
     const double PER_VERTEX = 1000, PER_GAP_POINT = 40, SIZED_GAP_POINT = 60, SIZES = 200000;
@@ -292,12 +291,12 @@ static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t
     return enough;
 }
 
-/* A mesh that does not end is one with more points than its figure can ask for: those of its narrow spaces (the most
- * seen are 20 for each that the mesher counts on at 30 degrees, and 40 at 34, half as many again with sizes), of its
- * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes. Beside a wall that
- * must not be split a size test refuses all triangles, down to some 4,096 times as long as high: the most seen are 800
- * points for a side of one, at 34 degrees. One that asks for more than is AFFORDABLE to make over and over, but no more
- * than that, is judged as with a limit of so many points. */
+/* A case is endless if its mesh has more points than its figure can request. These points come from its narrow spaces,
+ * its features, and its sizes (see draw_sizes). For each narrow space that the mesher counts, at most 20 points were
+ * seen at 30 degrees, 40 at 34, and half as many again with sizes. Features differ by at most twelve orders of
+ * magnitude. Beside a wall that must not be split, a size test refuses all triangles, down to those about 4,096 times
+ * as long as high. At most 800 points were seen for one side of such a triangle, at 34 degrees. If a figure requests
+ * more than AFFORDABLE points but is not endless, it is meshed with that limit. */
 static void judge_end(struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     enum { AFFORDABLE = 300000 };
@@ -322,7 +321,7 @@ static struct tri_pslg pslg_of(const struct tri_mesh *mesh, const struct support
                              .segment_markers = copy->markers};
 }
 
-/* The mesh of a first one, ready to be refined again. */
+/* The first mesh, ready to be refined again. */
 static enum tri_status rebuild(const struct outcome *first, struct outcome *o, struct support_copy *copy,
                                struct tri_pslg *pslg, struct tri_error *error)
 {
@@ -351,7 +350,7 @@ static bool refine_for_nothing(const struct outcome *before, struct outcome *aft
     return !status;
 }
 
-/* Refined again with the same bounds a mesh gets a few triangles more, where vertices ran away or spaces were left. */
+/* Refining again with the same bounds adds a few triangles where points accumulated or spaces were left unfilled. */
 static void judge_amount_again(const struct outcome *first, struct verdict *verdict)
 {
     struct outcome second = {0};
@@ -373,7 +372,8 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     enum tri_status status = rebuild(first, &o, &copy, &pslg, &error);
     o.options.quality.max_area /= 2;
     o.options.quality.region_areas = true;
-    /* Short edges that a bound above the usual one has left are features of the mesh: asked again it would go on. */
+    /* Short edges that result from a bound above the default are features of the mesh, so a second refinement would
+       continue. */
     if (o.options.quality.min_angle > tri_worked_angle(&o.options.quality))
         o.options.quality.min_angle = 30;
     enter(verdict, "refining again");
@@ -389,7 +389,7 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     support_copy_free(&copy);
 }
 
-/* --- all together */
+/* --- the whole case */
 
 static void judge_first(struct outcome *o, const struct tri_pslg *pslg, struct verdict *verdict)
 {

@@ -1,4 +1,4 @@
-/* Bounds: what is missed must be explained by the report, and the report must be right. */
+/* Bounds: the report must explain each violation, and must be correct. */
 #include <stdio.h>
 
 #include "tests/torture/judge.h"
@@ -7,11 +7,11 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/refine/place.h"
 
-/* Triangles lower than so many units in the last place of the largest coordinate may be too large (with -YY twice as
- * high ones), and leave no room to split a subsegment. */
+/* Triangles lower than this many units in the last place of the largest coordinate may be too large, and leave no room
+ * to split a subsegment. With -YY the limit is twice as high. */
 static const double FLAT = 100 * 0x1p-52;
 
-/* Nearer than this share of it rounding may keep a vertex in a subsegment's circle. */
+/* Within this relative distance, rounding may leave a vertex in a subsegment's circle. */
 static const double LEVEL = 1e-8;
 
 static double area_bound(const struct outcome *o, int32_t t)
@@ -34,8 +34,9 @@ static void judge_areas(const struct outcome *o, struct verdict *verdict)
     }
 }
 
-/* Beside small angles of the input, which the checker finds itself, narrow spaces and what coordinates do not resolve,
- * few angles are below a bound up to the largest: where vertices ran away, which is seldom as far as theory goes. */
+/* Only few angles are below the bound, apart from three exceptions: small input angles, which the checker finds itself,
+ * narrow spaces, and details below the resolution of coordinates. The few lie where points accumulate, which rarely
+ * happens to the extent that the theory allows. */
 static void judge_unexplained(const struct outcome *o, const struct tri_check_report *report,
                               const int64_t count[TRI_EXCUSES], struct verdict *verdict)
 {
@@ -72,7 +73,7 @@ static void judge_angles(const struct outcome *o, const struct tri_check_report 
     judge_unexplained(o, report, count, verdict);
 }
 
-/* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
+/* Is a triangle beside the subsegment so flat that rounding leaves no room for a split point? */
 static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegment *s, double least_height)
 {
     for (int side = 0; side < 2; side++) {
@@ -85,7 +86,7 @@ static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegm
     return false;
 }
 
-/* Is the apex on this side in the circle of the subsegment, although it lies well beside it? */
+/* Is the apex on this side inside the subsegment's circle, although it lies clearly beside the subsegment? */
 static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, double largest)
 {
     const struct tri_subsegment *s = &mesh->sub[i];
@@ -96,8 +97,8 @@ static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, doub
            LEVEL * largest;
 }
 
-/* What is not conforming must be counted, one by one, and lie at the resolution of coordinates. The checker has found
- * so many faults of this kind. */
+/* Each non-conforming subsegment or triangle must be counted, and must lie at the resolution of coordinates. The
+ * checker has found this number of faults of the kind. */
 void judge_conforming(const struct outcome *o, int kind, int64_t faults, struct verdict *verdict)
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
@@ -119,7 +120,7 @@ void judge_conforming(const struct outcome *o, int kind, int64_t faults, struct 
 
 static bool is_new(const struct tri_mesh *mesh, int32_t v) { return v >= mesh->n_input && mesh->on[v] >= 0; }
 
-/* Y: no new vertex on the boundary; YY: on no subsegment. */
+/* Y: no new vertex on the boundary. YY: no new vertex on any subsegment. */
 static void judge_protection(const struct outcome *o, struct verdict *verdict)
 {
     const struct tri_mesh *mesh = &o->mesh;

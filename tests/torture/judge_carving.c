@@ -1,5 +1,5 @@
-/* A naive twin of carving: the whole hull is triangulated and nothing removed; then outside, holes and regions are
- * flooded one triangle after another, with every point located by looking at all triangles. */
+/* A naive implementation of carving. The whole hull is triangulated and nothing removed. Then the outside, holes and
+ * regions are flooded, one triangle at a time. Each point is located by a search over all triangles. */
 #include <stdio.h>
 
 #include "tests/torture/judge.h"
@@ -10,7 +10,7 @@ struct flood {
     struct tri_mesh mesh;
     int32_t *mark;  /* [n_triangles] region, or GONE */
     int32_t *stack; /* [n_triangles] */
-    bool doubtful;  /* a point lies on an edge: which side it means is nobody's concern */
+    bool doubtful;  /* true: a point lies on an edge, so either side is acceptable */
 };
 
 static bool is_segment(const struct tri_mesh *mesh, int32_t t, int e)
@@ -19,7 +19,7 @@ static bool is_segment(const struct tri_mesh *mesh, int32_t t, int e)
     return link < 0 && mesh->parents[mesh->sub[~link].parent].segment != TRI_NONE;
 }
 
-/* Everything that can be reached from here without crossing a segment gets the mark. */
+/* Marks all triangles that can be reached from this one without crossing a segment. */
 static void spread(struct flood *f, int32_t from, int32_t mark)
 {
     int32_t n = 0;
@@ -39,7 +39,7 @@ static void spread(struct flood *f, int32_t from, int32_t mark)
     }
 }
 
-/* The triangle with the point strictly inside; TRI_NONE: none. */
+/* The triangle that contains the point strictly inside, or TRI_NONE. */
 static int32_t locate(struct flood *f, const double at[2])
 {
     const struct tri_mesh *m = &f->mesh;
@@ -88,7 +88,7 @@ static double area_of(const struct tri_mesh *mesh, int32_t t)
     return ((b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x)) / 2;
 }
 
-/* What vertices on subsegments may cover or leave open by being rounded. */
+/* The area that vertices on subsegments may add or remove because they are rounded. */
 static double rounding(const struct tri_mesh *mesh)
 {
     double largest = 0, length = 0;
@@ -101,7 +101,7 @@ static double rounding(const struct tri_mesh *mesh)
     return TRI_CHECK_ULPS * 0x1p-52 * largest * length;
 }
 
-/* Areas of the regions in both. */
+/* Areas of the regions in both meshes. */
 static void compare(const struct flood *f, const struct outcome *o, double *areas, struct verdict *verdict)
 {
     const struct tri_mesh *mesh = &o->mesh;
@@ -110,7 +110,7 @@ static void compare(const struct flood *f, const struct outcome *o, double *area
     for (int32_t t = 0; t < f->mesh.n_triangles; t++) {
         double area = area_of(&f->mesh, t);
         left += f->mark[t] != GONE;
-        whole += fabs(area); /* a flat triangle's may come out below zero */
+        whole += fabs(area); /* the computed area of a flat triangle may be negative */
         if (f->mark[t] != GONE)
             areas[f->mark[t]] += area;
     }

@@ -1,4 +1,4 @@
-/* Delta debugging (Zeller and Hildebrandt 2002): ever smaller shares are left out, one after another. */
+/* Delta debugging (Zeller and Hildebrandt 2002): removes smaller and smaller parts, one after another. */
 #include "tests/torture/minimise.h"
 
 enum kind { SEGMENTS, HOLES, REGIONS, POINTS, KINDS };
@@ -40,7 +40,7 @@ static struct torture_case copy_of(const struct torture_case *c)
     return copy;
 }
 
-/* Keeps the trial if it fails as well. */
+/* Keeps the trial if it fails in the same way. */
 static bool try(struct search *s, struct torture_case *trial)
 {
     if (s->trials-- > 0 && s->fails(s->user, trial)) {
@@ -52,9 +52,9 @@ static bool try(struct search *s, struct torture_case *trial)
     return false;
 }
 
-/* --- leaving out */
+/* --- removing items */
 
-/* Items first .. last - 1 of an array of n go. */
+/* Removes items first .. last - 1 of an array of n. */
 static void cut(void *array, int32_t n, size_t item, int32_t first, int32_t last)
 {
     char *at = array;
@@ -69,7 +69,7 @@ static void cut_segments(struct tri_pslg *p, int32_t first, int32_t last)
     p->n_segments -= last - first;
 }
 
-/* With their segments. */
+/* Removes points together with their segments. */
 static void cut_points(struct tri_pslg *p, int32_t first, int32_t last)
 {
     for (int32_t s = p->n_segments - 1; s >= 0; s--) {
@@ -122,7 +122,7 @@ static bool leave_out(struct search *s, enum kind kind)
     return found;
 }
 
-/* --- simpler */
+/* --- simplifying */
 
 static void simplify_switches(struct search *s)
 {

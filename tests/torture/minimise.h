@@ -6,8 +6,8 @@
 
 typedef bool case_fails(void *user, const struct torture_case *c);
 
-/* Takes away segments, holes, regions, points, switches and digits, as long as the case fails and no more than so many
- * trials have been made. Changes *c. */
+/* Removes segments, holes, regions, points, switches and digits while the case still fails, for at most the given
+ * number of trials. Changes *c. */
 void minimise(struct torture_case *c, case_fails *fails, void *user, int32_t trials);
 
 #endif

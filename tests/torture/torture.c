@@ -1,7 +1,7 @@
-/* torture: random figures with random switches, each result judged. See usage below.
+/* torture: random figures with random switches; each result is checked. See usage below.
  *
- * Every case runs in a process of its own, with limits on processor time and memory, so that a crash or a run-away is a
- * fault with a seed like any other. */
+ * Every case runs in its own process, with limits on processor time and memory. So a crash or a run-away is reported as
+ * a fault with a seed, like any other. */
 #include <errno.h>
 #include <getopt.h>
 #include <signal.h>
@@ -19,18 +19,18 @@ static const char usage[] =
     "Usage: torture [options]\n"
     "  --seed N          first seed (1)\n"
     "  --count N         number of cases (500)\n"
-    "  --families A,B,.. draw from these alone; --list names all\n"
-    "  --near            near-degenerate families alone, -p and -pc alone: nothing is refined\n"
-    "  --file F          instead of drawing: the figure in this .poly or .node file\n"
-    "  --switches S      with these switches (p); of what is drawn: with these as well, where it is refined\n"
-    "  --block N         by the schedule, with so many triangles in a cell (0: sequential; as drawn)\n"
-    "  --again           refined once more\n"
+    "  --families A,B,.. draw only from these families; --list prints all\n"
+    "  --near            only near-degenerate families, only -p and -pc: no refinement\n"
+    "  --file F          mesh the figure in this .poly or .node file instead of random ones\n"
+    "  --switches S      use these switches (p); random cases that are refined get them in addition\n"
+    "  --block N         use the schedule with this many triangles in a cell (0: sequential; random)\n"
+    "  --again           refine each mesh once more\n"
     "  --out DIR         write the figures of failures there\n"
-    "  --minimise        make them small first\n"
-    "  --ignore A,B,..   these kinds of faults are no failure\n"
-    "  --seconds S       processor time for a case (300)\n"
-    "  --verbose         name all cases\n"
-    "Prints a line for each failure and a table of them. Exit code 1: there were some.\n";
+    "  --minimise        make these figures small first\n"
+    "  --ignore A,B,..   do not report these kinds of faults\n"
+    "  --seconds S       processor time for one case (300)\n"
+    "  --verbose         print all cases\n"
+    "Prints a line for each failure and a table of them. Exit code 1: at least one case failed.\n";
 
 enum { MOST_FAMILIES = 100, MOST_FAULTS = 200, TRIALS = 3000, WAIT_FACTOR = 20 };
 
@@ -70,16 +70,16 @@ static void set_limits(double seconds)
 {
     struct itimerval limit = {{0, 0}, {(time_t)seconds, (suseconds_t)((seconds - floor(seconds)) * 1e6)}};
     setitimer(ITIMER_PROF, &limit, NULL);
-    alarm((unsigned)(seconds * WAIT_FACTOR) + 1); /* for those that wait for each other */
+    alarm((unsigned)(seconds * WAIT_FACTOR) + 1); /* also ends processes that wait for each other */
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 #ifndef SANITIZED
     const uint64_t most = UINT64_C(4) << 30;
-    if (SIZE_MAX > most) /* else there is no more */
+    if (SIZE_MAX > most) /* otherwise the system has no more */
         setrlimit(RLIMIT_AS, &(struct rlimit){(rlim_t)most, (rlim_t)most});
 #endif
 }
 
-/* The line that tells most: a failed assertion's or a sanitizer's; else the last one. */
+/* The most informative line: that of a failed assertion or a sanitizer, otherwise the last one. */
 static void add_words(struct verdict *verdict, FILE *words)
 {
     char line[256], best[256] = "";
@@ -96,7 +96,7 @@ static void add_words(struct verdict *verdict, FILE *words)
     snprintf(verdict->detail + n, sizeof verdict->detail - n, "%s", best);
 }
 
-/* What the end of the process says. */
+/* Describes how the process ended. */
 static void judge_end(struct verdict *verdict, int status, FILE *words)
 {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && verdict->done)
@@ -127,7 +127,7 @@ static void run_case(struct torture *t, const struct torture_case *c)
         set_limits(t->seconds);
         judge_case(c, t->verdict);
         fflush(NULL);
-        exit(EXIT_SUCCESS); /* with the leak checker's look */
+        exit(EXIT_SUCCESS); /* exit() also runs the leak checker */
     }
     int status;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
@@ -245,7 +245,7 @@ static void list_families(void)
     exit(EXIT_SUCCESS);
 }
 
-/* Applies one option; false: not an option, or no meaning in it. */
+/* Applies one option. Returns false if it is not an option or its value is invalid. */
 static bool apply(struct torture *t, int option)
 {
     switch (option) {
@@ -282,9 +282,9 @@ static void use_all_families(struct torture *t)
             t->families[t->range.n_families++] = family_at(i);
 }
 
-/* --- all together */
+/* --- the whole run */
 
-/* What is asked of all cases that are refined. */
+/* Adds the options that apply to all cases that are refined. */
 static void add_given(const struct torture *t, struct torture_case *c)
 {
     size_t n = strlen(c->switches);

@@ -1,12 +1,12 @@
-/* Starts a program and does something to it, so long after it has written the first line to its output, a file; ends
- * with its exit code. For tools/windows.sh.
- * Usage: poke c|kill MILLISECONDS COMMAND_LINE     c: as if somebody pressed Ctrl-C */
+/* Starts a program and interrupts or kills it a given time after it has written the first line to its output, a file.
+ * Ends with the program's exit code. For tools/windows.sh.
+ * Usage: poke c|kill MILLISECONDS COMMAND_LINE     c: as if Ctrl-C was pressed */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <windows.h>
 
-/* Behind three words of this program's own. */
+/* The rest of the command line, after three words of this program. */
 static char *command_of(char *line)
 {
     for (int i = 0; i < 3; i++) {
@@ -21,7 +21,7 @@ static BOOL WINAPI go_on(DWORD event) { return event == CTRL_C_EVENT; }
 
 int main(int argc, char **argv)
 {
-    STARTUPINFOA start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES}; /* a new console would take them */
+    STARTUPINFOA start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES}; /* a new console would receive it */
     PROCESS_INFORMATION made;
     DWORD code = 1;
     start.hStdInput = GetStdHandle(STD_INPUT_HANDLE);
