@@ -1,8 +1,8 @@
-# Refining a finished mesh again with the same bounds adds almost nothing: what was given up at corners and in narrow
-# spaces is given up again. (From 33 degrees on, where vertices ran away, a second run takes the short edges for
-# features and goes on from there.)
+# Refining a finished mesh again with the same bounds adds almost nothing: triangles that were given up at corners and
+# in narrow spaces are given up again. (From 33 degrees on, if points accumulated, a second run treats the short edges
+# as features and continues from there.)
 
-size_of() { # size_of BASE: triangles
+size_of() { # size_of BASE: number of triangles
     awk 'NR == 1 { print $1 }' "$1.ele"
 }
 

@@ -1,4 +1,4 @@
-# What is wrong gets one clear line, exit code 1, and no file is touched.
+# Invalid input and options: one clear line, exit code 1, and no file is changed.
 fresh letter.poly
 run 1 -pa0 letter
 complains "area"
@@ -16,7 +16,7 @@ wrote
 run 0 -pa1e-6 letter
 complains "a1e-6.*exponent"
 
-# long options are those of ptriangle; dashes with other things behind them are nothing, as ever
+# long options belong to ptriangle; dashes followed by other characters are ignored, as in Triangle
 for word in --min-angle --min-angle=30 --versions --p; do
     run 1 $word -p letter
     complains "^triangle: --[a-z=0-9-]*: no such option"
@@ -30,7 +30,7 @@ done
 run 1 -pq30 letter --placement
 complains '^triangle: --placement needs a value$'
 wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
-# a file of another kind: what is read instead
+# a file of another kind: the message lists the formats that are read
 printf '{"type": "Polygon"}' >letter.json
 run 1 -p letter.json
 complains "^letter\.json\.poly: cannot open: .*what is read are Triangle's"
@@ -45,8 +45,8 @@ for program in triangle ptriangle trianglecheck meshplot; do
     check "--version" sh -c '"$1" --version | grep -qE "^$2 [0-9]+\.[0-9]+\.[0-9]+$"' sh "$bin/$program" $program
     check "--help" sh -c '"$1" --help | grep -qi "^usage: $2 "' sh "$bin/$program" $program
 done
-# a mesh that is empty: one line says why, also if quiet, in the numbers of the file
-outline() { # outline BASE ENDS...: the square whose numbers count from there, and a segment for each pair
+# a mesh without triangles: one line gives the reason, even with -Q, using the numbers of the file
+outline() { # outline BASE ENDS...: the square with numbers from BASE on, and a segment for each pair of ends
     base=$1
     shift
     printf '4 2 0 0\n%d 0 0\n%d 4 0\n%d 4 4\n%d 0 4\n%d 0\n' $base $((base + 1)) $((base + 2)) $((base + 3)) $(($# / 2))
@@ -57,7 +57,7 @@ outline() { # outline BASE ENDS...: the square whose numbers count from there, a
         shift 2
     done
 }
-tells() { # tells TEXT: one line, which ends so
+tells() { # tells TEXT: expects one line, which ends with TEXT
     check "one line: $(cat .err)" sh -c 'test "$(wc -l <.err)" -eq 1'
     complains "riangle: warning: $1\$"
     silent_on "keep the bounds"
@@ -140,11 +140,11 @@ check "four warnings with file and line" sh -c 'test "$(grep -cE "^Warning:  bad
 rm -f badindex.1.*
 wrote
 
-# both streams in one place: the error is told once
+# both streams go to one place: the error is printed once
 "$bin/triangle" -p truncated >.out 2>&1
 check "told once" sh -c 'test "$(grep -c truncated.poly: .out)" -eq 1'
 
-# --- outputs that cannot be
+# --- outputs that cannot be written
 fresh letter.poly
 mkdir letter.1.ele
 run 1 -p letter
@@ -169,14 +169,14 @@ check "the old file is there" grep -qx old letter.1.node
 complains "cannot write"
 wrote letter.1.node
 
-# --- a signal while files are being written: nothing stays. A pipe that nobody reads holds the program there.
+# --- a signal while files are being written: no file remains. A pipe without a reader blocks the program there.
 for signal in TERM INT HUP; do
     fresh letter.poly
     echo old >letter.1.node
     mkfifo letter.1.ele
     ls >.before
     what="SIG$signal"
-    # a shell lets its background jobs ignore SIGINT, and nohup SIGHUP; env puts that right where it can
+    # a shell lets its background jobs ignore SIGINT, and nohup SIGHUP; env restores the default if it can
     if env --default-signal=$signal true 2>/dev/null; then
         env --default-signal=$signal "$bin/triangle" -p letter >.out 2>.err &
     elif [ $signal = TERM ]; then
@@ -217,7 +217,7 @@ if [ -e /dev/full ]; then
     check "one line" test "$(wc -l <.err)" -eq 1
     wrote
 fi
-# who reads no further is no error
+# a reader that closes the pipe is no error
 fresh letter.poly
 what="standard output closed by its reader"
 { "$bin/triangle" -pqV letter 2>.err; echo $? >.code; } | true

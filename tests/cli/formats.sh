@@ -1,4 +1,4 @@
-# Files in other programs' formats, as --output names them.
+# Files in formats of other programs, selected by --output.
 fresh section.poly
 program 0 -pq30aAQ --output x.vtu --output sub.d.msh section.poly
 wrote x.vtu sub.d.msh
@@ -21,7 +21,7 @@ fresh letter.poly
 program 0 -p --output X.MSH --output y.2DM --parts 2 letter.poly
 wrote X_1.MSH X_2.MSH y.2DM
 
-# parts: the same on any number of threads, swept or not
+# parts: the same for any number of threads, swept or not
 fresh section.poly letter.poly
 PTRIANGLE_TEST_BLOCK=60
 export PTRIANGLE_TEST_BLOCK
@@ -63,7 +63,7 @@ if [ -e /dev/full ]; then
     wrote x_2.msh
 fi
 
-# As many calls of the system for each file, however many there are. (Those that one process may not trace are not told.)
+# The number of system calls per file does not depend on the number of files. (Skipped if a process may not be traced.)
 calls() {
     strace -f -qq -e trace=%file,link,linkat -o .found "$bin/ptriangle" -pQ --threads 1 --output x.msh --parts "$1" \
         letter.poly && wc -l <.found
@@ -76,7 +76,7 @@ if command -v strace >/dev/null && strace -o .found true 2>/dev/null; then
     check "$few, $more and $most calls for 20, 40, 80 files" test $((most - more)) -le $((2 * (more - few) + 20))
 fi
 
-# all or nothing, and nothing where it cannot be
+# all files or none, and none if an output cannot be written
 fresh letter.poly
 echo old >x.vtu
 program 1 -pq30 --output x.vtu --output nowhere/x.msh letter.poly
@@ -99,7 +99,8 @@ if [ -e /dev/full ]; then
     wrote x.14
 fi
 
-# Each is read again, and judged: the same vertices and triangles, with what the format keeps of markers and regions.
+# Each file is read again and checked: the same vertices and triangles, with the markers and regions that the format
+# keeps.
 fresh section.poly
 program 0 -pq30aAQ --output x --output x.vtu --output x.msh --output x.2dm --output x.14 section.poly
 wrote x.node x.ele x.poly x.vtu x.msh x.2dm x.14
@@ -118,7 +119,7 @@ head -c 3000 x.vtu >short.vtu
 check "a truncated .vtu" sh -c "! '$bin/trianglecheck' short.vtu 2>.said && [ \$(wc -l <.said) -eq 1 ]"
 rm -f .said
 
-# A name is no format without a word about it.
+# A name that selects no format gives a message.
 fresh letter.poly
 program 1 -p --output x.shp letter.poly
 complains '--output: there is no format \.shp: there are \.h5, \.vtkhdf, \.vtu, '
@@ -136,7 +137,7 @@ program 0 -pQ --output mesh.14.node letter.poly
 check "a base that looks like ADCIRC's" "$bin/trianglecheck" --quiet mesh.14
 rm -f mesh.14.*
 
-# --- points that no triangle uses: in no file for solvers, however the mesh is made; Triangle's files keep them
+# --- points that no triangle uses: never in files for solvers, always in Triangle's files
 fresh
 orphans >two.poly
 PTRIANGLE_TEST_BLOCK=60
@@ -178,7 +179,7 @@ if "$bin/ptriangle" -pq30a0.002Q two.poly --output x.h5 2>.err; then
     program 0 -pq30a0.002Q two.poly --output v.vtkhdf
     check "the same .vtkhdf" cmp x.h5 v.vtkhdf
     check "trianglecheck reads it" "$bin/trianglecheck" --quiet v.vtkhdf
-    # the segments 2 4 and 4 5 are no edges, and no triangle uses point 5
+    # the segments 2 4 and 4 5 are not edges, and no triangle uses point 5
     printf '5 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n5 .5 2\n' >loose.node
     printf '2 3 0\n1 1 2 3\n2 1 3 4\n' >loose.ele
     printf '0 2 0 1\n3 1\n1 1 3 5\n2 2 4 6\n3 4 5 7\n0\n' >loose.poly
@@ -188,8 +189,8 @@ if "$bin/ptriangle" -pq30a0.002Q two.poly --output x.h5 2>.err; then
 fi
 unset PTRIANGLE_TEST_BLOCK
 
-# --- pieces of a segment run its way
-runs_its_way() { # runs_its_way BASE POLY: by the markers, of which each segment of POLY that is meant has its own
+# --- pieces of a segment have its direction
+runs_its_way() { # runs_its_way BASE POLY: compares directions. Each segment of POLY to be compared has a marker of its own.
     check "pieces of $1 run their segments' way" awk '/^#/ { next } FNR == 1 { file++; n = $1; next }
         file == 1 { if (FNR <= n + 1) { x[$1] = $2; y[$1] = $3 } else if (NF == 4) { a[$4] = $2; b[$4] = $3 } }
         file == 2 { X[$1] = $2; Y[$1] = $3 }
@@ -199,7 +200,7 @@ runs_its_way() { # runs_its_way BASE POLY: by the markers, of which each segment
 }
 fresh
 orphans >two.poly
-sed 's/^8 8 5 2$/8 8 5 0/' two.poly >own.poly # of segments along each other the first tells
+sed 's/^8 8 5 2$/8 8 5 0/' two.poly >own.poly # if segments overlap, the first determines the direction
 program 0 -Qpq30a0.002 own.poly --output x
 runs_its_way x own.poly
 run 0 -Qpq30a0.002 own.poly
@@ -207,7 +208,7 @@ runs_its_way own.1 own.poly
 run 0 -Qrpq33a0.001 own.1
 runs_its_way own.2 own.poly
 
-# --- a mesh in a format of another program is refined: the same bounds, markers, attributes
+# --- refining a mesh in a format of another program: the same bounds, markers, attributes
 fresh section.poly
 program 0 -pq20aAQ section.poly --output x --output x.vtu --output x.msh --output x.2dm --output x.grd
 for suffix in msh vtu 2dm grd; do
@@ -215,13 +216,13 @@ for suffix in msh vtu 2dm grd; do
     says "Opening x.$suffix."
     case $suffix in
     msh | vtu) judge --refined --poly section.poly -q 30 r ;;
-    *) judge -q 30 r ;; # segments inside are not kept
+    *) judge -q 30 r ;; # the format does not keep segments inside the domain
     esac
     [ $suffix = grd ] || check "regions of x.$suffix" test "$(awk 'NR == 1 { print $3 }' r.ele)" -eq 1
 done
 program 0 -rpq30Q x --output own
 program 0 -q30Q x.vtu --output again
-for suffix in node ele poly; do # holes are those of the input: the format has none
+for suffix in node ele poly; do # holes come from the input, since the format has none
     check "the same .$suffix as of .node and .ele" \
         sh -c 'grep -v "^#" "again.$1" | sed "\$d" >.found; grep -v "^#" "own.$1" | head -n "$(wc -l <.found)" |
             cmp -s - .found' sh $suffix
@@ -243,7 +244,7 @@ program 0 -pQ sea.poly --output fort.14
 check "types of land" test "$(sed -n '/land boundaries/,$p' fort.14 | awk 'NF == 2 { print $2 }' | sort -n | tr '\n' ' ')" \
     = "0 20 21 22 "
 
-# --- faults by the file's own numbers
+# --- faults are reported with the file's own numbers
 awk 'NF == 5 && $2 == 3 && !done { t = $3; $3 = $4; $4 = t; done = $1 } { print }' fort.14 >turned.14
 what="trianglecheck turned.14"
 "$bin/trianglecheck" turned.14 >.out 2>.err && fault "no fault"

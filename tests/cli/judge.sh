@@ -1,6 +1,6 @@
-# trianglecheck: which files it reads, and what it promises.
+# trianglecheck: the files that it reads, and its promises.
 
-denies() { # denies PATTERN WORDS...: faults, one of which is this
+denies() { # denies PATTERN WORDS...: expects faults, one of which matches PATTERN
     pattern=$1
     shift
     "$bin/trianglecheck" --quiet "$@" >.out 2>.err
@@ -9,7 +9,7 @@ denies() { # denies PATTERN WORDS...: faults, one of which is this
     matches "$pattern"
 }
 
-# --- the word that is no option may stand anywhere, once
+# --- the argument that is not an option may stand anywhere, but only once
 fresh letter.poly
 run 0 -pq letter
 for posix in "" 1; do
@@ -30,7 +30,7 @@ fresh regress/denormal_coordinate.poly
 run 0 -pc denormal_coordinate
 judge denormal_coordinate.1 --poly denormal_coordinate.poly --keep-hull
 
-# --- neighbours of an earlier run are not judged, and that is said in one line
+# --- neighbours of an earlier run are not checked, and one line says so
 fresh letter.poly
 run 0 -pqn letter
 judge letter.1 --poly letter.poly
@@ -41,7 +41,7 @@ matches "^-     neighbors"
 complains "letter\.1\.neigh is of another mesh than \.ele"
 check "one line" test "$(wc -l <.err)" -eq 1
 
-# --- a mesh of which nothing is left
+# --- a mesh without triangles
 fresh
 printf '4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n1 0\n1 1 2\n0\n' >open.poly
 run 0 -pj open
@@ -50,7 +50,7 @@ judge open.1 --poly open.poly --jettisoned
 run 0 -pr open.1
 judge open.2 --poly open.1.poly -r
 
-# --- the mesh may end along the hull if that is said
+# --- the mesh may end along the hull if an option allows it
 fresh letter.poly
 run 0 -pc letter
 judge letter.1 --poly letter.poly --keep-hull
@@ -63,10 +63,10 @@ awk 'NR == 2 { $NF = 7 } { print }' letter.1.node >changed && mv changed letter.
 denies "^FAIL  vertex markers: 1, first: vertex 1 has marker 7" letter.1 --poly letter.poly
 judge letter.1 --poly letter.poly --no-markers
 
-# --- input segments that overlap, exactly (their markers and pieces count), and within rounding: in the mesh, and where
-# --- nothing is left of them, in next to no memory
+# --- overlapping input segments: exactly (markers and pieces are checked), and within rounding
+# --- in the mesh, and where no triangles are left, with almost no memory
 fresh
-to_and_fro() { # to_and_fro N STEP: a path in a box that goes to and fro over one line, by steps of a lattice
+to_and_fro() { # to_and_fro N STEP: a path in a box that goes back and forth along one line, in steps of a lattice
     awk -v n="$1" -v step="$2" 'BEGIN { m = n + 5; print m, 2, 0, 0
         for (i = 0; i <= n; i++) {
             x = (i * 617 % 1009) / 1024
@@ -94,12 +94,12 @@ awk 'BEGIN { n = 3000; print n + 1, 2, 0, 0
     for (i = 0; i <= n; i++) { x = i * 6170 % 30011; print i + 1, x, 2 * x }
     print n, 0; for (i = 1; i <= n; i++) print i, i, i + 1; print 0 }' >flat.poly
 run 0 -p flat
-if (ulimit -v 300000 && "$bin/trianglecheck" --help) >/dev/null 2>&1; then # sanitizers take more
+if (ulimit -v 300000 && "$bin/trianglecheck" --help) >/dev/null 2>&1; then # sanitizers need more
     (ulimit -v 300000 && "$bin/trianglecheck" --quiet --threads 1 flat.1 --poly flat.poly >.out 2>.err)
     check "trianglecheck of overlapping segments without a mesh: exit code" test $? -eq 0
 fi
 
-# --- one verdict for any number of threads
+# --- the same verdict for any number of threads
 fresh letter.poly
 full && area=0.0008 || area=0.002
 run 0 -pq30a${area}n letter
@@ -120,8 +120,8 @@ for word in 0 -1 two; do
     check "--threads $word: exit code" test $? -eq 2
 done
 
-# --- one verdict with any memory, from text as from arrays: markers, neighbours, six nodes, a missing triangle
-part_by_part() { # part_by_part WORDS...: the verdict of trianglecheck WORDS
+# --- the same verdict for any memory limit, also for text files: markers, neighbours, six nodes, a missing triangle
+part_by_part() { # part_by_part WORDS...: expects the same verdict of trianglecheck WORDS with little memory
     "$bin/trianglecheck" "$@" >whole 2>whole.err
     found=$?
     for memory in 1 100K 1%; do
@@ -140,7 +140,7 @@ for switches in -pq30aA -pq30aAzo2n -pq30Dnj; do
     part_by_part section.1 --poly letter.poly -q 33 -a 1 --json
 done
 
-# the last node is one amid an edge; letter.poly has an attribute
+# the last node is the midpoint of an edge; letter.poly has an attribute
 run 0 -pq30o2 letter
 part_by_part letter.1 --poly letter.poly -q 30
 cp letter.1.node sound
@@ -169,8 +169,8 @@ check "exit code" test $? -eq 2
 complains "section\.1\.ele:[0-9]*: unexpected end of file"
 part_by_part nothing
 
-# what is wrong with a file is told in the same words
-one() { # one FILE TEXT: a mesh of one triangle, but for that file
+# faults of files are reported in the same words
+one() { # one FILE TEXT: a mesh of one triangle, with FILE replaced by TEXT
     printf '3 2 0 0\n1 0 0\n2 1 0\n3 2 1\n' >one.node
     printf '1 3 0\n1 1 2 3\n' >one.ele
     rm -f one.poly one.neigh
@@ -202,25 +202,25 @@ check "exit code" test $? -eq 2
 check "exit code" test $? -eq 2
 complains "/nowhere: cannot make a scratch file there"
 
-# --- subsegments with a vertex in their circle are counted once, as the mesher does, whatever side it is on
+# --- subsegments with a vertex in their circle are counted once, as in the mesher, for a vertex on either side
 fresh regress/flat_on_both_sides.poly
 run 0 -pq33D flat_on_both_sides
 matches "^5 subsegments keep a vertex in the diametral circle"
 denies "^FAIL  diametral circles: 5," flat_on_both_sides.1 -D
 part_by_part flat_on_both_sides.1 -D
 
-# --- HDF5, where this build writes it
+# --- HDF5, if this build writes it
 fresh section.poly
 if "$bin/ptriangle" -pq30aAQ --output section.h5 section.poly >.out 2>&1 && [ -f section.h5 ]; then
     judge section.h5 --poly section.poly -q 30
     part_by_part section.h5 --poly section.poly -q 33
     cp section.h5 damaged.h5 # the address of the first group, in the superblock
     printf '\377' | dd of=damaged.h5 bs=1 seek=60 conv=notrunc 2>/dev/null
-    ASAN_OPTIONS=detect_leaks=0 "$bin/trianglecheck" damaged.h5 >.out 2>.err # HDF5 itself leaves something behind there
+    ASAN_OPTIONS=detect_leaks=0 "$bin/trianglecheck" damaged.h5 >.out 2>.err # HDF5 itself leaks memory in this case
     check "exit code" test $? -eq 2
     check "one line" test "$(wc -l <.err)" -eq 1
 fi
 
-# --- segments may be missing where faces flatter than rounding have gone: it says so
+# --- segments may be missing where faces flatter than rounding were removed: the checker reports it
 "$bin/trianglecheck" --help >.out
 matches 'they are outside the mesh, or within rounding of its boundary'

@@ -1,6 +1,8 @@
-# --memory bounds the process: a run keeps within it, or is refused early, with figures and without a file.
+# --memory limits the process: a run stays within the bound, or is refused early with figures and without writing a
+# file.
 #
-# The true size of blocks, so that what is held is what users see; inputs just large enough that budgets matter.
+# Blocks have their normal size, so that the memory is that of real runs. Inputs are just large enough for the bounds to
+# matter.
 python=$(command -v python3) || { echo "cli memory: no Python"; checks=1; return; }
 fresh square_random1000.poly
 mv square_random1000.poly s.poly
@@ -13,7 +15,7 @@ rm -f .try.*
 case $(file -b "$bin/ptriangle" 2>/dev/null; ldd "$bin/ptriangle" 2>/dev/null) in
 *libasan* | *libtsan* | *libubsan*) echo "cli memory: sanitizers have memory of their own"; checks=1; return ;;
 esac
-# BUDGET CODE MESSAGE COMMAND...: within so many MB, which `kept` counts; or refused with this code and message
+# BUDGET CODE MESSAGE COMMAND...: runs within this many MB, counted by `kept`, or is refused with this code and message
 within() {
     budget=${1}000000
     code=$2
@@ -47,8 +49,8 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     done
 done
 
-# --- what wants the whole mesh gets it, in files as far as it does not fit; what is refused says what would do, and
-# --- that does
+# --- outputs that need the whole mesh get it, in files as far as it does not fit in memory. A refusal names a bound
+# --- that is enough, and that bound works
 for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5"; do
     every 2 || continue
     rm -f out*
@@ -75,7 +77,7 @@ for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q
         check "the same bytes" sh -c "sed '/^# Generated/d' out* | cksum | cmp -s - .whole"
     done
 done
-# What parks only when it is written, for the lists beside it, says so as well.
+# If only writing parks the mesh, because of the lists beside it, this is also reported.
 what="ptriangle -o2j -S --memory"
 rm -f out*
 program 0 -Qpq20a0.000002o2jS260000 s --output out --threads 2 --memory 55M --report out.json
@@ -84,14 +86,14 @@ full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least
 
-# --- a small mesh takes less than the buffers of a sweep
+# --- a small mesh needs less memory than the buffers of a sweep
 cp "$data/coast/borders.poly" .
 what="ptriangle --memory as the dry run says"
 "$bin/ptriangle" -Qpq20 borders --output b.h5 --dry-run >.out
 enough=$(sed -n 's/^  Memory: \([0-9]*\)[.0-9]* MB .*/\1/p' .out)
 program 0 -Qpq20 borders --output b.h5 --memory "$((enough + 2))000000"
 
-# --- a limit of the process binds as the option does: refused before the work where it cannot do
+# --- a limit of the process works like the option: a run that would exceed it is refused before the work
 if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
     what="ulimit -v, much to do"
     rm -f out.h5
@@ -113,7 +115,7 @@ if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
     check "the same bytes" cmp whole.h5 out.h5
 fi
 
-# --- what is triangulated alone, or read again, is in memory: it fits, or is refused before
+# --- input without refinement, or a mesh that is read, is in memory: it fits, or is refused beforehand
 rm -f ./*
 awk 'BEGIN { n = 100000; print n, 2, 0, 0; srand(1); for (i = 1; i <= n; i++) print i, rand(), rand() }' >p.node
 awk 'BEGIN { n = 200; print n * n, 2, 0, 0; for (i = 0; i < n * n; i++) print i + 1, i % n, int(i / n)
@@ -138,7 +140,7 @@ check "with much memory runs are kept within ($kept), with little refused ($refu
 program 1 p --output out --memory 1M
 complains '^ptriangle: the input has [0-9.]+ [kM]?B of text, which is read into memory; 0 B are left$'
 
-# --- the self check keeps to what the mesh leaves, though all subsegments bound the mesh
+# --- the self check uses only memory that the mesh leaves free, even if all subsegments are boundary
 awk 'BEGIN { n = 30000; print n + 2, 2, 0, 0; for (i = 0; i < n; i++) print i + 1, i, 2 + i % 2
     print n + 1, n - 1, 0; print n + 2, 0, 0; print n + 2, 0
     for (i = 1; i <= n + 2; i++) print i, i, i % (n + 2) + 1; print 0 }' >z.poly
@@ -151,7 +153,7 @@ for budget in 24 28; do
     [ $found -eq 0 ] || complains '--memory [0-9]+M would do$'
 done
 
-# --- what HDF5 takes counts where nothing is refined, too, or is to be and nothing grows
+# --- HDF5's memory also counts if nothing is refined, or if refinement adds no points
 cp "$data/square.poly" t.poly
 for run in "p g" "pD t"; do
     for budget in 20 33 60; do
@@ -165,7 +167,7 @@ for run in "p g" "pD t"; do
 done
 rm -f g1.h5 g1.xdmf
 
-# --- the judge: what stays in memory beside the parts of a mesh fits, or the trial is refused before
+# --- the checker: memory needed beside the parts of a mesh fits, or the run is refused beforehand
 program 0 -Qp g.poly --output g1
 what="trianglecheck of many subsegments"
 "$python" "$data/../tests/cli/peak.py" 40000000 "$bin/trianglecheck" --quiet g1 --poly g.poly --memory 40000000 \
@@ -175,7 +177,7 @@ check "with enough memory: exit code" test $? -eq 0
 check "with little memory: exit code" test $? -eq 2
 complains '^trianglecheck: to judge 40 thousand vertices .* takes about [0-9.]+ MB of memory; 12 MB may be used$'
 
-# --- where all subsegments bound the mesh, the judge keeps to its bound as well, or says what it takes
+# --- if all subsegments are boundary, the checker also keeps its bound, or prints how much it needs
 program 0 -Qp z.poly --output z2
 kept=0
 refused=0
@@ -190,7 +192,7 @@ done
 check "with much memory trials are kept within ($kept), with little refused ($refused)" \
     test $kept -ge 2 -a $refused -ge 2
 
-# --- where no list says what the boundary is, that is seen on the way: holes make it three times as long
+# --- without a list of the boundary, the checker finds it while reading: holes make the boundary three times as long
 rm z2.poly
 within 18 2 none "$bin/trianglecheck" --quiet z2
 check "a mesh without a list is judged in little memory" test $found -eq 0
@@ -206,7 +208,7 @@ done
 check "with much memory trials are kept within ($kept), with little refused ($refused)" \
     test $kept -ge 1 -a $refused -ge 1
 
-# --- the bound of a group of processes (a container), of less than 100 MB: kept, or refused; the kernel kills nobody
+# --- the bound of a control group (a container) of less than 100 MB: kept or refused; the kernel kills no process
 group=/sys/fs/cgroup/memory/ptriangle-test-$$
 if (ulimit -v 400000 && "$bin/ptriangle" -h) >/dev/null 2>&1 && mkdir "$group" 2>/dev/null; then
     for bound in 40 60; do

@@ -1,4 +1,4 @@
-# File names: suffixes, iterations, a mesh read again.
+# File names: suffixes, iterations, reading a mesh again.
 fresh letter.poly
 run 0 letter.poly
 wrote letter.1.node letter.1.ele letter.1.poly

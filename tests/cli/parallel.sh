@@ -1,7 +1,7 @@
 # ptriangle: tiny cells, long options, the report.
 without_comments() { grep -v '^#' "$1"; }
 
-alike() { # alike A B: two files are the same but for the comment that quotes the command line
+alike() { # alike A B: two files are equal except for the comment that quotes the command line
     without_comments "$1" >.expected
     without_comments "$2" | cmp -s - .expected
 }
@@ -11,11 +11,11 @@ fresh letter.poly
 PTRIANGLE_TEST_BLOCK=60 program 0 -pq30a0.1Q --report report.json letter
 check "many blocks" test "$(grep -c '"block":' report.json)" -gt 4
 judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.1
-fresh regress/graded_1899.poly # what a block leaves comes back once: else work doubles in every phase
+fresh regress/graded_1899.poly # a triangle deferred by a block is listed once; otherwise work doubles in every phase
 PTRIANGLE_TEST_BLOCK=60 program 0 -pcOq25DQ --report report.json graded_1899
 check "worklist come back in numbers" awk '/"worklist":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"worklist\":") n += $(i + 1) }
     END { exit !(n > 0 && n < 50000) }' report.json
-fresh regress/tangle.poly # what one stage makes bad for the next is in somebody's list
+fresh regress/tangle.poly # triangles that one stage makes bad are in the list of the next
 PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 --report report.json tangle
 check "all bad triangles have had their turn" grep -q 'below the bounds: [0-9]* at small angles of the input\.$' .out
 below=$(sed -n 's/^\([0-9]*\) triangles stay below the bounds.*/\1/p' .out)
@@ -69,7 +69,7 @@ cat >rings.poly <<'END'
 END
 program 0 --holes auto -pq30a0.5 rings
 judge rings.1 --poly rings.poly --any-holes --min-angle 30 --max-area 0.5
-cp "$data/regress/carved_fan.poly" . # markers of what is left of segments within rounding of each other
+cp "$data/regress/carved_fan.poly" . # markers of the pieces that remain of segments within rounding of each other
 program 0 --holes auto -pQ carved_fan
 judge carved_fan.1 --poly carved_fan.poly --any-holes
 check "what is odd stays" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
@@ -132,7 +132,7 @@ if [ -e /dev/full ]; then
     complains '^/dev/full: cannot write'
     wrote
 fi
-# what is not read may be replaced
+# files that are not input may be replaced
 cp "$data/letter.poly" letter.node
 program 0 -pPQ --output letter letter.poly
 header letter.node "57 2 1 1"
@@ -167,7 +167,7 @@ assert report["placement"] == "lattice" and report["mesh"]["mean_area_over_bound
 '
 fi
 
-# --- placement: as with triangle, see switches.sh; here also by many blocks
+# --- placement: as in triangle, see switches.sh; here also with many blocks
 for words in "-pq30a0.01" "-pq30a0.01 --placement lattice"; do
     # shellcheck disable=SC2086
     PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
@@ -180,7 +180,7 @@ counts 5755 10968
 check "the report says so" grep -q '"placement": "classic"' report.json
 program 0 -pq20a0.1 letter --placement=classic
 counts 611 1074
-for words in -pq33a0.01 -pq30; do # no lattice: angles are expensive, or there is no bound on areas
+for words in -pq33a0.01 -pq30; do # no lattice: high angle bounds, or no bound on areas
     PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
     check "the report says so" grep -q '"placement": "classic"' report.json
     cp letter.1.ele one.ele
@@ -191,7 +191,7 @@ fresh letter.poly
 program 0 -pQ --report report.json letter
 check "nothing was refined" grep -qx ' "schedule": null' report.json
 
-# --- what the schedule leaves to the sequential program, and what is printed
+# --- options for which the schedule uses the sequential program, and the printed messages
 program 0 -pq30a0.001S100Q letter
 cp letter.1.node one.node
 cp letter.1.ele one.ele

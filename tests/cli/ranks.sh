@@ -1,6 +1,5 @@
-# ptriangle as several tasks of a launcher: the same files as one process writes, by the first task; errors in one
-# voice.
-# MPIEXEC is the launcher of the MPI that the program was built for; empty: it was built without.
+# ptriangle as several tasks of a launcher: the first task writes the same files as one process, and errors are printed
+# once. MPIEXEC is the launcher of the MPI that the program was built for; empty if it was built without MPI.
 # shellcheck disable=SC2154 # bin is of run.sh
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl=self,vader,tcp OMP_NUM_THREADS=1 PTRIANGLE_TEST_BLOCK=500
@@ -9,7 +8,7 @@ export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMPI_MCA_rmaps_base_oversubscribe
 export OMPI_MCA_mpi_yield_when_idle OMPI_MCA_btl OMP_NUM_THREADS PTRIANGLE_TEST_BLOCK
 
-# ranks CODE N WORDS...: a hang is a failure
+# ranks CODE N WORDS...: expects the exit code; a hang is a failure
 ranks() {
     code=$1
     n=$2
@@ -21,8 +20,8 @@ ranks() {
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 3 .out)"
 }
 
-# with_one RANK DO CODE WORDS...: two ranks, or $of, of which one does something first; CODE any: 0, or a failure that
-# is no hang
+# with_one RANK DO CODE WORDS...: two ranks, or $of; DO is applied to one of them first. CODE any: 0, or a failure that
+# is not a hang
 with_one() {
     one=$1
     first=$2
@@ -41,10 +40,10 @@ with_one() {
     esac
 }
 
-# spread N: so many numbers, evenly, up to that of the file .count
+# spread N: N numbers, evenly spaced, up to the number in the file .count
 spread() { awk -v most="$1" '{ for (i = 0; i < most; i++) print 1 + int(i * $1 / most) }' .count; }
 
-# --- tasks that are not of this MPI
+# --- tasks of another MPI
 fresh letter.poly
 what="tasks of a launcher that is none"
 checks=$((checks + 1))
@@ -72,7 +71,7 @@ for case in "-pq30a0.002 letter" "-pq33a0.01 letter" "-p letter"; do
     rm -rf one "$file".1.*
 done
 
-# --- one task reads and writes: the others see neither the input nor the folder
+# --- only one task reads and writes: the others need neither the input nor the folder
 fresh section.poly
 same_but_for_comments() { # A B
     grep -av '^#' "$1" >.one
@@ -91,7 +90,7 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
     rm -f one.* two.*
 done
 
-# --- nor do they see a field of lengths
+# --- a field of lengths is not needed either
 fresh letter.poly
 printf 'ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 14\n.3 .2\n.05 .1\n' >field.asc
 for case in "-p letter --size field.asc" "-p letter --size-near 1:0.05 --max-size 0.3"; do
@@ -110,7 +109,7 @@ done
 ranks 1 2 -Qp letter --size absent.asc
 complains '^absent\.asc: cannot open'
 
-# --- points that no triangle uses are in no HDF5 file, and in Triangle's files
+# --- points that no triangle uses are not in HDF5 files, but in Triangle's files
 fresh
 orphans >pair.poly
 program 0 -Qpq30a0.0005 pair.poly --output one
@@ -130,7 +129,7 @@ if "$bin/ptriangle" -Qpq30a0.0005 pair.poly --output one.h5 2>.err; then
 fi
 fresh section.poly
 
-# --- what moved, by reason and rank
+# --- amounts of data sent, by reason and rank
 ranks 0 3 -Qpq30a0.01 section.poly --output one.vtu --report report.json
 for word in '"borders": [1-9]' '"tiles": [1-9]' '"input": [1-9]'; do
     check "the report has no $word" grep -q "$word" report.json
@@ -139,7 +138,7 @@ check "three ranks" test "$(grep -c '"waiting_seconds"' report.json)" -eq 3
 program 0 -Qpq30a0.01 section.poly --output one.h5 --report report.json
 check "one process has no ranks" grep -q '"ranks": null' report.json
 
-# --- each rank writes its own rows, and none of them moves; beside a format that wants the whole mesh one writes all
+# --- each rank writes its own rows, so no rows are sent; if a second format needs the whole mesh, one rank writes all
 fresh letter.poly
 outputs="--output two"
 files="one.node one.ele one.poly"
@@ -182,11 +181,12 @@ case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
     ;;
 esac
 
-# --- a network that fails for one task: all end, one line says why, and there is no file. (Where the launcher asks the
-# first task to end, that one may say so in another.)
+# --- a network that fails for one task: all tasks end, one line gives the reason, and there is no file. (If the
+# launcher
+# ends the first task, that task may print a different line.)
 if [ -n "${PTRIANGLE_LOST:-}" ]; then
     fresh letter.poly
-    cp "$PTRIANGLE_LOST" .lost.so # the path may have blanks, which LD_PRELOAD takes for the end of a name
+    cp "$PTRIANGLE_LOST" .lost.so # a copy, since the path may contain blanks, at which LD_PRELOAD splits
     for one in 0 1; do
         for k in 1 40; do
             # shellcheck disable=SC2086 # several words
@@ -205,7 +205,7 @@ if [ -n "${PTRIANGLE_LOST:-}" ]; then
     check "one line" test "$(grep -c '^ptriangle: .* cannot reach' .err)" -eq 1
 fi
 
-# --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
+# --- memory runs out anywhere in one task: exit code 1, one line, no file; or all files
 fresh letter.poly
 program 0 -Qpq30a0.01 letter --output one
 if [ -n "${PTRIANGLE_SHIM:-}" ]; then
@@ -224,7 +224,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         fi
     done
 
-    # --- the disk is full for the last of three tasks, whatever it writes then: the same
+    # --- the disk is full for the last of three tasks, in any of its writes: the same
     for output in two "${outputs##* }"; do
         for k in 1 4 16 64; do
             rm -f two.*
@@ -238,7 +238,8 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         check "$output: a write has failed" test "$k" -gt 1
     done
 
-    # --- one task is killed there: all end, and nothing has got its name; other tasks, or one, go on, to the same bytes
+    # --- one task is killed there: all tasks end, and no file has its final name; other tasks, or one, resume to the
+    # same bytes
     kept="--checkpoint state --resume state --every 0"
     n=1
     for k in $(spread "${PTRIANGLE_SHORT_RUNS:-2}"); do
@@ -249,7 +250,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         check "killed at allocation $k: no file" sh -c '! ls two.* 2>/dev/null'
         n=$((4 - n)) # 3, or 1 without a launcher
         [ -e state/piece-0-0 ] || n=3
-        tries=0      # a task may outlive its launcher by a second, and holds the folder
+        tries=0      # a task may outlive its launcher by a second, and locks the folder
         while [ $tries -lt 100 ]; do
             # shellcheck disable=SC2086
             if [ "$n" -gt 1 ]; then
@@ -268,7 +269,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         check "no checkpoint is left" test ! -e state
     done
     ranks 0 2 -Qpq30a0.01 letter --output two
-    tries=0 # a task may outlive its launcher by seconds; the next run in the folder removes what it has left
+    tries=0 # a task may outlive its launcher by seconds; the next run in the folder removes its files
     while ls .tri-* >/dev/null 2>&1 && [ $tries -lt 40 ]; do
         tries=$((tries + 1))
         sleep 0.5
@@ -277,7 +278,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
     check "what killed tasks have left is gone" test -z "$(ls .tri-* 2>/dev/null)"
 fi
 
-# --- stopped, and gone on with by others: one task of the state of three, two of that of one
+# --- stopped and resumed by other numbers of tasks: one task from the state of three, two from the state of one
 program 0 -Qpq30a0.001 letter --output one
 goes_on="-Qpq30a0.001 letter --output two --checkpoint state --resume state --every 0 --time-limit"
 rm -f two.*
@@ -286,7 +287,7 @@ tries=0
 while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
     limit=$(awk -v n=$tries 'BEGIN { print 0.2 * 1.3 ^ n }')
     n=$(((tries + 1) % 3 + 1))
-    [ -e state/piece-0-0 ] || n=3 # one task alone would keep a state of its own
+    [ -e state/piece-0-0 ] || n=3 # a single task would write a state of its own kind
     # shellcheck disable=SC2086
     if [ $n -gt 1 ]; then
         timeout 100 "$MPIEXEC" -n $n "$bin/ptriangle" $goes_on "$limit" >.out 2>.err
@@ -300,8 +301,8 @@ while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
 done
 check "the same bytes by whoever goes on" same_but_for_comments one.node two.node
 
-# --- whose checkpoint it is comes before of what run: one task's, swept or as a whole, is not for several
-leave_state() { # N WORDS...: stopped with a state, unless it is finished before
+# --- the owner of a checkpoint is checked before its run: the state of one task, swept or not, is refused by several
+leave_state() { # N WORDS...: stops a run with a state, unless it finishes before
     n=$1
     shift
     limit=0.1
@@ -335,7 +336,8 @@ if [ -e kept ]; then
 fi
 rm -rf kept three.*
 
-# --- what wants the whole mesh: the first task keeps it as one does; nobody touches what another has as standard input
+# --- outputs that need the whole mesh: the first task keeps it, like a single process; no task reads another's standard
+# input
 echo precious >.stdin
 for output in "-e --output two" "--output two.vtu" "--output two.msh" "--output two.msh --parts 3"; do
     # shellcheck disable=SC2086 # several words
@@ -376,7 +378,7 @@ for suffix in node ele edge poly; do
 done
 rm -rf state two.*
 
-# --- one task alone is asked to end: all have its exit code
+# --- one task alone is asked to end: all tasks return its exit code
 what="two ranks, one of them with a limit"
 checks=$((checks + 1))
 timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
@@ -389,7 +391,7 @@ check "the other's" test "$(cat .code1)" -eq 124
 check "the checkpoint stays, as after any stop" test -e state/manifest
 rm -rf state
 
-# --- a signal to a task that only waits for the first one, which would work for long: that one is told
+# --- a signal to a task that waits for the first one, which would work for long: the first one is notified
 what="a signal to the task that waits"
 checks=$((checks + 1))
 timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
@@ -410,7 +412,7 @@ check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* no file was
 check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
 rm -rf state
 
-# --- the same where each refines its part: what all have kept counts
+# --- the same if each task refines its part: the triangles of all tasks count
 what="a signal to one of two that refine"
 checks=$((checks + 1))
 timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
@@ -427,7 +429,7 @@ complains 'stopped by .* while [a-z]+: about [0-9]+ triangles; no file was writt
 check "both lines tell of as many" test "$(grep -Eo '[0-9]+ triangles' .err | uniq | wc -l)" -eq 1
 rm -rf state two.*
 
-# --- stopped by the limit of time, the first task writes what it has
+# --- stopped by the time limit, the first task writes the current mesh
 ranks 124 2 -Qpq30a0.000003 letter --output two --write-partial --time-limit 2
 check "it says so" grep -q 'the mesh so far is written' .err
 check "once" test "$(grep -c 'stopped by' .err)" -eq 1

@@ -1,5 +1,5 @@
-# Counts that any right program finds (vertices triangles edges exterior interior subsegments), on classic inputs
-# that are not part of this tree; registered only where they are.
+# Counts that any correct program finds (vertices triangles edges exterior interior subsegments), on classic inputs that
+# are not part of this tree. Registered only if these inputs exist.
 reference() { # reference INPUT SWITCHES COUNTS...
     input=$1
     switches=$2

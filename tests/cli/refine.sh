@@ -1,10 +1,10 @@
-# -r: a mesh refined again and again, with the files, lines and errors of Triangle; by ptriangle the same for any number
-# of threads.
+# -r: a mesh refined repeatedly, with the files, lines and errors of Triangle. ptriangle gives the same mesh for any
+# number of threads.
 
 rows() { records "$1" | tail -n +2; }
 same_file() { grep -v '^#' "$1" >.expected; grep -v '^#' "$2" | cmp -s - .expected; }
 
-# --- without bounds: the mesh as it is
+# --- without bounds: the mesh is unchanged
 fresh letter.poly
 run 0 -pqa.3Q letter
 ls >.before
@@ -20,7 +20,7 @@ check "same nodes" same_file letter.1.node letter.2.node
 check "same triangles" same_file letter.1.ele letter.2.ele
 ls >.before
 run 0 -rp letter.1
-wrote letter.2.poly # the others from before
+wrote letter.2.poly # the other files were there before
 says "Opening letter.1.poly."
 matches "^  Input segments: [0-9]+$"
 silent_on "Input holes"
@@ -31,7 +31,7 @@ check "a hole" test "$(records letter.2.poly | tail -n 2 | head -n 1)" = 1
 fresh letter.poly
 run 0 -pqa.3Q letter
 ls >.before
-run 0 -rc letter.1 # the boundary as segments
+run 0 -rc letter.1 # the boundary becomes segments
 wrote letter.2.node letter.2.ele letter.2.poly
 check "boundary" test "$(rows letter.2.poly | head -n 1)" = "$(rows letter.1.poly | head -n 1)"
 check "no hole" test "$(records letter.2.poly | tail -n 1)" = 0
@@ -52,7 +52,7 @@ silent_on "!! !!"
 run 0 -rQ letter.1
 check "quiet" test ! -s .out
 
-# --- a mesh of which nothing is left
+# --- a mesh without triangles
 fresh nasty/hole_eats_all.poly
 run 0 -pjQ hole_eats_all
 check "no vertex" test "$(records hole_eats_all.1.node | head -n 1)" = "0 2 0 1"
@@ -91,7 +91,7 @@ printf '5 2 0 0\n1 0 0\n2 2 0\n3 2 2\n4 0 2\n5 1 1\n' >four.node
 printf '4 3 2\n1 1 2 5 7 -1.5\n2 2 3 5 8 1e300\n3 3 4 5 7 -1.5\n4 4 1 5 9 0\n' >four.ele
 printf '4\n1 .05\n2 -1\n3\n4 .002\n' >four.area
 printf '0 2 0 1\n4 1\n1 1 5 11\n2 2 5 12\n3 3 5 0\n4 4 5 13\n1\n1 5 5\n1\n1 1 .5 3 3\n' >four.poly
-run 0 -rpa four # bounds hold within the segments
+run 0 -rpa four # bounds apply within the segments
 says "Opening four.area."
 header four.1.ele "$(records four.1.ele | head -n 1 | cut -d ' ' -f 1) 3 2"
 check "attributes and areas stay where they are" awk '
@@ -106,7 +106,7 @@ check "attributes and areas stay where they are" awk '
     END { exit bad > 0 || seen[4] < 500 || seen[1] < 20 || !seen[2] || !seen[3] }' four.1.node four.1.ele
 check "markers" test "$(rows four.1.poly | awk 'NF == 4 { print $4 }' | sort -nu | tr '\n' ' ')" = "0 1 11 12 13 "
 check "hole copied, regions not" test "$(records four.1.poly | tail -n 2 | tr '\n' ' ')" = "1 1 5 5 "
-run 0 -A four.area # implies -ra; -A has no meaning
+run 0 -A four.area # implies -ra; -A has no effect
 check "two columns" test "$(records four.1.ele | head -n 1 | cut -d ' ' -f 3)" = 2
 check "values are copied" test "$(rows four.1.ele | cut -d ' ' -f 5,6 | sort -u | wc -l)" -eq 3
 run 0 -ra.4 four
@@ -117,7 +117,7 @@ cp four.1.ele five.ele
 run 0 -r five
 check "same triangles" same_file five.ele five.1.ele
 
-# A sliver that meets its bound, beside a triangle that has none: the edge between them is flipped.
+# A sliver that meets its bound, beside a triangle without a bound: the edge between them is flipped.
 printf '4 2 0 0\n1 0 0\n2 1 0\n3 .5 1e-9\n4 .5 -1\n' >sliver.node
 printf '2 3 0\n1 1 2 3\n2 1 4 2\n' >sliver.ele
 for bound in 1e-4 1e-6 1e-10; do
@@ -126,7 +126,7 @@ for bound in 1e-4 1e-6 1e-10; do
     header sliver.1.ele "2 3 0"
 done
 
-# --- clockwise triangles, six nodes, segments that are no edges
+# --- clockwise triangles, six nodes, segments that are not edges
 printf '4 3 0\n1 1 5 2\n2 2 3 5\n3 5 4 3\n4 4 1 5\n' >four.ele
 run 0 -rC four
 matches "^  Topology: consistent"
@@ -157,7 +157,7 @@ cp "$data/nasty/badindex_mesh.node" "$data/nasty/badindex_mesh.ele" .
 printf '5 2 0 0\n1 0 0\n2 2 0\n3 2 2\n4 0 2\n5 1 0\n' >bad.node
 printf '2 3 0\n1 1 2 3\n2 1 3 4\n' >bad.ele
 ls >.before
-bad() { # bad TEXT ELEMENTS: what -r says of these triangles
+bad() { # bad TEXT ELEMENTS: expects -r to report TEXT for these triangles
     printf '%s' "$2" >bad.ele
     run 1 -rq bad
     complains "^bad\.ele: $1"
@@ -190,7 +190,7 @@ bad "triangle 3 has an edge that two other triangles have" "3 3 0
 2 1 3 4
 3 1 5 3
 "
-for base in 0 1; do # an area bound that is none has the number that the file gives it
+for base in 0 1; do # an invalid area bound is reported with its number in the file
     printf '3 2 0 0\n%s 0 0\n%s 1 0\n%s 0 1\n' $base $((base + 1)) $((base + 2)) >bad.node
     printf '1 3 0\n%s %s %s %s\n' $base $base $((base + 1)) $((base + 2)) >bad.ele
     printf '1\n%s nan\n' $base >bad.area

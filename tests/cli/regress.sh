@@ -1,5 +1,5 @@
-# What programs pass to Triangle, and what its users reported: crashes, endless loops, locales, numbers.
-# docs/compatibility.md says which report each part stands for.
+# Switches that programs pass to Triangle, and problems that its users reported: crashes, endless loops, locales,
+# numbers. docs/compatibility.md lists the report behind each part.
 
 contents() { # contents BASE: all records of the output of BASE, without the closing comments
     for output in "$1".1.*; do
@@ -8,7 +8,7 @@ contents() { # contents BASE: all records of the output of BASE, without the clo
     done
 }
 
-same() { # same FILE SWITCHES OTHER: both ways to write the switches give the same files
+same() { # same FILE SWITCHES OTHER: both spellings of the switches give the same files
     rm -f "${1%.*}".1.*
     # shellcheck disable=SC2086 # several words
     run 0 $2 "$1"
@@ -20,7 +20,7 @@ same() { # same FILE SWITCHES OTHER: both ways to write the switches give the sa
     check "not as $2" cmp .expected .found
 }
 
-ends() { # ends SECONDS WORDS...: exit code 0 in time
+ends() { # ends SECONDS WORDS...: expects exit code 0 in time
     seconds=$1
     shift
     what="triangle $*"
@@ -30,7 +30,7 @@ ends() { # ends SECONDS WORDS...: exit code 0 in time
     [ "$found" -eq 0 ] || fault "exit code $found: $(head -n 1 .err)"
 }
 
-# --- bundles: noise inside, numbers without exponents and signs, the last number wins
+# --- bundles: ignored characters inside, numbers without exponents and signs, the last number wins
 fresh letter.poly section.poly
 same letter.poly -pq30Q "-Qz{pq30}"
 same letter.poly "-p -c -e -v -Q" "-Qpc-e-v"
@@ -63,12 +63,12 @@ for word in -pa0 -pqa. -pa0.0; do
 done
 same letter.poly -pqa0.05 -pqa0.05000000000000000000 # as MeshPy (%.20f) and ANUGA (%20.20f) write it
 fresh letter.poly
-run 0 -pqa0.00000000000000000001S10 letter # 1e-20: far below what can be reached
+run 0 -pqa0.00000000000000000001S10 letter # 1e-20: far below any possible area
 judge letter.1 --poly letter.poly
-run 0 -pq180S50 letter # no such angle exists
+run 0 -pq180S50 letter # an impossible angle
 judge letter.1 --poly letter.poly
 
-# --- numbers and the locale: a comma locale changes nothing. Made here where the system has none.
+# --- numbers and the locale: a locale with decimal commas changes nothing. It is generated if the system has none.
 locale_of() {
     for name in de_DE.UTF-8 de_DE.utf8 fr_FR.UTF-8; do
         LC_ALL=$name locale decimal_point 2>/dev/null | grep -q "^,$" && echo "$name" && return
@@ -91,8 +91,9 @@ if [ -n "$comma" ]; then
     what="LC_ALL=$comma"
     check "the mesh depends on the locale" cmp .expected .found
     check "printed numbers depend on the locale" sh -c 'grep -E "area:|angle:|-  +[0-9]" .out | cmp -s - .numbers'
-    # the libraries inside a process that has set it: these tests look for such locales themselves. Not where an
-    # emulator runs the programs by scripts (tools/ports.sh): the locales are in this machine's byte order
+    # The libraries, inside a process that has set the locale: these tests search for such locales themselves. Skipped
+    # if an emulator runs the programs through scripts (tools/ports.sh), since the locales have this machine's byte
+    # order.
     for program in switches decimal triangulate; do
         test="$bin/../tests/test_$program"
         [ ! -x "$test" ] || [ "$(head -c 2 "$bin/triangle")" = '#!' ] ||
@@ -103,7 +104,7 @@ fi
 rm -rf .locales .numbers .tests
 
 # --- programs that run triangle
-# FEMM: no iteration number, nothing but .node, .ele, .edge; counts from 0
+# FEMM: no iteration number, only .node, .ele, .edge; counts from 0
 fresh section.poly
 sed 's/\r//' section.poly >femm.poly
 cp femm.poly kept.poly
@@ -116,7 +117,7 @@ for more in "" -Y; do
     check "the input is as it was" cmp femm.poly kept.poly
     rm -f femm.node femm.ele femm.edge
 done
-# base 0 as FEMM writes it: all numbers in the files begin there
+# base 0 as FEMM writes it: all numbers in the files count from 0
 fresh base0.poly
 run 0 -p -P -j -q30 -e -A -a.01 -z -Q -I base0.poly
 for output in node ele edge; do
@@ -127,7 +128,7 @@ check "vertices exist" awk '
     FILENAME ~ /ele/ { for (k = 2; k <= 4; k++) if ($k < 0 || $k >= n) exit 1 }
     FILENAME ~ /edge/ { if ($2 < 0 || $2 >= n || $3 < 0 || $3 >= n) exit 1 }' base0.node base0.ele base0.edge
 
-# FloPy: numbered files with the vertices apart, all tables readable by columns, attributes whole numbers
+# FloPy: numbered files with separate vertices; all tables readable by columns; integer attributes
 fresh section.poly
 n=$(records section.poly | sed -n 1p | cut -d' ' -f1)
 records section.poly | head -n $((n + 1)) | awk 'NR > 1 { $1 = $1 - 1 } { print }' >base.0.node
@@ -153,7 +154,8 @@ wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
 check "grep 'Mesh vertices'" test "$(grep "Mesh vertices" .out | awk '{ print $3 }')" \
     = "$(records letter.1.node | sed -n 1p | cut -d' ' -f1)"
 
-# --- reports: crashes and endless loops. What must come out of data/regress is in data/expected.txt; here with bounds.
+# --- reports: crashes and endless loops. The expected meshes of data/regress are in data/expected.txt; here they get
+# bounds.
 fresh regress/hole_outside.poly regress/near_collinear_repeat.poly regress/touching_squares.poly \
     regress/pentagon_repeat.poly regress/outline_repeat.poly regress/arrow.poly regress/ulp_apart.poly \
     regress/near_cocircular.poly
@@ -176,7 +178,7 @@ counts 4 2 5 4 0 4
 ends 20 -pq arrow
 judge arrow.1 --poly arrow.poly --min-angle 20
 
-# --- bounds that were not kept: sizes beside slivers, circles of subsegments beside each other
+# --- bounds that earlier versions violated: sizes beside slivers, circles of adjacent subsegments
 fresh regress/ulps_apart.poly regress/needles.poly
 for words in -pa0.0002 -pq30a0.0002 -pq30a0.0002Y -pq30a0.0002YY; do
     every 2 || continue
@@ -195,7 +197,7 @@ for input in *.poly; do
     judge "${input%.*}.1" --poly "$input"
 done
 
-# --- holes and regions farther away than exact arithmetic reaches are outside
+# --- holes and regions beyond the range of exact arithmetic are outside
 fresh regress/far_hole.poly regress/far_places.poly regress/far_places_tiny.poly regress/far_region.poly
 for input in *.poly; do
     run 0 -pA "$input"
@@ -205,8 +207,8 @@ for input in *.poly; do
     judge "${input%.*}.1" --poly "$input" --min-angle 30
 done
 
-# --- much that meets within rounding: segments and vertices that were lost, markers, boundaries that met themselves
-everywhere() { # everywhere NAME SWITCHES...: each program, each of the switches, judged
+# --- many features within rounding: segments and vertices are kept, markers are right, boundaries do not intersect
+everywhere() { # everywhere NAME SWITCHES...: runs each program with each of the switches and checks the mesh
     name=$1
     shift
     for words; do
@@ -249,7 +251,7 @@ fresh regress/slit.poly
 run 0 -p slit
 counts 4 2 5 4 0 4
 
-# --- angles that cannot be: it ends, and says so
+# --- impossible angles: the run ends and reports it
 fresh letter.poly
 for angle in 35 36 40 45 59 60 61 90; do
     every 4 || continue
@@ -257,13 +259,13 @@ for angle in 35 36 40 45 59 60 61 90; do
     judge letter.1 --poly letter.poly
 done
 
-# --- points for angles that ran away: right meshes, in time. (test_refine tries all inputs.)
+# --- angles at which points would accumulate endlessly: valid meshes, in time. (test_refine tries all inputs.)
 fresh regress/endless_q36_small.poly regress/endless_q36_fan.poly regress/endless_q35_graded.poly \
     regress/slow_q41D_2369.poly regress/ranaway30.poly regress/thin_comb.poly \
     regress/ranaway_fan.poly regress/ranaway_zigzag.poly regress/hidden_gap.poly \
     regress/hatching.poly regress/cut_wedge.poly regress/nearly_straight.poly regress/bundle_levels.poly \
     regress/graded_1899.poly regress/spike_levels.poly
-right() { # right WORDS...: a right mesh
+right() { # right WORDS...: expects a valid mesh
     every 3 || return 0
     ends 60 "$@"
     case $1 in *c*) judge "$2.1" --poly "$2.poly" --keep-hull ;; *) judge "$2.1" --poly "$2.poly" ;; esac
@@ -285,20 +287,20 @@ right -pcq30S50000 nearly_straight
 right -pcq34 ranaway_fan
 right -pcq34 ranaway_zigzag
 right -pq33 thin_comb # each bar is a narrow space that no edge of the triangulation bridges
-right -pD bundle_levels # circles in a bundle of segments whose ends are not level
+right -pD bundle_levels # circles in a bundle of segments whose ends differ in height
 right -pa0.00065D bundle_levels
 right -pq25D spike_levels # circles that rounding keeps from being empty
 run 0 -pq34 graded_1899
 run 0 -rpq34 graded_1899.1
 judge graded_1899.2 --poly graded_1899.poly
-fresh regress/flat_hole.poly # beside it there is nothing small: the sliver itself is empty
+fresh regress/flat_hole.poly # the sliver is empty and has no small features beside it
 run 0 -pq33 flat_hole
 says "All triangles keep the bounds."
 judge flat_hole.1 --poly flat_hole.poly --min-angle 33
-fresh regress/drifted_chain.poly # split points an ulp inside, again and again, where coordinates get finer
+fresh regress/drifted_chain.poly # repeated split points an ulp inside, where coordinates get finer
 run 0 -pq33 drifted_chain
 judge drifted_chain.1 --poly drifted_chain.poly --min-angle 33
-fresh regress/flat_hull.poly # the hull runs outside its segments, by an ulp
+fresh regress/flat_hull.poly # the hull lies outside its segments, by an ulp
 for switches in -pcq20 -pcq30a0.05 -pcq20F; do
     rm -f flat_hull.1.*
     run 0 $switches flat_hull
@@ -312,11 +314,11 @@ fresh regress/subnormal.poly # the crossing would be rounded to a corner
 run 1 -p subnormal
 complains "numbers lose their precision"
 
-fresh regress/below_dxf.poly # two triangles stayed below the bound without need
+fresh regress/below_dxf.poly # two triangles that need not stay below the bound
 run 0 -pq20 below_dxf
 says 'All triangles keep the bounds.'
 
-# --- input that is nothing
+# --- empty and degenerate input
 fresh nasty/identical.node nasty/nan.node nasty/inf.node nasty/inf_word.node nasty/two_points.node nasty/empty.node \
     nasty/collinear.node nasty/collinear.poly
 printf '0 2 0 0\n' >none.node
@@ -338,7 +340,7 @@ for words in "" -q -c -i -env -o2 -j; do
     counts . 0 0 0
 done
 
-# --- the reports themselves, where they are at hand
+# --- the inputs of the reports themselves, if they are available
 if [ -n "$shared" ]; then
     for input in "$shared"/bug_*.poly; do
         every 4 || continue

@@ -1,7 +1,7 @@
-# The schedule's mesh has about as many triangles as that of one sequential call: in cells of its own choice within a
-# tenth, in cells of 60 triangles, where every block is a seam, within a half.
+# The schedule's mesh has about as many triangles as that of one sequential call: within a tenth with cells of the
+# default size, within a half with cells of 60 triangles, where every block is a seam.
 
-size_of() { # size_of PROGRAM BLOCK SWITCHES BASE: triangles
+size_of() { # size_of PROGRAM BLOCK SWITCHES BASE: number of triangles
     rm -f "$4".1.*
     PTRIANGLE_TEST_BLOCK=$2 "$bin/$1" "$3" "$4.poly" >.out 2>.err || return
     awk 'NR == 1 { print $1 }' "$4.1.ele"

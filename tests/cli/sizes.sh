@@ -1,18 +1,18 @@
-# Lengths of edges: --size and its kin, of both programs; fields in files, whatever the format; what is no field.
+# Lengths of edges: --size and related options, in both programs; fields in files of every format; invalid fields.
 
-triangles() { awk '!/^[ \t]*(#|$)/ { print $1; exit }' "$1.ele"; } # triangles BASE
+triangles() { awk '!/^[ \t]*(#|$)/ { print $1; exit }' "$1.ele"; } # triangles BASE: number of triangles
 
-same() { # same A B: files, but for the command in their last line
+same() { # same A B: two files are equal except for the command in their last line
     records "$1" >.expected
     check "$1 and $2 are the same" sh -c 'test -s .expected && grep -v "^#" "$1" | awk "{ \$1 = \$1; print }" | cmp - .expected' sh "$2"
 }
 
-alike() { # alike N M: two counts differ by 3% at most
+alike() { # alike N M: two counts differ by at most 3%
     checks=$((checks + 1))
     echo "$1 $2" | awk '{ exit !($1 > 0 && $1 < 1.03 * $2 && $2 < 1.03 * $1) }' || fault "$1 and $2 triangles"
 }
 
-sizes_ratio() { # sizes_ratio BASE H: the mean edge of the triangles is about H
+sizes_ratio() { # sizes_ratio BASE H: the mean edge length of the triangles is about H
     ratio=$(awk -v h="$2" 'FNR == 1 { file++ } /^[ \t]*(#|$)/ { next } !((file, 0) in head) { head[file, 0]; next }
         file == 1 { x[$1] = $2; y[$1] = $3; next }
         { for (k = 2; k < 5; k++) { a = $k; b = $(k == 4 ? 2 : k + 1); sum += sqrt((x[a] - x[b])^2 + (y[a] - y[b])^2); n++ } }
@@ -60,7 +60,7 @@ fields() {
         faces = faces f " " a " " b " " c "\n"; tria = tria (a - 1) ";" (b - 1) ";" (c - 1) ";0\n"
         pos = pos "ST(" corner(a) "," corner(b) "," corner(c) "){" v[a] "," v[b] "," v[c] "};\n"
     }'
-    # quarters of the same numbers as float32, the lowest row first
+    # the same numbers divided by four, as float32, the lowest row first
     { printf '\223NUMPY\001\000\077\000' && printf '%-62s\n' "{'descr': '<f4', 'fortran_order': False, 'shape': (3, 3), }" &&
         printf '\000\000\200\076\000\000\100\077\000\000\240\077\000\000\240\077\000\000\340\077\000\000\020\100' &&
         printf '\000\000\020\100\000\000\060\100\000\000\120\100'; } >raster.npy
@@ -90,7 +90,7 @@ for mesher in triangle ptriangle; do
     complains "^$mesher: --size-near 99:1.*: no segment has the marker 99\$"
     wrote
 
-    # --- files that are none
+    # --- invalid files
     printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 x\n' >broken.asc
     printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 9\n-9999 0\n0 -9999\n' >empty.asc
     mesher 1 $mesher -p letter --size broken.asc
@@ -101,7 +101,7 @@ for mesher in triangle ptriangle; do
     complains "^$mesher: --size empty.asc.*: no value is above 0\$"
     wrote broken.asc empty.asc
 
-    # --- a number is a bound of 20 degrees, and edges of about that length
+    # --- a number sets an angle bound of 20 degrees and edges of about that length
     fresh letter.poly
     mesher 0 $mesher -p letter --size 0.5
     says "  Sizes: 0.5; gradation 0.2"
@@ -111,11 +111,11 @@ for mesher in triangle ptriangle; do
     mesher 0 $mesher -pq30 letter --max-size=0.5
     judge letter.1 --poly letter.poly --min-angle 30
     sizes_ratio letter.1 0.5
-    # of a mesh that is there
+    # of an existing mesh
     mesher 0 $mesher -rp letter.1 --size 0.25
     sizes_ratio letter.2 0.25
 
-    # --- near a marker: the shortest edges are there, and lengths grow
+    # --- near a marker: the shortest edges are there, and lengths grow with distance
     fresh koch_lake.poly
     mesher 0 $mesher -p koch_lake --size-near 2:0.004,0.15 --max-size 0.1
     says "  Sizes: 0.004 at segments with marker 2 growing by 0.15; at most 0.1; gradation 0.2"
@@ -123,9 +123,9 @@ for mesher in triangle ptriangle; do
     mesher 0 $mesher -p koch_lake --size-near 2:0.004 --max-size 0.1 --gradation 0.5
     [ "$(triangles koch_lake.1)" -lt "$near" ] || fault "a steeper growth makes no fewer triangles than $near"
 
-    # --- channels and curves: more triangles for more of each
+    # --- channels and curves: larger counts give more triangles
     fresh thin_channel.poly gear.poly
-    more() { # more FILE OPTION N...: each makes more triangles than the one before
+    more() { # more FILE OPTION N...: each value gives more triangles than the one before
         file=$1 option=$2 last=0
         shift 2
         for n; do
@@ -137,7 +137,7 @@ for mesher in triangle ptriangle; do
     more thin_channel --elements-across 2 4 8
     more gear --per-circle 20 100 400
 
-    # --- one field, all formats: rasters alike byte by byte, meshes too, and both to a few triangles
+    # --- one field in all formats: rasters give the same bytes, meshes as well, and both agree up to a few triangles
     fresh letter.poly
     fields
     ls >.before
@@ -156,11 +156,11 @@ for mesher in triangle ptriangle; do
     for field in mesh.node mesh.pos; do
         alike "$(triangles out_raster.asc)" "$(triangles "out_$field")"
     done
-    # a field that ends too early is told of
+    # a field that ends too early is reported
     printf 'ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 1\n1 1\n' >small.asc
     mesher 0 $mesher -p letter --size small.asc
     matches "^Warning:  .*small.asc covers .*nearest lengths count\.\$"
-    # and none is written over
+    # and no field file is overwritten
     cp mesh.node letter.1.node
     cp mesh.ele letter.1.ele
     mesher 1 $mesher -p letter --size letter.1.node
@@ -189,7 +189,7 @@ program 0 -p letter --size-near 1:0.05 --report report.json --placement classic
 check "the report says so" grep -q '"placement": "classic"' report.json
 [ "$(triangles letter.1)" -ne "$front" ] || fault "classic makes the mesh of the front"
 
-# --- threads make no difference; nor do blocks that are swept
+# --- threads make no difference, and neither do swept blocks
 fields
 for words in "--size 0.1" "--size raster.asc --size-near 1:0.05,0.3 --max-size 0.4"; do
     # shellcheck disable=SC2086 # several words
@@ -201,7 +201,7 @@ for words in "--size 0.1" "--size raster.asc --size-near 1:0.05,0.3 --max-size 0
     done
 done
 
-# smoothing needs the whole mesh, also if it does not fit in memory; without it the mesh is another one
+# smoothing needs the whole mesh, even if it does not fit in memory; without smoothing the mesh differs
 program 0 -pQ letter --size 0.02 --threads 2 --output one
 program 0 -pQ letter --size 0.02 --threads 2 --optimise 0 --output rough
 case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
@@ -216,7 +216,7 @@ cmp -s one.node rough.node && fault "--optimise 0 moves vertices"
 program 1 -pQ letter --size 0.02 -D --optimise 1
 complains 'optimise moves vertices'
 
-# --- a run goes on with the same field alone
+# --- a run resumes only with the same field
 limit=0.02
 rm -rf state
 until [ -e state/state-0 ] || [ -e big.node ]; do

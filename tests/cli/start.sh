@@ -1,7 +1,7 @@
-# Starting: MPI and HDF5, which take longer to load than a small mesh to make, are loaded where they are needed only, from
-# a module beside the program, wherever both lie.
+# Starting: loading MPI and HDF5 takes longer than making a small mesh, so they are loaded only when needed, from a
+# module beside the program, wherever both are installed.
 
-# PTRIANGLE_MODULE_DIR: its folder, from that of the program; empty: programs have all themselves.
+# PTRIANGLE_MODULE_DIR: folder of the modules relative to that of the program; empty: programs contain all code.
 far=${PTRIANGLE_MODULE_DIR:-}
 if [ -z "$far" ]; then
     echo "cli start: programs without modules"
@@ -24,7 +24,7 @@ for each in $names; do
     ln -s "../bin/$each" alone/links/
 done
 
-# Without the module: all else works, and one line says what is amiss.
+# Without the module all other functions work, and one line names the missing module.
 from() { # from FOLDER CODE PROGRAM WORDS...
     folder=$1
     code=$2
@@ -53,7 +53,7 @@ amiss ptriangle
 from alone/bin 2 trianglecheck letter.h5
 amiss trianglecheck
 
-# With it: moved, and found by a link.
+# With the module: moved together, and found through a link.
 mkdir -p "alone/bin/$far"
 cp "$modules"/*.so "alone/bin/$far/"
 if "$bin/ptriangle" -Qpq30 letter.poly --output whole.h5 2>/dev/null; then
@@ -70,7 +70,8 @@ if "$bin/ptriangle" -Qpq30 letter.poly --output whole.h5 2>/dev/null; then
     check "found by PATH" cmp whole.h5 letter.h5
 fi
 
-# Linked into a folder of somebody else, with a module beside it: not loaded, whichever of folders and module is theirs.
+# A link in a folder of another user, with a module beside it: not loaded, if the folder or the module belongs to that
+# user.
 if [ "$(id -u)" -eq 0 ] && chown 65534 "alone/bin/$far/ptriangle.so" 2>/dev/null; then
     chown 0 alone/bin/ptriangle
     for theirs in "alone/bin/$far/ptriangle.so" "alone/bin/$far" alone/bin; do
@@ -82,12 +83,12 @@ if [ "$(id -u)" -eq 0 ] && chown 65534 "alone/bin/$far/ptriangle.so" 2>/dev/null
         check "no file" test ! -e theirs.h5
         chown 0 "$theirs"
     done
-    chown -R 65534 alone # program and folders of one owner
+    chown -R 65534 alone # program and folders have the same owner
     from alone/bin 0 ptriangle -Qpq30 letter.poly --output theirs.h5
     chown -R 0 alone
 fi
 
-# Of another version: refused.
+# A module of another version is refused.
 version=$("$bin/ptriangle" --version | sed -n '1s/.* //p')
 other=$(echo "$version" | tr 0-9 1-90)
 for module in "$modules"/*.so; do

@@ -1,7 +1,7 @@
-# Runs that are stopped: exit code, one line, all files or none; what a killed run has left is gone after the next.
+# Stopped runs: exit code, one line, all files or none. The next run removes the files of a killed run.
 #
-# A pipe that nobody reads or writes holds a program where it is to be held, so that no test depends on speed.
-await() { # await COMMAND...: until it succeeds
+# A pipe without a reader or writer blocks a program at a chosen point, so that no test depends on speed.
+await() { # await COMMAND...: repeats the command until it succeeds
     tries=0
     until "$@" 2>/dev/null || [ $tries -ge 2400 ]; do
         tries=$((tries + 1))
@@ -10,7 +10,7 @@ await() { # await COMMAND...: until it succeeds
     check "has not come about: $*" "$@"
 }
 
-# Outputs are opened once before anything is made, empty, to see that they can be.
+# Outputs are opened once, empty, before the mesh is made, to check that they can be written.
 is_there() { find . -name '.tri-*.tmp' -size +0c | grep -q .; }
 
 if ! env --default-signal=INT true 2>/dev/null; then
@@ -19,7 +19,7 @@ if ! env --default-signal=INT true 2>/dev/null; then
     return
 fi
 
-start() { # start PROGRAM WORDS...: in the background, where a shell lets its jobs ignore some signals
+start() { # start PROGRAM WORDS...: in the background; a shell lets such jobs ignore some signals, which env undoes
     program=$1
     shift
     : >.out
@@ -28,7 +28,7 @@ start() { # start PROGRAM WORDS...: in the background, where a shell lets its jo
     job=$!
 }
 
-ended() { # ended CODE: the job ends with it, one line tells of it, and nothing is left
+ended() { # ended CODE: the job ends with this code and prints one line, and no file is left
     wait $job 2>/dev/null
     found=$?
     checks=$((checks + 1))
@@ -36,7 +36,7 @@ ended() { # ended CODE: the job ends with it, one line tells of it, and nothing 
     check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
 }
 
-# --- every signal, while files are written and while input is awaited
+# --- every signal, while files are written and while the program waits for input
 for signal in HUP:1 INT:2 QUIT:3 TERM:15 ALRM:14 USR1:10 USR2:12 XCPU:24 VTALRM:26 PROF:27; do
     number=${signal#*:} # on Linux
     signal=${signal%:*}
@@ -61,7 +61,7 @@ for signal in HUP:1 INT:2 QUIT:3 TERM:15 ALRM:14 USR1:10 USR2:12 XCPU:24 VTALRM:
     what="triangle, SIG$signal while reading"
     ls >.before
     start triangle pipe.node
-    exec 9>pipe.node # returns when the other end is open, too
+    exec 9>pipe.node # returns when the other end is also open
     kill -s $signal $job
     ended $((128 + number))
     exec 9>&-
@@ -77,7 +77,7 @@ if [ -x "$bin/ptriangle" ]; then
     check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
     wrote
 
-    # --- the mesh so far
+    # --- writing the current mesh
     what="ptriangle --write-partial"
     report="--report report.json"
     "$bin/ptriangle" -p none $report 2>&1 | grep -q 'without the library jansson' && report=""
@@ -101,7 +101,7 @@ if [ -x "$bin/ptriangle" ]; then
         complains 'time-limit: '
     done
 
-    # --- what a checkpoint keeps, amid the first column of a sweep
+    # --- the content of a checkpoint in the middle of a sweep's first column
     fresh letter.poly
     ls >.before
     what="ptriangle --checkpoint, stopped amid a column"
@@ -120,14 +120,14 @@ if [ -x "$bin/ptriangle" ]; then
     check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
     rm -rf state
 
-    # --- what stands in the way of an end is not waited for: a pipe that nobody reads
+    # --- a program that is asked to end does not wait for a blocked output: a pipe without a reader
     for area in "" q30a0.01; do
         fresh letter.poly
         mkfifo letter.1.ele
         ls >.before
         what="ptriangle -p$area --checkpoint, while a pipe is opened"
         PTRIANGLE_TEST_BLOCK=60 start ptriangle "-p$area" letter --checkpoint state --every 0
-        await grep -q 'Writing letter.1.ele' .out # as soon as it is said
+        await grep -q 'Writing letter.1.ele' .out # as soon as the line is printed
         kill -s TERM $job
         wait $job 2>/dev/null
         check "exit code" test $? -eq 143
@@ -147,7 +147,7 @@ if [ -x "$bin/ptriangle" ]; then
         fi
     done
 
-    # --- no file twice, and none that was read
+    # --- no file is written twice, and no input is overwritten
     fresh letter.poly
     cksum letter.poly >.expected
     ln -s letter.poly link
@@ -175,7 +175,7 @@ if [ -x "$bin/ptriangle" ]; then
         done
     fi
 
-    # --- more threads than there can be
+    # --- more threads than the system allows
     fresh letter.poly
     OMP_NUM_THREADS=100000 mesher 0 ptriangle -pqQ letter
     judge letter.1 --poly letter.poly --min-angle 20
@@ -195,7 +195,7 @@ if [ -x "$bin/ptriangle" ]; then
     matches '^  Triangles: [0-9.]+ [mb]illion$'
     complains 'triangles, and a mesh holds 537 million where it must be there as a whole, as for -n .neighbours.$'
     wrote
-    # 0.93 of it beyond doubt, likely 1.06
+    # certainly 0.93 times the limit on triangles, likely 1.06 times
     fresh square.poly
     mesher 1 ptriangle -pna0.000000002 square.poly --dry-run
     complains '^ptriangle: the bounds ask for about 5[67][0-9] million triangles, and a mesh holds 537 million where it must '
@@ -212,14 +212,14 @@ if [ -x "$bin/ptriangle" ]; then
     mesher 1 ptriangle -p square --memory 4GB
     complains '^ptriangle: --memory: "4GB" is not a size such as 500M, 4G or 60%, from 1M on$'
 fi
-# the area over the bound is 1.03 of what a mesh holds; without the lattice, no mesh would do with 0.83
+# area divided by bound is 1.03 times the limit on triangles; without the lattice, 0.83 times is already too much
 fresh square.poly
 mesher 1 triangle -pa.0000000018 square
 complains 'the area bounds ask for at least [0-9.]+ [mb]illion triangles, and a mesh holds 537 million'
 mesher 1 triangle -pa.00000000226 square --placement classic
 complains 'the area bounds ask for at least [0-9.]+ [mb]illion triangles, and a mesh holds 537 million'
 wrote
-# far over it, a number that can be read
+# far above the limit, the number is still readable
 mesher 1 triangle -pa.00000000000000000000000000000000000000001 square
 complains 'the area bounds ask for at least over 1000 trillion triangles, and a mesh holds 537 million'
 wrote
@@ -241,7 +241,7 @@ b"
 complains '^a\\nb\.poly: cannot open'
 check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
 
-# --- what a killed process has left
+# --- files of a killed process
 fresh letter.poly
 mkfifo letter.1.ele
 ls >.before
@@ -253,9 +253,9 @@ wait $job 2>/dev/null
 check "something is left" is_there
 rm letter.1.ele
 host=$(ls .tri-*-$job-0.tmp | sed "s/^\.tri-//; s/-$job-0\.tmp\$//")
-: >".tri-$host-$$-0.tmp"            # a process that runs
+: >".tri-$host-$$-0.tmp"            # of a running process
 : >".tri-another-host-99999999-0.tmp"
-: >".tri-$host-99999999-x.tmp"      # none of ours
+: >".tri-$host-99999999-x.tmp"      # not one of our files
 ls -A | grep -v "^\.tri-$host-$job-" | grep -v '^\.before$' >.keep
 mv .keep .before
 mesher 0 triangle -p letter

@@ -1,8 +1,8 @@
-# Meshes that are swept: the same files as out of memory, refusals, checkpoints.
+# Swept meshes: the same files as for meshes in memory, refusals, checkpoints.
 #
-# PTRIANGLE_TEST_SWEEP sweeps what would fit in memory, PTRIANGLE_TEST_BLOCK makes many columns of a small mesh. A
-# checkpoint after each column, and a time after which a run is stopped or killed: wherever that falls, what goes on
-# ends with the same bytes; so no test depends on speed.
+# PTRIANGLE_TEST_SWEEP sweeps meshes that would fit in memory, and PTRIANGLE_TEST_BLOCK gives a small mesh many columns.
+# Runs write a checkpoint after each column and are stopped or killed after some time. Wherever that happens, the
+# resumed run ends with the same bytes, so no test depends on speed.
 h5() { "$bin/ptriangle" --version >/dev/null && "$bin/ptriangle" -Qp letter --output .try.h5 >/dev/null 2>&1; }
 
 fresh letter.poly
@@ -13,8 +13,8 @@ if ! h5; then
 fi
 rm -f .try.*
 
-# killed_and_on SECONDS WORDS...: runs with a checkpoint after each column, each a while longer than the one before;
-# every other is killed, the rest stop at the time limit, until one ends.
+# killed_and_on SECONDS WORDS...: runs with a checkpoint after each column, each run somewhat longer than the one
+# before, until one ends. Every other run is killed, the rest stop at the time limit.
 killed_and_on() {
     limit=$1
     shift
@@ -22,7 +22,7 @@ killed_and_on() {
     longer=$(full && echo 1.3 || echo 1.8)
     found=-1
     rounds=0
-    until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do # not until the file is there: a kill may fall between two renames
+    until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do # the file must exist, since a kill may happen between two renames
         rounds=$((rounds + 1))
         limit=$(echo "$limit $longer" | awk '{ print $1 * $2 }')
         if [ $((rounds % 2)) -eq 0 ]; then
@@ -88,7 +88,7 @@ check "nothing is left" sh -c '! ls -A | grep -q "^\.tri-"'
 
 rm -f .whole .swept
 
-# --- formats that are written when all tiles are there
+# --- formats that are written when all tiles are finished
 fresh letter.poly section.poly
 for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq33a0.005B letter"; do
     every 3 || continue
@@ -107,7 +107,7 @@ PTRIANGLE_TEST_SWEEP=1 program 1 -Qpq30a0.002 letter --output swept.vtu --output
 complains 'nowhere: cannot park'
 rm -f swept* whole*
 
-# --- what cannot be swept is there as a whole, and what is too large for that is refused
+# --- a mesh that cannot be swept is made as a whole, and refused if it is too large for that
 fresh square.poly
 for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial"; do
     # shellcheck disable=SC2086
@@ -121,7 +121,7 @@ matches '^  Disk: [1-9][0-9]{2} MB'
 matches '^  Disk for the checkpoint: ([1-9][0-9]{2} M|[1-9][0-9.]* G)B'
 wrote
 
-# --- a folder for what is parked is tried before the work
+# --- the folder for parked meshes is tested before the work
 PTRIANGLE_TEST_SWEEP=1 program 1 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
 complains 'nowhere: cannot park a mesh in this directory: No such file or directory'
 check "it comes before the work" sh -c '! grep -q "^Sweeping" .out'
@@ -130,7 +130,7 @@ program 0 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
 wrote x.h5 x.xdmf
 rm -f x.h5 x.xdmf
 
-# --- a folder for checkpoints that holds other files
+# --- a checkpoint folder that contains other files
 fresh letter.poly
 mkdir x
 cp letter.poly x/piece-3.poly
@@ -149,7 +149,7 @@ program 1 -Qpq30a0.01 absent.poly --checkpoint y
 check "one of its own does not" test ! -e y
 rm -rf x o.*
 
-# --- a checkpoint after each column; stopped, killed, and on again
+# --- a checkpoint after each column; stopped, killed, and resumed
 fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5
 ls >.before
@@ -158,7 +158,7 @@ killed_and_on 0.05 -Qpq30a0.002 letter --output out.h5
 check "the same bytes" cmp whole.h5 out.h5
 wrote out.h5 out.xdmf
 
-# --- what has been counted before a stop counts
+# --- counts from before a stop are included
 fresh nasty/spike.poly
 program 0 -pq30a0.0005 spike --output whole.h5
 grep 'below the bounds' .out >.expected
@@ -170,7 +170,7 @@ fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5
 ls >.before
 
-# --- the line that goes on
+# --- the printed line that resumes the run
 rm -f out.*
 ls >.before
 limit=0.02
@@ -184,7 +184,7 @@ if [ -e state/state-0 ]; then
     complains '^ptriangle: [0-9]+ triangles are kept; to go on: ptriangle -Qpq30a0.002 letter --output=out.h5 --every 0 --resume state$'
     cp -R state kept
 
-    # --- not with another input, other bounds, another directory, twice, or damaged
+    # --- refused with another input, other bounds, another directory, twice, or if damaged
     sed 's/^3 5 0\.75 /3 5 0.76 /' letter.poly >other.poly
     ls >.before
     program 1 -Qpq30a0.002 other --output out.h5 --resume state
@@ -214,7 +214,7 @@ if [ -e state/state-0 ]; then
         "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --resume state >.out 2>.err
         found=$?
         checks=$((checks + 1))
-        if [ $found -eq 0 ]; then # the state that does not count
+        if [ $found -eq 0 ]; then # the state that the manifest does not name
             check "the same bytes" cmp whole.h5 out.h5
             rm -f out.*
             continue
@@ -233,13 +233,13 @@ if [ -e state/state-0 ]; then
     rm -f out.*
 fi
 
-# --- a file that cannot be written: what there is of the mesh is kept, and one line tells how to go on
+# --- a file that cannot be written: the current mesh is kept, and one line shows how to resume
 fresh letter.poly
 if [ -e /dev/full ] && (ulimit -f 600) 2>/dev/null; then
     program 0 -Qpq30a0.002 letter --output whole.h5
     what="ptriangle, a file too large"
     (
-        ulimit -f 600 # more than the checkpoint's files, less than all
+        ulimit -f 600 # more than the checkpoint's files need, less than all files
         "$bin/ptriangle" -Qpq30a0.002 letter --output out --checkpoint state --every 0 >.out 2>.err
     )
     check "exit code" test $? -eq 1
@@ -248,7 +248,7 @@ if [ -e /dev/full ] && (ulimit -f 600) 2>/dev/null; then
     check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
 fi
 
-# --- a mesh that stays as a whole goes on from a state, too
+# --- a mesh that is not swept also resumes from a state
 unset PTRIANGLE_TEST_SWEEP
 fresh letter.poly
 program 0 -pq33a0.0005e letter --output whole --checkpoint state --every 0

@@ -1,4 +1,4 @@
-# Every switch: what it changes in files and lines.
+# Every switch: its effect on files and lines.
 
 vertices() { records "$2" | head -n $(($1 + 1)); } # vertices N FILE: the first section of a .poly file
 
@@ -80,7 +80,7 @@ run 0 -pq61 letter
 matches "^Warning:  an angle bound of 61"
 judge letter.1 --poly letter.poly --max-bad 1000000
 
-# --- placement: classic makes the meshes that there were before the lattice, which takes a third fewer triangles
+# --- placement: classic makes meshes without the lattice, which saves a third of the triangles
 fresh letter.poly section.poly
 run 0 -pq20a0.1 --placement classic letter
 counts 611 1074
@@ -119,10 +119,10 @@ ls >.before
 run 0 -pA bare
 header bare.1.ele "57 3 0"
 fresh section.poly
-run 0 -p section # the section of regions is not looked at
+run 0 -p section # the section of regions is ignored
 check "regions are not echoed" sh -c 'test "$(grep -v "^#" section.1.poly | tail -n 2 | head -n 1)" = 1'
 
-# --- what is written
+# --- files written
 fresh letter.poly
 run 0 -penvg letter
 wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge letter.1.neigh letter.1.off letter.1.v.node \
@@ -137,7 +137,7 @@ check "off counts from 0" \
 check "order of writing" sh -c 'test "$(sed -n "s/^Writing letter\.1\(.*\)\.\$/\1/p" .out | tr "\n" " ")" = \
     ".node .ele .poly .off .edge .v.node .v.edge .neigh "'
 check "rays where the boundary is" sh -c 'test "$(awk "!/^#/ && NF == 5" letter.1.v.edge | wc -l)" -eq 57'
-judge letter.1 --poly letter.poly # takes the neighbours too
+judge letter.1 --poly letter.poly # also checks the neighbours
 run 0 -pB letter
 header letter.1.node "57 2 1 0"
 header letter.1.poly "0 2 1 0"
@@ -170,12 +170,12 @@ says "Opening points.poly."
 says "Opening points.node."
 counts 1004 2002
 run 0 -pI points
-wrote points.1.ele points.1.node points.1.poly points.ele # the first three from before
+wrote points.1.ele points.1.node points.1.poly points.ele # the first three were there before
 
 fresh letter.poly
 run 0 -pO letter
 says "  Input holes: 1"
-counts 57 74 130 38 19 57 # the hole is full
+counts 57 74 130 38 19 57 # the hole is filled
 check "holes are echoed" sh -c 'test "$(grep -v "^#" letter.1.poly | tail -n 2 | head -n 1)" = 1'
 
 # --- o2
@@ -268,7 +268,7 @@ check "markers of sides go to their pieces and vertices" awk '
     END { exit !(seen[1] && seen[2] && seen[3] && seen[4] && seen[5] && seen[0]) }' box_hole.1.edge
 judge box_hole.1 --poly box_hole.poly --min-angle 20 --max-area .5
 
-# --- as other programs call it
+# --- calls as other programs make them
 fresh section.poly
 run 0 -p -P -j -q30 -e -A -a -z -Q -I section.poly
 wrote section.node section.ele section.edge

@@ -1,9 +1,9 @@
-# ptriangle: the same bytes for any number of threads. With tiny cells, so that small meshes have many blocks;
-# threads_large.sh does the same with the cells and sizes of real work.
+# ptriangle: the same bytes for any number of threads. Tiny cells give small meshes many blocks. threads_large.sh runs
+# the same test with cells and meshes of realistic size.
 if [ "$name" = threads ]; then
     PTRIANGLE_TEST_BLOCK=500
     export PTRIANGLE_TEST_BLOCK
-    coarser=16 # times
+    coarser=16 # factor for areas
     counts="1 8 3"
 else
     coarser=1
@@ -12,8 +12,9 @@ fi
 
 sums() { cat ./*.node ./*.ele ./*.poly | cksum; }
 
-# same AREA SWITCHES JUDGE_OPTIONS INPUT: all files, with the comment that quotes the command line, are the same for any
-# number of threads and from one run to the next; there are several blocks; the mesh keeps the area and the options.
+# same AREA SWITCHES JUDGE_OPTIONS INPUT: all files, including the comment that quotes the command line, are the same
+# for any number of threads and for repeated runs. There are several blocks. The mesh meets the area bound and the
+# options.
 same() {
     [ "$name" != threads ] || every 4 || return 0
     area=$(echo "$1" | awk -v n=$coarser '{ printf "%.17g", n * $1 }')
@@ -37,8 +38,8 @@ same() {
     judge "$base.1" --poly "$base.poly" --max-area "$area" $3
 }
 
-# Areas for 100000 to 300000 triangles; the graded inputs have many of them along their boundaries. Where small angles
-# or narrow channels of the input leave triangles below the bound, their number is bounded.
+# Area bounds for 100,000 to 300,000 triangles; graded inputs have many of them along their boundaries. If small angles
+# or narrow channels of the input leave triangles below the bound, their number is limited.
 same 4e-4 -pq30 "--min-angle 30" letter.poly
 same 6e-6 -pq "--min-angle 20" square_random1000.poly
 same 6e6 -pq30 "--max-bad 300" coast/norway_sea.poly

@@ -1,2 +1,2 @@
-# As threads.sh, with meshes of 100,000 triangles and more.
+# Like threads.sh, with meshes of 100,000 triangles and more.
 . "$here/threads.sh"

@@ -1,6 +1,6 @@
-/* A client of the installed package: reads a .poly file of the unit square, meshes it, writes the mesh, reads that and
- * has it judged; then it judges two triangles that are right and two that are folded. It touches both libraries, and
- * through the reader the C++ runtime.
+/* A client of the installed package. It reads a .poly file of the unit square, meshes it, writes the mesh, reads it
+ * again and checks it. Then it checks two valid triangles and two folded ones. It uses both libraries and, through the
+ * reader, the C++ runtime.
  * Usage: client square.poly */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-/* A client of Triangle's C interface, written as for Triangle's own header and library: four points and a region are
- * triangulated, then refined, and both meshes and the Voronoi diagram are printed.
- * Usage: dropin [switches]: then no more than the size of the mesh of the four points by those switches. */
+/* A client of Triangle's C interface, written as for Triangle's own header and library. Four points and a region are
+ * triangulated, then refined. Both meshes and the Voronoi diagram are printed.
+ * Usage: dropin [switches]: prints only the size of the mesh of the four points with these switches. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

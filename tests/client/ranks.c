@@ -1,5 +1,5 @@
-/* A client of ptriangle-mpi, as a user would write one: each rank keeps what it gets; as a test, rank 0 then compares
- * all of that with the mesh that one process makes.
+/* A client of ptriangle-mpi, as a user would write one: each rank keeps its part. As a test, rank 0 then compares all
+ * parts with the mesh of one process.
  * Usage: mpirun -n N ranks FILE.poly MIN_ANGLE MAX_AREA */
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include <ptriangle/mpi.h>
 #include <ptriangle/par.h>
 
-/* What a rank keeps. */
+/* The part of one rank. */
 struct part {
     int64_t first_point, first_triangle, n_points, n_triangles;
     double (*points)[2];
@@ -52,7 +52,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     return TRI_OK;
 }
 
-/* Differences between a part and the mesh of one process. */
+/* Number of differences between a part and the mesh of one process. */
 static int64_t count_wrong(const struct part *part, const struct tri_mesh *mesh)
 {
     struct tri_reals points = tri_mesh_points(mesh);

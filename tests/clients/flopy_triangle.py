@@ -1,5 +1,5 @@
-"""FloPy's Triangle utility (MODFLOW) drives the program `triangle` given in PTRIANGLE_PROGRAM, from files to what it
-makes of the results: pytest runs this.
+"""FloPy's Triangle utility (MODFLOW) runs the program `triangle` given in PTRIANGLE_PROGRAM. pytest tests the way from
+its input files to its grids.
 """
 import os
 
@@ -27,7 +27,7 @@ def size(corners):
     return ((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)) / 2
 
 
-# One bound for all (-a1.5), or those of the regions (-a).
+# One bound for all regions (-a1.5), or the bounds of the regions (-a).
 @pytest.mark.parametrize("maximum_area, outer, inner", [(1.5, 1.5, 1.5), (None, 4, 0.5)])
 def test_cells(tmp_path, maximum_area, outer, inner):
     mesh = build(tmp_path, maximum_area)
@@ -50,13 +50,13 @@ def test_cells(tmp_path, maximum_area, outer, inner):
             assert np.degrees(np.arccos(u @ v / np.sqrt((u @ u) * (v @ v)))) >= 30 - 1e-9
 
 
-# FloPy numbers the sides of its polygons from 1 as boundary markers.
+# FloPy numbers the sides of its polygons from 1 and uses the numbers as boundary markers.
 def test_boundary(tmp_path):
     mesh = build(tmp_path, 1.5)
     lengths = [20, 10, 20, 10, 3, 3, 3, 3, 6, 6, 6, 6]
     for marker, length in enumerate(lengths, 1):
         cells = mesh.get_edge_cells(marker)
-        sides = 1 if marker <= 8 else 2  # those of the inner region have cells on both
+        sides = 1 if marker <= 8 else 2  # sides of the inner region have cells on both sides
         assert abs(sum(mesh.get_cell_edge_length(n, marker) for n in cells) - sides * length) < 1e-9
     assert (mesh.get_boundary_marker_array() > 0).sum() > 30
 

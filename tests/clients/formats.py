@@ -1,7 +1,9 @@
-"""Reads STEM.vtu, .msh, .2dm, .14 and .h5 with readers of others, and compares them with STEM.node, .ele and .poly.
+"""Reads STEM.vtu, .msh, .2dm, .14 and .h5 with readers of other projects, and compares them with STEM.node, .ele,
+.poly.
 
-Usage: formats.py STEM ORDER      ORDER is 1 or 2 (with -o2, there is no .14 and no .h5)
-The files count from 1; vertices have one attribute, triangles one."""
+Usage: formats.py STEM ORDER      ORDER is 1 or 2 (with -o2 there is no .14 and no .h5)
+
+The files count from 1. Vertices and triangles have one attribute each."""
 import os
 import sys
 
@@ -34,7 +36,7 @@ def same(what, a, b):
 
 
 def middles_lie_amid(nodes, at):
-    """Second-order nodes in the order of the edges from corner to corner."""
+    """Second-order nodes, in the order of the edges from corner to corner."""
     for k in range(3):
         middle = (at[nodes[:, k]] + at[nodes[:, (k + 1) % 3]]) / 2
         assert np.allclose(at[nodes[:, 3 + k]], middle, atol=1e-9), "middle nodes"
@@ -63,7 +65,8 @@ def by_meshio(name, attribute):
 
 
 def names_by_meshio(mesh):
-    """Groups by name: so scikit-fem finds boundaries. Names have no blanks, which meshio's writer of .vtk refuses."""
+    """Groups by name, from which scikit-fem finds boundaries. Names have no blanks, since meshio's writer of .vtk
+    refuses blanks."""
     for kind, dim, values in (("marker", 1, segments[:, 2]), ("region", 2, regions)):
         for value in set(values):
             name = "%s_%.17g" % (kind, value)
@@ -91,7 +94,7 @@ def by_vtk():
 def by_gmsh():
     try:
         import gmsh
-    except OSError as lacking:  # its library wants those of a screen
+    except OSError as lacking:  # its library needs graphics libraries
         print("formats: Gmsh cannot be loaded here:", lacking)
         return
     gmsh.initialize(["gmsh", "-v", "0"])
@@ -111,7 +114,7 @@ def by_gmsh():
 
 
 def elements_of(gmsh):
-    """Tag: physical tags, parts, nodes."""
+    """{tag: physical tags, parts, nodes}"""
     found = {}
     for dim, entity in gmsh.model.getEntities():
         physical = tuple(gmsh.model.getPhysicalGroupsForEntity(dim, entity).tolist())
@@ -129,7 +132,7 @@ def nodes_of(gmsh):
 
 
 def parts_by_gmsh(n):
-    """Each part alone, and all of them: the elements and nodes of the file that is whole, by the same tags."""
+    """Each part, and all of them together: the elements and nodes of the whole file, with the same tags."""
     try:
         import gmsh
     except OSError:
@@ -155,7 +158,7 @@ def parts_by_gmsh(n):
                 users.setdefault(node, []).append((part + 1, tuple(gmsh.model.getPartitions(dim, entity).tolist())))
     assert {t: (p, e) for t, (p, _, e) in seen.items()} == {t: (p, e) for t, (p, _, e) in elements.items()}
     assert set(users) == set(nodes)
-    for told in users.values():  # each part knows who shares a node
+    for told in users.values():  # each part lists the parts that share a node
         assert all(parts == tuple(part for part, _ in told) for _, parts in told)
     gmsh.clear()
     for name in names:
@@ -165,7 +168,7 @@ def parts_by_gmsh(n):
 
 
 def boundary():
-    """Edges of one triangle, that on their left."""
+    """Edges of one triangle, with the triangle on their left."""
     edges = [tuple(t[[k, (k + 1) % 3]]) for t in triangles for k in range(3)]
     all_of_them = set(edges)
     return sorted((int(a), int(b)) for a, b in edges if (b, a) not in all_of_them)
@@ -189,7 +192,7 @@ def by_py2dm():
 
 
 def by_words():
-    """fort.14, as ADCIRC reads it: numbers at the beginning of each line."""
+    """fort.14, parsed like ADCIRC: numbers at the beginning of each line."""
     lines = [line.split() for line in open(stem + ".14")][1:]
     n, m = int(lines[0][0]), int(lines[0][1])
     same("points", [[float(x) for x in row[1:4]] for row in lines[1:1 + m]], np.column_stack([points, attributes]))

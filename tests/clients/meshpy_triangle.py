@@ -1,4 +1,4 @@
-"""MeshPy with this project's library in it, beyond its own tests: pytest runs this."""
+"""MeshPy with this project's library in it: cases beyond its own tests. pytest runs this file."""
 import meshpy.triangle as triangle
 
 
@@ -16,7 +16,7 @@ def areas(mesh):
 
 
 def test_refine_by_a_function():
-    """inducer/meshpy 10: refine() passes razjqQun, and no list of areas."""
+    """inducer/meshpy 10: refine() passes razjqQun without a list of areas."""
     mesh = triangle.build(square(), max_volume=1.0)
     finer = triangle.refine(mesh, refinement_func=lambda corners, area: area > 0.1)
     found = list(areas(finer))

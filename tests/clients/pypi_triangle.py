@@ -1,7 +1,7 @@
-"""The Python package `triangle` (PyPI, 20200424) with this project's library in it: pytest runs this.
+"""The Python package `triangle` (PyPI, 20200424) with this project's library in it. pytest runs this file.
 
-Its doctests fix the order of triangles and edges, which is arbitrary; the same calls are compared here as sets. The
-data are the package's own.
+The package's doctests fix the order of triangles and edges, which is arbitrary. Here the same calls are compared as
+sets. The data come from the package.
 """
 import math
 
@@ -43,7 +43,7 @@ def smallest_angle(mesh):
 
 def test_triangulate():
     mesh = tr.triangulate({"vertices": [[0, 0], [0, 1], [1, 1], [1, 0]]}, "a0.2")
-    new = [[0.5, 0.5], [0, 0.5], [0.5, 0], [1, 0.5], [0.5, 1]]  # in an order of the mesher's own
+    new = [[0.5, 0.5], [0, 0.5], [0.5, 0], [1, 0.5], [0.5, 1]]  # in an order that the mesher chooses
     assert mesh["vertices"][:4].tolist() == [[0, 0], [0, 1], [1, 1], [1, 0]]
     assert mesh["vertices"][4].tolist() == new[0] and sorted(mesh["vertices"][4:].tolist()) == sorted(new)
     assert mesh["vertex_markers"].tolist() == [[1], [1], [1], [1], [0], [1], [1], [1], [1]]
@@ -69,7 +69,8 @@ def test_voronoi():
         assert (direction == 2 * (points[i] - [0.5, 0.5])).all()
 
 
-# --- its data (la has an angle of 4 degrees itself): triangulations, where Triangle's counts are the only right ones
+# --- its data: triangulations, for which Triangle's counts are the only correct ones (la itself has an angle of 4
+# degrees)
 
 @pytest.mark.parametrize("name, switches, n_vertices, n_triangles", [
     ("A", "p", 29, 29), ("A", "pc", 29, 47), ("face", "p", 26, 36), ("face", "pc", 26, 38), ("la", "p", 141, 265),
@@ -111,7 +112,7 @@ def test_hull_of_a_mesh():
     assert len(tr.triangulate(face, "rpc")["segments"]) >= len(tr.triangulate(face, "rc")["segments"])
 
 
-# --- what has crashed it (its issues 2, 4, 68, 70), and input without meaning
+# --- input that crashed it (its issues 2, 4, 68, 70), and meaningless input
 
 def test_hole_outside():
     angle = np.linspace(0, 2 * np.pi, 13, endpoint=False)
@@ -131,5 +132,5 @@ def test_duplicates():
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_no_meaning(bad):
     mesh = tr.triangulate({"vertices": [[0, 0], [1, bad], [1, 1], [0, 1]]}, "")
-    assert mesh == {}  # the package does not look at what triangulate() returns
+    assert mesh == {}  # the package ignores the return value of triangulate()
     assert tr.triangulate({"vertices": [[1, 1]] * 5}, "") == {}

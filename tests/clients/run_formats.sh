@@ -1,7 +1,7 @@
 #!/bin/sh
-# The mesh in other programs' formats, opened by meshio, VTK, Gmsh, h5py and py2dm from PyPI. Where PyPI cannot be
-# reached one line says so, and the exit code is 77.
-# Usage: run_formats.sh BIN_DIR WORK_DIR PYTHON HDF5      HDF5 is 1 where the programs write .h5 files
+# Opens meshes in formats of other programs with meshio, VTK, Gmsh, h5py and py2dm from PyPI. If PyPI cannot be reached,
+# one line says so, and the exit code is 77.
+# Usage: run_formats.sh BIN_DIR WORK_DIR PYTHON HDF5      HDF5 is 1 if the programs write .h5 files
 set -eu
 bin=$1
 work=$2
@@ -23,7 +23,7 @@ if [ ! -e fetched_with_h5py ]; then
     touch fetched_with_h5py
 fi
 
-# A basin with a side open to the sea (marker 2), an island, two regions and a line between them without a marker.
+# A basin with a side open to the sea (marker 2), an island, and two regions separated by a line without a marker.
 cat >basin.poly <<END
 10 2 1 1
 1 0 0 5 0

@@ -1,8 +1,7 @@
 #!/bin/sh
-# Real clients, from PyPI, with this library in Triangle's place: the package `triangle` with libtriangle.a, MeshPy with
-# libptriangle.a and its own tests, FloPy with the program. The copies of Triangle in the first two are left out when
-# they are unpacked. Where PyPI cannot be reached, or Python's headers are not there, one line says so, and the exit
-# code is 77.
+# Real clients from PyPI, with this library in place of Triangle: the package `triangle` with libtriangle.a, MeshPy with
+# libptriangle.a and its own tests, FloPy with the program. The copies of Triangle in the first two are not unpacked. If
+# PyPI cannot be reached, or Python's headers are missing, one line says so, and the exit code is 77.
 # Usage: run_python.sh BUILD_DIR WORK_DIR CMAKE PYTHON C_COMPILER CXX_COMPILER
 set -eu
 build=$1
@@ -25,12 +24,12 @@ skip() {
 skip_pip() { skip "$1 ($(tail -n 1 "$work/pip.log"))"; }
 pip() { "$work/venv/bin/python" -m pip --disable-pip-version-check --no-input "$@" >"$work/pip.log" 2>&1; }
 must_pip() { pip "$@" || { cat "$work/pip.log"; exit 1; }; }
-PATH=$work/venv/bin:$PATH # meson is called by its name
+PATH=$work/venv/bin:$PATH # meson is found by name
 
 "$python" -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
     skip "no headers of Python (Debian: python3-dev)"
 
-# What comes from outside, once: versions that are known to be there.
+# Downloads, done once: versions that are known to exist.
 if [ ! -e "$work/fetched" ]; then
     rm -rf "$work/venv" "$work/sources"
     "$python" -m venv "$work/venv" >"$work/pip.log" 2>&1 || skip_pip "python has no venv (Debian: python3-venv)"
@@ -72,7 +71,7 @@ sed -i "/src\/cpp\/triangle\./d
 s|dependencies *: *\[pybind11_dep\]|dependencies: [pybind11_dep, declare_dependency(compile_args: ['-I$prefix/include'], \
 link_args: ['-L$libraries', '-lptriangle', '-ltriangle', '-lm', '-fopenmp'])]|" meson.build
 grep -q lptriangle meson.build
-# The header of its own copy says what REAL and a vertex are; Triangle's public one does not.
+# The header of MeshPy's own copy defines REAL and a vertex type; Triangle's public header does not.
 sed -i 's|#include "triangle.h"|#define REAL double\n&\ntypedef REAL *vertex;|' src/cpp/wrap_triangle.cpp
 must_pip install --no-deps --no-build-isolation --no-cache-dir --force-reinstall .
 cd "$work/run"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# report.py is content with the meshes that there are, and fails, naming the input, where they are larger than before,
-# are no more, or are not right. Usage: fails.sh PYTHON BIN_DIR WORK_DIR
+# report.py accepts correct meshes. It fails and names the input if a mesh is larger than before, is missing, or is
+# invalid. Usage: fails.sh PYTHON BIN_DIR WORK_DIR
 set -eu
 report=$(cd "$(dirname "$0")" && pwd)/report.py
 python=$1
@@ -10,13 +10,13 @@ rm -rf "$work"
 mkdir -p "$work/bin"
 cd "$work"
 
-report() { # report BIN_DIR: of one input, beside the baseline here; its exit code
+report() { # report BIN_DIR: runs report.py on one input, with the baseline here; returns its exit code
     code=0
     "$python" "$report" "$1" --more= --only letter.poly --baseline baseline.txt >out.txt || code=$?
     return $code
 }
 
-fails() { # fails BIN_DIR PATTERN: it does, with such a line
+fails() { # fails BIN_DIR PATTERN: expects report.py to fail with a line that matches
     if report "$1" || ! grep -qE "^WORSE data/letter.poly $2" out.txt; then
         echo "corpus: no line matches: $2" && cat out.txt && exit 1
     fi

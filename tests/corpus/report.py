@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Triangles and bad ones of the inputs that people have, beside those of the last release (baseline.txt).
+"""Compares triangles and bad triangles of inputs collected from users with those of the last release (baseline.txt).
 
-    tests/corpus/report.py build/release/bin                # by family, by switches, the largest single ratios
-    tests/corpus/report.py build/release/bin --renew        # at a release: the baseline anew
+  tests/corpus/report.py build/release/bin                # by family, by switches, the largest single ratios
+  tests/corpus/report.py build/release/bin --renew        # for a release: writes a new baseline
 
-Inputs: data/ without nasty/ and regress/, whose figures are made for something else, and, where it is there, a folder
-of more inputs beside the repository (--more), without nasty ones and what was found by searching for faults. What is
-empty with -p, as open drawings are, is meshed with -pc.
+Inputs: data/ without nasty/ and regress/, whose figures have other purposes, and, if it exists, a folder of more inputs
+beside the repository (--more), without nasty ones and results of searches for faults. Inputs that are empty with -p,
+such as open drawings, are meshed with -pc.
 
-A triangle below the angle bound is bad. Ratios are those of triangles to the baseline's, the means geometric. Exit code
-1, and a line for each reason: a run that fails or takes too long; a mesh that trianglecheck finds faults in, or bad
-triangles of which it counts others than `triangle` says; triangles or bad ones beyond the limits below.
+A triangle below the angle bound is bad. Ratios are numbers of triangles divided by those of the baseline; means are
+geometric. Exit code 1, with a line for each reason: a run fails or takes too long; trianglecheck finds faults in a
+mesh, or counts other bad triangles than `triangle` reports; numbers of triangles or bad triangles exceed the limits
+below.
 """
 import argparse
 import concurrent.futures
@@ -24,10 +25,10 @@ import sys
 import tempfile
 
 SWITCHES = "q20", "q30", "q33", "q34", "q20D"
-SECONDS, POINTS = 60, 1500000  # for each program; for each mesh: what asks for more is left out
-LARGEST = 1500000  # bytes of an input
-SINGLE, FEW = 1.3, 100  # so many times the triangles, and so many more, unless fewer are bad; and the other way round
-MEAN, BAD = 1.01, 1.05  # so many times the triangles in the mean, and the bad ones of all meshes
+SECONDS, POINTS = 60, 1500000  # limits: seconds of each program; points of each mesh, above which it is skipped
+LARGEST = 1500000  # largest input in bytes
+SINGLE, FEW = 1.3, 100  # limits on ratio and increase of triangles unless fewer are bad, and vice versa
+MEAN, BAD = 1.01, 1.05  # largest mean ratio of triangles, and ratio of all bad triangles
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 HEAD = """\
@@ -38,7 +39,7 @@ HEAD = """\
 
 
 def inputs(folder, without, prefix):
-    """Names and paths of what lies in a folder: .poly files, and .node files that are points alone."""
+    """Names and paths of the inputs in a folder: .poly files, and .node files without segments."""
     found = {}
     for path, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if not re.match(without, name))
@@ -51,7 +52,8 @@ def inputs(folder, without, prefix):
 
 
 def family(name):
-    """data/coast/x.poly: data/coast; more/hard/gis2_x.poly: more/hard/gis; more/peers_x/y.poly: more/peers."""
+    """Family of an input: data/coast/x.poly: data/coast; more/hard/gis2_x.poly: more/hard/gis; more/peers_x/y.poly:
+    more/peers."""
     return re.match("data/[a-z]+/|data/|more/hard/[a-z]+|more/[a-z]+", name).group().rstrip("/")
 
 
@@ -68,20 +70,20 @@ def number(pattern, text):
 
 
 def judge(bin_dir, folder, given, switches, said, bad):
-    """Raises what is wrong with the mesh, or with what was said of it."""
+    """Raises an error if the mesh, or the report about it, is wrong."""
     more = (["--keep-hull"] if "c" in switches else []) + (["--conforming"] if "D" in switches else [])
     words = ["--json", "--poly", given, "--min-angle", re.search("[0-9]+", switches).group(), "--max-bad", "1000000000"]
     report = json.loads(run([bin_dir + "/trianglecheck", *words, *more, "--threads", "1", "x.1"], folder))
     failed = {check["name"]: check for check in report["checks"] if check["state"] == "failed"}
     circles = number(r"^(\d+) subsegments? keeps? a vertex in", said)
-    if circles and failed.get("diametral circles", {"count": 0})["count"] == circles:  # all of them counted
+    if circles and failed.get("diametral circles", {"count": 0})["count"] == circles:  # all of them were counted
         failed = {name: check for name, check in failed.items() if name not in ("diametral circles", "Delaunay")}
     if failed or report["below_min_angle"] != bad:
         raise RuntimeError("%d bad triangles, trianglecheck: %d, %s" % (bad, report["below_min_angle"], failed))
 
 
 def mesh(bin_dir, path, switches):
-    """Triangles and bad ones; None: too many."""
+    """Triangles and bad triangles, or None if there are too many points."""
     with tempfile.TemporaryDirectory() as folder:
         base, suffix = os.path.splitext(path)
         for part in {".node", suffix}:
@@ -99,7 +101,7 @@ def mesh(bin_dir, path, switches):
 
 
 def measure(bin_dir, found, faults):
-    """{name: [(triangles, bad ones), ...]}, None for what failed or has too many points."""
+    """{name: [(triangles, bad ones), ...]}, with None for runs that failed or had too many points."""
     def one(task):
         try:
             return mesh(bin_dir, found[task[0]], task[1])
@@ -119,7 +121,7 @@ def read_baseline(path):
 
 
 def write_baseline(path, made):
-    """Other lines stay: those of inputs that are not there, or were not asked for."""
+    """Writes the baseline. Lines of inputs that do not exist here, or were not selected, are kept."""
     lines = read_baseline(path) if os.path.exists(path) else {}
     lines.update(made)
     with open(path, "w", encoding="ascii", newline="\n") as stream:
@@ -129,7 +131,7 @@ def write_baseline(path, made):
 
 
 def compare(made, baseline):
-    """[(name, switches, now, before)] of what the baseline has meshed; now may be None, or (0, 0)."""
+    """[(name, switches, now, before)] for the meshes in the baseline. now may be None, or (0, 0)."""
     return [(name, switches, now, before) for name, runs in made.items() if name in baseline
             for switches, now, before in zip(SWITCHES, runs, baseline[name]) if before and before[0]]
 
@@ -139,7 +141,7 @@ def mean(pairs):
 
 
 def total(pairs):
-    """Triangles now and before, bad ones now and before."""
+    """Triangles now and before, bad triangles now and before."""
     return tuple(sum(pair[when][what] for pair in pairs) for what in (0, 1) for when in (2, 3))
 
 

@@ -1,8 +1,8 @@
-"""Generated planar straight line graphs, the same ones every time: families of inputs, each member from its own seed.
+"""Generated planar straight line graphs, identical in every run: families of inputs, each member with its own seed.
 
-Only random.Random.random() is used, whose numbers are the same in every version of Python. Vertices count from 0 here;
-`base` says how the input file counts. The first vertex attribute, if any, is the affine function `field` of the place,
-so that linear interpolation must give it back; the second is random.
+Only random.Random.random() is used, which returns the same numbers in every version of Python. Vertices count from 0
+here; `base` is the first number in the input file. The first vertex attribute, if any, is the affine function `field`
+of the position, so that linear interpolation must reproduce it. The second is random.
 """
 import math
 import random
@@ -17,7 +17,7 @@ def table(header, rows, base):
 
 
 class Case:
-    """One input. `traits` says what is not determined: see families below."""
+    """One input. `traits` lists which results are not determined: see families below."""
 
     def __init__(self, name, base, traits):
         self.name, self.base, self.traits = name, base, traits
@@ -47,11 +47,11 @@ class Case:
         return {"poly": self.vertices() + self.figure()}
 
     def word(self):
-        """The file on the command line."""
+        """The input file for the command line."""
         return "case." + "".join(self.files())
 
     def judge(self, _):
-        """Words for trianglecheck: the file to compare with."""
+        """Arguments of trianglecheck: the file to compare with."""
         return ["--poly", self.word()]
 
     def vertices(self):
@@ -60,13 +60,13 @@ class Case:
         return table([len(rows), 2, len(columns[0]), 1], rows, self.base)
 
     def figure(self):
-        """Of a .poly file, all behind the vertices."""
+        """The rest of a .poly file, after the vertices."""
         rows = [[a + self.base, b + self.base, m] for (a, b), m in zip(self.segments, self.segment_markers)]
         return (table([len(rows), 1], rows, self.base) + table([len(self.holes)], self.holes, self.base)
                 + table([len(self.regions)], self.regions, self.base))
 
     def as_dict(self):
-        """What the oracle gets."""
+        """The input for the oracle."""
         return {"points": self.points, "markers": self.markers, "attributes": self.attributes,
                 "segments": self.segments, "segment_markers": self.segment_markers, "holes": self.holes,
                 "regions": self.regions}
@@ -77,12 +77,12 @@ def field(x, y):
 
 
 def whole(rng, n):
-    """0 .. n - 1."""
+    """A random integer of 0 .. n - 1."""
     return int(rng.random() * n)
 
 
 def marker(rng):
-    """Often none, sometimes negative."""
+    """A random marker: often 0, sometimes negative."""
     return (0, 0, 2, 3, 5, -4)[whole(rng, 6)]
 
 
@@ -104,7 +104,7 @@ def star(rng, n, x, y, low, high):
 
 
 def disjoint_segments(case, rng, n):
-    """Up to n segments between vertices that are there; they meet at common ends only and pass through no vertex."""
+    """Up to n segments between existing vertices. They meet only at common ends and pass through no vertex."""
     for _ in range(4 * n):
         a, b = whole(rng, len(case.points)), whole(rng, len(case.points))
         if a == b or len(case.segments) >= n:
@@ -123,9 +123,9 @@ def square(case, x0, y0, x1, y1, mark=0):
     return case.ring([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], mark)
 
 
-# --- families. Traits: "points": no segments; "crossing": vertices are made where segments cross; "duplicates": which
-# copy survives is not determined; "sharp": small angles, where Triangle's refinement may run away; "needles": triangles
-# without area but for rounding.
+# --- families. Traits: "points": no segments; "crossing": vertices are made at crossings of segments; "duplicates": the
+# copy that survives is not determined; "sharp": small angles, at which Triangle's refinement may not end; "needles":
+# triangles of zero area up to rounding.
 
 FAMILIES = []
 
@@ -177,7 +177,7 @@ def points_on_a_line(case, rng):
 
 @family(6, "points", "needles")
 def rounded_line(case, rng):
-    """Off the line by an ulp at most."""
+    """Points that are off the line by at most an ulp."""
     for _ in range(6 + whole(rng, 20)):
         x = rng.random()
         case.point(x, 0.3 * x + 0.1)
@@ -185,7 +185,7 @@ def rounded_line(case, rng):
 
 @family(14)
 def loose_segments(case, rng):
-    """Dangling segments among points, open to all sides."""
+    """Dangling segments among points, without an outline."""
     scatter(case, rng, 6 + whole(rng, 30), 0, 0, 8)
     disjoint_segments(case, rng, 4 + whole(rng, 12))
 
@@ -198,7 +198,7 @@ def polygon(case, rng):
 
 @family(14)
 def nested(case, rng):
-    """Rings in each other, every second face a hole, regions in the others."""
+    """Nested rings; every second face is a hole, the others are regions."""
     depth = 2 + whole(rng, 3)
     for level in range(depth):
         outer = 10.0 / 2 ** level
@@ -212,7 +212,7 @@ def nested(case, rng):
 
 @family(16)
 def rooms(case, rng):
-    """A house with shaken corners: each room has an attribute and an area bound of its own, some have none."""
+    """A house with displaced corners. Each room has its own attribute; some rooms have an area bound of their own."""
     columns, rows = 1 + whole(rng, 3), 1 + whole(rng, 3)
     corner = {}
     for i in range(columns + 1):
@@ -230,7 +230,7 @@ def rooms(case, rng):
 
 @family(12)
 def house_with_doors(case, rng):
-    """Regions that flow into each other through gaps: the last point wins."""
+    """Regions that spread into each other through gaps: the last region point wins."""
     square(case, 0, 0, 12, 6, 3)
     for x in (4, 8):
         a, b = case.point(x, 0.5 + rng.random()), case.point(x + 0.25, 5 + 0.5 * rng.random())
@@ -242,7 +242,7 @@ def house_with_doors(case, rng):
 
 @family(12)
 def on_lattice(case, rng):
-    """Many vertices exactly on segments, many empty circles with more than three points."""
+    """Many vertices exactly on segments, many empty circles through more than three points."""
     square(case, 0, 0, 6, 4, marker(rng))
     for _ in range(4 + whole(rng, 14)):
         x, y = whole(rng, 7), whole(rng, 5)
@@ -255,7 +255,7 @@ def on_lattice(case, rng):
 
 @family(12)
 def overlaps(case, rng):
-    """Segments that contain, repeat and overlap each other on three lines, with markers that contend."""
+    """Segments that contain, repeat and overlap each other on three lines, with conflicting markers."""
     square(case, 0, 0, 8, 8, marker(rng))
     at = {}
     for y in (2, 5):
@@ -279,7 +279,7 @@ def crossings(case, rng):
 
 @family(6, "crossing")
 def whole_crossings(case, rng):
-    """All crossings are whole points; never three segments through one."""
+    """All crossings are integer points, and no three segments meet in one point."""
     square(case, 0, 0, 12, 12, 7)
     for k in range(2 + whole(rng, 3)):
         case.segment(case.point(2 * k + 2, 1), case.point(2 * k + 2, 11), marker(rng))
@@ -289,7 +289,7 @@ def whole_crossings(case, rng):
 
 @family(10, "sharp")
 def spikes(case, rng):
-    """Rays from one vertex under small angles, and an outline with a narrow cape."""
+    """Rays from one vertex at small angles, and an outline with a narrow cape."""
     case.ring([(0, 0), (10, 0), (10, 5), (30, 5 + 0.02 * rng.random()), (10, 5.25), (10, 10), (0, 10)], 4)
     centre = case.point(2, 5)
     for k in range(3 + whole(rng, 4)):
@@ -308,7 +308,7 @@ def out_and_back(case, rng):
 
 @family(10, "duplicates")
 def repeated_corners(case, rng):
-    """Each polygon brings its own copies of the corners it shares."""
+    """Each polygon has its own copies of shared corners."""
     for k in range(2 + whole(rng, 3)):
         square(case, 5 * k, 5 * k, 5 * k + 5, 5 * k + 5, marker(rng))
     corners = star(rng, 6, 2.5, 2.5, 0.5, 2)
@@ -318,7 +318,7 @@ def repeated_corners(case, rng):
 
 @family(8)
 def islands(case, rng):
-    """Several components; hole and region points that hit nothing."""
+    """Several components; hole and region points that lie in none of them."""
     for k in range(2 + whole(rng, 3)):
         case.ring(star(rng, 4 + whole(rng, 6), 8 * k, 3 * (k % 2), 1.5, 2.9), marker(rng))
     case.ring(star(rng, 5, 0, 0, 0.3, 0.8))
@@ -354,7 +354,7 @@ def far_away(case, rng):
 
 @family(6)
 def bad_segments(case, rng):
-    """Ends that do not exist or are the same vertex are skipped with a warning."""
+    """Segments with missing ends or equal ends are skipped with a warning."""
     ids = case.ring(star(rng, 6 + whole(rng, 5), 0, 0, 2, 3), 3)
     for a, b in ((ids[0], 77), (-9, ids[1]), (ids[2], ids[2])):
         case.segment(a, b, 8)
@@ -363,7 +363,7 @@ def bad_segments(case, rng):
 
 @family(5)
 def nothing_left(case, rng):
-    """Open outlines, holes that eat all."""
+    """Open outlines, and holes that remove everything."""
     ids = square(case, 0, 0, 3 + whole(rng, 3), 2)
     scatter(case, rng, whole(rng, 5), 0.5, 0.5, 1)
     if rng.random() < 0.5:
@@ -379,7 +379,7 @@ def finish(case, rng, n_attributes):
         case.attributes.append([field(x, y), rng.random()][:n_attributes])
     if n_attributes == 0:
         case.attributes = []
-    if "duplicates" in case.traits:  # one place, one value: which copy survives does not show
+    if "duplicates" in case.traits:  # equal points get equal values, so the surviving copy does not matter
         first = {}
         for k, p in enumerate(case.points):
             j = first.setdefault(p, k)

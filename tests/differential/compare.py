@@ -1,7 +1,7 @@
-"""Our mesh against the oracle's, in everything that input and switches determine when nothing is refined.
+"""Compares our mesh with the oracle's, in everything that input and switches determine without refinement.
 
-Vertices are known by common names: input vertices by the lowest number at their place (which of several copies is used
-is not determined), vertices at crossings by the nearest of ours.
+Vertices have common names. An input vertex is named by the lowest number at its position, since the surviving copy is
+not determined. A vertex at a crossing is named by the nearest of our vertices.
 """
 from geometry import extent
 from meshes import histograms, pair, statistics
@@ -17,7 +17,8 @@ def nearest(points, place, begin):
 
 
 def names(mesh, ours, case, jettisoned):
-    """Common name of each corner of a mesh, None of other vertices; None where a corner is nowhere in ours."""
+    """Common name of each corner of a mesh, None for other vertices. Returns None if a corner has no counterpart in
+    ours."""
     tolerance = 1e-9 * extent(case.points)
     at_input = {} if jettisoned else dict(enumerate(names_of_input(case)))
     found, used = [], mesh.used()
@@ -36,13 +37,13 @@ def constrained(mesh):
 
 
 def table(ends, markers, name, leave):
-    """Ends under their common names -> marker; without those in `leave`."""
+    """{ends by common names: marker}, without the entries in `leave`."""
     markers = markers or [None] * len(ends)
     return {pair(name[a], name[b]): m for (a, b), m in zip(ends, markers) if pair(a, b) not in leave}
 
 
 def differences(what, ours, theirs):
-    """Of two dictionaries."""
+    """The differences of two dictionaries."""
     for key in sorted(set(ours) | set(theirs)):
         a, b = ours.get(key, "nothing"), theirs.get(key, "nothing")
         if a != b:
@@ -61,7 +62,7 @@ def vertices(ours, theirs, case, switches):
 
 
 def tables(ours, theirs, our_names, their_names, given):
-    """With -r the triangles are given, and there is no choice at ties."""
+    """With -r the triangles are given, so ties leave no choice."""
     leave = [set() if given else m.ties(constrained(m)) for m in (ours, theirs)]
     yield from differences("cell", ours.cells(leave[0], our_names), theirs.cells(leave[1], their_names))
     for what in ("edge", "segment"):
@@ -72,7 +73,7 @@ def tables(ours, theirs, our_names, their_names, given):
 
 
 def columns(ours, theirs):
-    """Which arrays are there, and how many records they have."""
+    """Names of the arrays present, and their numbers of records."""
     for name in ("attributes", "markers", "triangles", "triangle_attributes", "segments", "segment_markers", "edges",
                  "edge_markers", "neighbours", "voronoi_points", "voronoi_edges"):
         a, b = (len(getattr(m, name) or ()) for m in (ours, theirs))
@@ -81,7 +82,7 @@ def columns(ours, theirs):
 
 
 def new_vertices(ours, theirs, our_names, their_names, n):
-    """At crossings marker and attributes are those of the segment that was in the mesh before."""
+    """At crossings, marker and attributes are those of the segment that was inserted first."""
     at = {name: v for v, name in enumerate(our_names) if name is not None}
     for v in theirs.used():
         w = at[their_names[v]]
@@ -94,7 +95,8 @@ def new_vertices(ours, theirs, our_names, their_names, n):
 
 
 def counted(mesh):
-    """On a line there are no triangles; Triangle counts the vertices all the same, and its extremes are no numbers."""
+    """Points on a line have no triangles. Triangle counts the vertices all the same, and its extremes are not
+    numbers."""
     return [line for line in statistics(mesh.printed) if mesh.triangles or "Mesh vertices" not in line]
 
 
@@ -113,7 +115,7 @@ FIELDS = ("points", "attributes", "markers", "triangles", "triangle_attributes",
 
 
 def agreement(files, library):
-    """What our program wrote is, number for number, what our library returned."""
+    """The output of our program equals the result of our library, number for number."""
     for name in FIELDS:
         a, b = ([tuple(x) if isinstance(x, list) else x for x in getattr(m, name) or ()] for m in (files, library))
         if a != b:
@@ -124,7 +126,7 @@ def agreement(files, library):
 
 
 def compare(ours, theirs, case, switches):
-    """Sentences about what is different."""
+    """Returns sentences about the differences."""
     found = list(columns(ours, theirs)) + list(vertices(ours, theirs, case, switches))
     found += summaries(ours, theirs, case, switches)
     if found:

@@ -1,12 +1,13 @@
-"""Our `triangle` and Triangle 1.6 on the same generated inputs.
+"""Compares our `triangle` with Triangle 1.6 on the same generated inputs.
 
-    python3 differential.py BIN_DIR WORK_DIR ORACLE_PYTHON LIBRARY|"" [CASE [SWITCHES]]
+  python3 differential.py BIN_DIR WORK_DIR ORACLE_PYTHON LIBRARY|"" [CASE [SWITCHES]]
 
-What input and switches determine is compared (compare.py), the rest is judged by the rules that Triangle's own meshes
-keep (rules.py) and by `trianglecheck`. Where the original crashes, hangs or refuses, ours must succeed all the same.
-The shared library LIBRARY holds our C interface, which must return what the program writes.
+Results that input and switches determine are compared (compare.py). Others are checked by rules that Triangle's own
+meshes obey (rules.py) and by `trianglecheck`. If the original crashes, hangs or refuses, ours must still succeed. The
+shared library LIBRARY contains our C interface, which must return the same data as the program writes.
 
-One line per fault with what to type to see it again; exit code 1 if there is any. With a case: that one alone.
+Prints one line per fault, with the command that repeats it. Exit code 1 if there is any. With CASE, only that case
+runs.
 """
 import math
 import os
@@ -21,9 +22,9 @@ import remesh
 import rules
 from oracle import Oracle
 
-SECONDS = 20  # for one run of ours
+SECONDS = 20  # time limit for one run of ours
 ORACLE_SECONDS = 3
-MOST_TRIANGLES = 1.05  # of refined meshes, in the geometric mean over all, to the original's
+MOST_TRIANGLES = 1.05  # largest geometric mean of triangles in refined meshes, relative to the original
 
 POINTS = (("", "env", "c"), ("o2env", "j", "Ben", "i", "F", "l", "V", "X", "w", "q0env", "cjo2", "aS0", "VC"))
 FIGURES = (("p", "pcenv", "penvA"),
@@ -34,13 +35,13 @@ REFINED = ("pq", "pqaAenv", "pq30", "pqYYen", "pD", "pqY", "pq25aA", "pqDe", "pq
 
 
 class Count:
-    """What the run came to."""
+    """Results of the whole run."""
 
     def __init__(self):
         self.runs = self.compared = self.faults = 0
-        self.failures = {}  # of the original: how -> how often
-        self.free = 0  # only the rules could judge
-        self.ratios = []  # of refined meshes: logarithms of triangles, ours to theirs
+        self.failures = {}  # failures of the original: {kind: number}
+        self.free = 0  # number of meshes that only rules could check
+        self.ratios = []  # logarithms of the ratio of triangles in refined meshes, ours to theirs
 
 
 def in_turn(switches, index, n):
@@ -48,13 +49,13 @@ def in_turn(switches, index, n):
 
 
 def with_area(switches, case):
-    """A bound that calls for some hundred triangles."""
+    """An area bound for a few hundred triangles."""
     size = geometry.extent(case.points)
     return [s.replace("{area}", f"{size * size / 300:.6f}") for s in switches]
 
 
 def switches_of(case, index):
-    """The first ones for every case, of the others some in turn."""
+    """Sets of switches: the first ones for every case, some of the others in turn."""
     if isinstance(case, remesh.MeshCase):
         return with_area(in_turn(remesh.PLAIN, index, 3) + in_turn(remesh.REFINED, index, 2), case)
     always, others = POINTS if "points" in case.traits else FIGURES
@@ -86,10 +87,10 @@ def call(words, folder):
 
 
 def judge_words(case, switches):
-    """Options of trianglecheck. What -Y, -S and sharp input leave below the angle bound is not its business here."""
+    """Options of trianglecheck. Angles below the bound because of -Y, -S or sharp input are not checked here."""
     words = case.judge(switches)
     whole = "points" in case.traits or ("c" in switches and ("O" in switches or not case.holes))
-    # A hull edge that is split at a rounded point has a corner there, seen exactly.
+    # if a hull edge is split at a rounded point, it has a corner there in exact arithmetic
     if whole and "r" not in switches and not refines(switches):
         words.append("--convex")
     words += ["--keep-hull"] * ("c" in switches and "r" not in switches)
@@ -103,7 +104,7 @@ def judge_words(case, switches):
 
 
 def ours(case, switches, bin_dir, folder):
-    """The mesh, and sentences about what is wrong with it."""
+    """Our mesh, and sentences about its faults."""
     write_input(case, folder)
     code, printed = call([os.path.join(bin_dir, "triangle"), "-" + switches, case.word()], folder)
     if code != 0:
@@ -120,7 +121,7 @@ def ours(case, switches, bin_dir, folder):
 # --- theirs
 
 def without_copies(case):
-    """The same figure, each place one vertex: what the original should have made of the case."""
+    """The same figure with one vertex per position: the original should have treated the case like this."""
     data = dict(case.as_dict())
     name = compare.names_of_input(case)
     data["segments"] = [(name[a], name[b]) for a, b in case.segments]
@@ -133,7 +134,7 @@ def without_copies(case):
 
 
 def put_back(mesh, case, keep):
-    """Numbers of the mesh of without_copies are those of the case again."""
+    """Replaces the numbers in the mesh of without_copies by those of the case."""
     n = len(case.points)
     number = keep + list(range(n, n + len(mesh.points) - len(keep)))
     extra = len(keep)
@@ -150,7 +151,7 @@ def put_back(mesh, case, keep):
 
 
 def theirs(case, switches, oracle, count):
-    """The oracle's mesh, or None; the original's failures are counted."""
+    """The oracle's mesh, or None. Failures of the original are counted."""
     answer = oracle.ask("z" + switches, case.as_dict())
     if isinstance(answer, str):
         count.failures[answer] = count.failures.get(answer, 0) + 1
@@ -173,7 +174,7 @@ def place_in(plain, point):
 
 
 def inherited(case, plain):
-    """Area bound and attributes of each triangle of the plain mesh: those of the last region point that floods it."""
+    """Area bound and attributes of each triangle of the plain mesh: those of the last region point that reaches it."""
     if isinstance(case, remesh.MeshCase):
         return case.areas, case.triangle_attributes
     sides, fixed = plain.sides(), compare.constrained(plain)
@@ -194,14 +195,14 @@ def inherited(case, plain):
 
 
 def regions(case, switches, mesh, plain):
-    """Each triangle has the attributes and keeps the area bound of the part that it lies in."""
+    """Each triangle has the attributes and meets the area bound of its part."""
     bounds, values = inherited(case, plain)
     bounded = rules.bare_area(switches) and "S" not in switches and "Y" not in switches
     for t, corners in enumerate(mesh.corners()):
         places = [mesh.points[v] for v in corners]
         at = place_in(plain, tuple(sum(p[k] for p in places) / 3 for k in (0, 1)))
         if at is None:
-            continue  # rounding on a side
+            continue  # on a side, up to rounding
         if mesh.triangle_attributes and tuple(mesh.triangle_attributes[t]) != values[at]:
             yield f"triangle {t} has attributes {mesh.triangle_attributes[t]} instead of {values[at]}"
         if bounded and bounds[at] > 0 and geometry.area(*places) > bounds[at] * (1 + 1e-12):
@@ -209,7 +210,7 @@ def regions(case, switches, mesh, plain):
 
 
 def chain_counts(case, switches, mesh, plain):
-    """-Y, -YY and -S: what they protect is as in the plain mesh."""
+    """-Y, -YY and -S: protected segments are as in the plain mesh."""
     if "S7" in switches and len(mesh.points) > len(plain.points) + 7:
         yield f"{len(mesh.points) - len(plain.points)} new vertices"
     if "YY" in switches and compare.constrained(mesh) != compare.constrained(plain):
@@ -224,13 +225,13 @@ def refined_faults(case, switches, mesh, bin_dir, folder):
     if isinstance(case, remesh.MeshCase):
         plain, faults = case.mesh, []
         if "p" not in switches:
-            return []  # parts are known by the segments
+            return []  # without segments there are no parts
     else:
         plain, faults = ours(case, "p" + "".join(k for k in "cO" if k in switches), bin_dir, folder)
     return faults + list(regions(case, switches, mesh, plain)) + list(chain_counts(case, switches, mesh, plain))
 
 
-# --- all
+# --- all checks
 
 def library_faults(case, switches, mesh, library):
     answer = library.ask("z" + switches, case.as_dict())
@@ -241,7 +242,7 @@ def library_faults(case, switches, mesh, library):
 
 def examine(case, switches, bin_dir, folder, oracle, library, count):
     if "needles" in case.traits and any(k in switches for k in "Xq"):
-        return []  # the original rounds where it decides
+        return []  # the original rounds here
     count.runs += 1
     mesh, faults = ours(case, switches, bin_dir, folder)
     if mesh is None:
@@ -259,7 +260,7 @@ def examine(case, switches, bin_dir, folder, oracle, library, count):
     else:
         count.compared += 1
         faults += compare.compare(mesh, other, case, switches)
-    other.holes = None  # the oracle hands on what it was given
+    other.holes = None  # the oracle returns its own input
     return faults + ["the original's mesh: " + text for text in rules.breaches(other, case, switches)]
 
 
@@ -270,7 +271,7 @@ def report(case, switches, faults, count):
 
 
 def with_meshes(bin_dir, folder):
-    """The generated cases, each followed by its plain mesh as a case, where it has one."""
+    """The generated cases, each followed by its plain mesh as a case, if there is one."""
     for index, case in enumerate(cases.all_cases()):
         yield index, case
         mesh, _ = ours(case, "j" if "points" in case.traits else "pj", bin_dir, folder)

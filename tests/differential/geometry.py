@@ -1,7 +1,7 @@
-"""Exact geometry of small meshes: the signs of orientation and incircle decide, as in the programs under test.
+"""Exact geometry of small meshes. All decisions use the signs of orientation and incircle, as in the tested programs.
 
-Every double is a rational number. A filter with a generous error bound answers most questions in floating point, what
-it cannot is decided with fractions; so a tie found here is a tie.
+Every double is a rational number. A filter with a generous error bound decides most signs in floating point, and
+fractions decide the rest, so ties are exact.
 """
 from fractions import Fraction
 
@@ -45,7 +45,7 @@ def area(a, b, c):
 
 
 def circumcentre(a, b, c):
-    """Rounded once, at the end."""
+    """The crossing, rounded once at the end."""
     (ax, ay), (bx, by), (cx, cy) = [(Fraction(p[0]), Fraction(p[1])) for p in (a, b, c)]
     bx, by, cx, cy = bx - ax, by - ay, cx - ax, cy - ay
     d = 2 * (bx * cy - by * cx)
@@ -54,7 +54,7 @@ def circumcentre(a, b, c):
 
 
 def on_segment(p, a, b):
-    """Exactly on the closed segment ab."""
+    """Is the point exactly on the closed segment ab?"""
     if orient(a, b, p) != 0:
         return False
     return all(min(a[k], b[k]) <= p[k] <= max(a[k], b[k]) for k in (0, 1))
@@ -70,7 +70,7 @@ def near_segment(p, a, b, tolerance):
 
 
 def meet(a, b, c, d):
-    """The closed segments ab and cd have a point in common."""
+    """Do the closed segments ab and cd have a common point?"""
     s = orient(a, b, c), orient(a, b, d), orient(c, d, a), orient(c, d, b)
     if s[0] * s[1] < 0 and s[2] * s[3] < 0:
         return True
@@ -78,5 +78,5 @@ def meet(a, b, c, d):
 
 
 def extent(points):
-    """The larger side of the bounding box; 1 for a single place."""
+    """The longer side of the bounding box, or 1 for a single position."""
     return max(max(p[k] for p in points) - min(p[k] for p in points) for k in (0, 1)) or 1

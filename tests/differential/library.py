@@ -1,13 +1,13 @@
-"""Our C interface called as the Python package `triangle` calls the original's: dictionaries of lists in and out.
+"""Calls our C interface as the Python package `triangle` calls the original's, with dictionaries of lists.
 
-The structure is written down here a second time, from the layout that clients without a header rely on.
+The structure is defined here a second time, with the layout that clients without a header rely on.
 """
 import ctypes
 from ctypes import POINTER, Structure, c_char_p, c_double, c_int
 
 REALS, INTS = POINTER(c_double), POINTER(c_int)
 
-# name, its type, columns, the field that counts its rows; a count of columns may itself be a field.
+# Name, type, columns, and the field with the number of rows. The number of columns may itself be a field.
 ARRAYS = (("pointlist", REALS, 2, "numberofpoints"),
           ("pointattributelist", REALS, "numberofpointattributes", "numberofpoints"),
           ("pointmarkerlist", INTS, 1, "numberofpoints"),
@@ -18,7 +18,7 @@ ARRAYS = (("pointlist", REALS, 2, "numberofpoints"),
           ("holelist", REALS, 2, "numberofholes"), ("regionlist", REALS, 4, "numberofregions"),
           ("edgelist", INTS, 2, "numberofedges"), ("edgemarkerlist", INTS, 1, "numberofedges"),
           ("normlist", REALS, 2, "numberofedges"))
-BORROWED = ("holelist", "regionlist")  # of the output: the input's own
+BORROWED = ("holelist", "regionlist")  # output arrays that are the input's own
 
 
 class TriangulateIO(Structure):
@@ -36,7 +36,7 @@ assert ctypes.sizeof(TriangulateIO) == 168
 
 
 def filled(data):
-    """The input; arrays belong to the returned structure."""
+    """Builds the input. The arrays belong to the returned structure."""
     io = TriangulateIO()
     for name, kind, columns, rows in ARRAYS:
         table = data.get(name)
@@ -50,7 +50,7 @@ def filled(data):
 
 
 def taken(io, free):
-    """The output as lists, its arrays freed."""
+    """Returns the output as lists and frees its arrays."""
     data = {}
     for name, _, columns, rows in ARRAYS:
         array = getattr(io, name)
@@ -63,7 +63,7 @@ def taken(io, free):
 
 
 def triang_of(path):
-    """The function triang() of a shared library with our triangulate() under the name of its entry `run`."""
+    """The function triang() of a shared library that exports our triangulate() as `run`."""
     run = ctypes.CDLL(path).run
     run.argtypes = [c_char_p] + 3 * [POINTER(TriangulateIO)]
     free = ctypes.CDLL(None).free

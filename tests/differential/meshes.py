@@ -1,8 +1,8 @@
-"""A mesh read from output files or taken from the oracle, and what of it is determined.
+"""A mesh read from output files or received from the oracle, and the parts of it that are determined.
 
-Where empty circles pass through more than three vertices the triangles are not determined, but the cells are: the
-polygons that remain when edges between cocircular triangles are taken away (constrained edges stay). Two constrained
-Delaunay triangulations of one input have the same cells, hence the same number of triangles.
+If empty circles pass through more than three vertices, the triangles are not determined, but the cells are. A cell is a
+polygon that remains when edges between cocircular triangles are removed; constrained edges remain. Two constrained
+Delaunay triangulations of one input have the same cells, and therefore the same number of triangles.
 """
 import re
 
@@ -28,7 +28,7 @@ def pair(a, b):
 
 
 class Mesh:
-    """Lists as in the files, indices from 0, None where a file or column is missing."""
+    """Lists as in the files, with indices from 0. None if a file or column is missing."""
 
     points = attributes = markers = triangles = triangle_attributes = segments = segment_markers = None
     edges = edge_markers = neighbours = voronoi_points = voronoi_attributes = voronoi_edges = voronoi_rays = None
@@ -36,7 +36,7 @@ class Mesh:
     printed = ""
 
     def sides(self):
-        """(a, b), a < b -> the triangles beside it."""
+        """{(a, b): triangles beside this edge}, with a < b."""
         found = {}
         for t, (a, b, c) in enumerate(self.corners()):
             for side in (pair(a, b), pair(b, c), pair(c, a)):
@@ -53,7 +53,7 @@ class Mesh:
         return {v for t in self.corners() for v in t}
 
     def is_tie(self, side, beside):
-        """Two triangles on one circle."""
+        """Do two triangles have the same circumcircle?"""
         t, u = (self.corners()[k] for k in beside)
         far = next(v for v in u if v not in side)
         return incircle(*[self.points[v] for v in t], self.points[far]) == 0
@@ -63,7 +63,7 @@ class Mesh:
                 if len(beside) == 2 and side not in constrained and self.is_tie(side, beside)}
 
     def cells(self, ties, name):
-        """Sorted vertices of each cell, under their common names name[v] -> its attributes."""
+        """{sorted vertices of each cell, by their common names name[v]: its attributes}"""
         group = list(range(len(self.triangles)))
 
         def root(t):
@@ -91,7 +91,7 @@ def rows(path):
 
 
 def whole(words, base=0):
-    """Indices; -1 is nothing in every base."""
+    """Parses indices. -1 means none, for every base."""
     return [int(w) - base if int(w) >= 0 else -1 for w in words]
 
 
@@ -119,7 +119,7 @@ def read_ele(mesh, path, base):
 
 
 def read_pairs(records, base):
-    """Ends and markers of a table of segments or edges, with its header; the rest of the records."""
+    """Ends and markers of a table of segments or edges, its header, and the remaining records."""
     n, has_markers = int(records[0][0]), int(records[0][1])
     body = records[1:n + 1]
     assert len(body) == n and all(len(r) == 3 + has_markers for r in body)
@@ -147,7 +147,7 @@ def read_voronoi(mesh, stem, base):
 
 
 def from_files(stem, base, written, printed):
-    """The files stem.node and so on of the set `written` of suffixes."""
+    """Reads the files stem.node and so on, for the suffixes in `written`."""
     mesh = Mesh()
     mesh.printed = printed
     read_node(mesh, stem + ".node")

@@ -1,11 +1,11 @@
-"""A child process that runs Triangle 1.6 (the PyPI package `triangle`), and the parent's handle on it.
+"""A child process that runs Triangle 1.6 (the PyPI package `triangle`), and the parent's handle for it.
 
-Triangle crashes, hangs and ends its process on inputs that it should refuse. So it runs in a process of its own, many
-cases one after the other, under limits; after a crash or a timeout the next case starts a new process. One line of JSON
-goes in for a case, one line comes out: the arrays and what Triangle printed. Indices count from 0 in both.
+Triangle crashes, hangs or ends its process on inputs that it should refuse. So a separate process runs many cases one
+after the other, with limits. After a crash or a timeout the next case starts a new process. Each case is one line of
+JSON in and one line out, which contains the arrays and Triangle's printed text. Indices count from 0 in both.
 
-As a program it is the child, which alone needs the packages `triangle` and `numpy`. With the path of a shared library
-it runs our C interface (library.py) instead.
+Run as a program, this file is the child, and only the child needs the packages `triangle` and `numpy`. With the path of
+a shared library it runs our C interface (library.py) instead.
 """
 import ctypes
 import json
@@ -26,7 +26,7 @@ FIELDS = (("points", "pointlist"), ("attributes", "pointattributelist"), ("marke
 
 
 class Oracle:
-    """Answers are the child's dictionary, or a string that says how Triangle failed."""
+    """Runs cases. An answer is the child's dictionary, or a string that describes Triangle's failure."""
 
     def __init__(self, python, seconds, *library):
         self.words, self.seconds = [python, os.path.abspath(__file__), *library], seconds
@@ -45,7 +45,7 @@ class Oracle:
         self.child = None
 
     def read_line(self, seconds):
-        """None: nothing within the time; b"": the child ended."""
+        """One line of the child. None: timeout; b"": the child has ended."""
         deadline = time.monotonic() + seconds
         while b"\n" not in self.pending:
             ready = select.select([self.child.stdout], [], [], max(0, deadline - time.monotonic()))[0]
@@ -79,7 +79,7 @@ class Oracle:
 # --- the child
 
 def printed_since(log):
-    """The C library has a buffer of its own for what Triangle prints."""
+    """Flushes the C library, which has its own buffer for Triangle's output."""
     ctypes.CDLL(None).fflush(None)
     log.seek(0)
     text = log.read().decode()

@@ -1,17 +1,17 @@
-"""Meshes as input, for -r: made from our plain meshes, with other attributes and area bounds.
+"""Meshes as input for -r, made from our plain meshes with other attributes and area bounds.
 
-The parts of the mesh between constrained edges each have an attribute and an area bound of their own, so that what new
-triangles must inherit is determined.
+Each part of the mesh between constrained edges has its own attribute and area bound, so that the values that new
+triangles must inherit are determined.
 """
 from cases import Case, table
 
-# Never refined, so that all is determined; then refined.
+# First without refinement, so that everything is determined, then with it.
 PLAIN = ("r", "rp", "renv", "rpenvc", "rc", "rpB", "rpo2e", "rpj", "rpV", "rpA", "rpqS0", "rpO", "rpi", "re", "rpcC")
 REFINED = ("rpq", "rq", "rpaen", "rpqa", "ra", "rpqYYe", "rpq30a{area}", "rpqD")
 
 
 class MeshCase(Case):
-    """The files case.node, .ele, .poly and .area. What -r takes for an element comes as it is, orientation included."""
+    """The files case.node, .ele, .poly and .area. Elements are passed to -r unchanged, including their orientation."""
 
     def __init__(self, name, plain, mesh):
         Case.__init__(self, name, plain.base, plain.traits - {"points", "duplicates"})
@@ -33,7 +33,7 @@ class MeshCase(Case):
         return "case"
 
     def judge(self, switches):
-        """Without p the segments are not read; what they forced into the mesh is not Delaunay."""
+        """Without p the segments are not read, and the edges that they forced into the mesh are not Delaunay."""
         return ["--refined", "--poly"] + (["case.poly"] if "p" in switches else ["case.node", "--no-delaunay"])
 
     def as_dict(self):
@@ -42,7 +42,7 @@ class MeshCase(Case):
 
 
 def parts(mesh):
-    """For each triangle the number of the part between constrained edges that it lies in."""
+    """For each triangle, the number of its part between constrained edges."""
     fixed = {tuple(sorted(s)) for s in mesh.segments or ()}
     beside, part, n_parts = mesh.sides(), [None] * len(mesh.triangles), 0
     for seed in range(len(part)):

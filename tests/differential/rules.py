@@ -1,22 +1,22 @@
-"""What must hold of one mesh, whoever made it: markers, attributes, neighbours, Voronoi diagram, middles of edges.
+"""Rules for a mesh of any program: markers, attributes, neighbours, Voronoi diagram, midpoints of edges.
 
-Each function yields sentences about what is wrong. They are put before the oracle's meshes as well: a rule that
+Each function yields sentences about faults. The rules are also applied to the oracle's meshes, because a rule that
 Triangle's own mesh breaks is not a rule of the formats.
 """
 from cases import field
 from geometry import area, circumcentre, extent, near_segment, on_segment
 from meshes import pair
 
-TOLERANCE = 1e-9  # of the extent: computed places off the segment or point they are meant to be
+TOLERANCE = 1e-9  # relative to the extent: the largest distance of computed positions from their exact ones
 
 
 def bare_area(switches):
-    """An `a` without a number."""
+    """Do the switches contain an `a` without a number?"""
     return any(k == "a" and not d.isdigit() for k, d in zip(switches, switches[1:] + " "))
 
 
 class Given:
-    """The input as the rules see it: which segments count, and what lies on them."""
+    """The input from the rules' point of view: the segments that count, and the vertices on them."""
 
     def __init__(self, case, switches):
         self.case = case
@@ -31,23 +31,23 @@ class Given:
         self.place = {p: k for k, p in reversed(list(enumerate(case.points)))} if "j" in switches else None
 
     def input_vertex(self, mesh, v):
-        """Number in the input; None: a new vertex."""
+        """Number of a vertex in the input, or None for a new vertex."""
         if self.place is not None:
             return self.place.get(mesh.points[v])
         return v if v < len(self.case.points) else None
 
     def markers_at(self, point, exact):
-        """Of the segments through a place, in input order."""
+        """Markers of the segments through a position, in input order."""
         return [m for a, b, m in self.segments
                 if (on_segment(point, a, b) if exact else near_segment(point, a, b, self.tolerance))]
 
     def markers_along(self, a, b):
-        """Of the segments that contain the piece ab."""
+        """Markers of the segments that contain the piece ab."""
         return [m for p, q, m in self.segments
                 if near_segment(a, p, q, self.tolerance) and near_segment(b, p, q, self.tolerance)]
 
     def rank(self, a, b):
-        """Of the first segment that contains the piece ab; behind all where none does."""
+        """Number of the first segment that contains the piece ab. If there is none, a number after all segments."""
         for k, (p, q, _) in enumerate(self.segments):
             if on_segment(a, p, q) and on_segment(b, p, q):
                 return k
@@ -55,7 +55,7 @@ class Given:
 
 
 def or_boundary(markers, is_boundary):
-    """Allowed markers of a vertex: those of segments, non-zero ones first; else 1 on the boundary."""
+    """Allowed markers of a vertex: those of its segments, nonzero ones first; without segments, 1 on the boundary."""
     return {m for m in markers if m} or {int(is_boundary)}
 
 
@@ -68,10 +68,10 @@ def vertex_markers(mesh, given):
         if own:
             allowed = {own}
         elif v not in used:
-            continue  # what was touched before carving is not determined
+            continue  # vertices used only before carving have undetermined markers
         elif k is not None:
             allowed = or_boundary(given.markers_at(mesh.points[v], True), v in rim)
-        else:  # crossings and middles of edges take the marker of one segment, be it 0
+        else:  # crossings and midpoints of edges get the marker of one segment, even if it is 0
             markers = given.markers_at(mesh.points[v], False)
             allowed = set(markers) | or_boundary(markers, v in rim) if len(set(markers)) > 1 else \
                 or_boundary(markers, v in rim)
@@ -80,7 +80,7 @@ def vertex_markers(mesh, given):
 
 
 def edge_marker_faults(mesh, given, ends, markers, what):
-    """The first non-zero marker of the segments that contain the edge; else 1 on the boundary, else 0."""
+    """The first nonzero marker of the segments that contain the edge. Without one, 1 on the boundary and 0 inside."""
     rim = mesh.boundary()
     for (a, b), found in zip(ends, markers or ()):
         along = [m for m in given.markers_along(mesh.points[a], mesh.points[b]) if m]
@@ -111,7 +111,7 @@ def segments(mesh, given):
 
 
 def segment_order(mesh, given):
-    """Pieces come in the order of the input segments, hull edges behind them. Not where segments are cut or split."""
+    """Pieces follow the order of the input segments; hull edges come last. Skipped if segments are cut or split."""
     if mesh.segments is None or len(mesh.points) > len(given.case.points):
         return
     ranks = [given.rank(mesh.points[a], mesh.points[b]) for a, b in mesh.segments]
@@ -120,7 +120,7 @@ def segment_order(mesh, given):
 
 
 def echoes(mesh, given):
-    """Hole points as they were read; regions, if that section was read."""
+    """Hole points are unchanged, and regions as well if their section was read."""
     if mesh.holes is not None:
         if mesh.holes != given.holes:
             yield f"holes {mesh.holes} instead of {given.holes}"
@@ -135,7 +135,7 @@ def orientation(mesh, _):
 
 
 def neighbours(mesh, _):
-    """Number k of a triangle is opposite its corner k."""
+    """Neighbour k of a triangle lies opposite its corner k."""
     sides = mesh.sides()
     for t, found in enumerate(mesh.neighbours or ()):
         a, b, c = mesh.corners()[t]
@@ -153,7 +153,7 @@ def voronoi_vertices(mesh, given):
     for t, corners in enumerate(mesh.corners()):
         places = [mesh.points[v] for v in corners]
         if area(*places) <= 1e-7 * extent(places) ** 2:
-            continue  # the centre of a sliver is all rounding
+            continue  # the centre of a sliver has no correct digits
         centre = circumcentre(*places)
         size = extent(places + [centre]) + abs(centre[0]) * 1e-6 + abs(centre[1]) * 1e-6
         if not close(mesh.voronoi_points[t], centre, size):
@@ -169,7 +169,8 @@ def on_the_left(corners, a, b):
 
 
 def voronoi_edges(mesh, _):
-    """Dual to the edge of the same number: from the triangle on its left to that on its right, or away to the right."""
+    """Voronoi edges are dual to the edges of the same number. They run from the triangle on the edge's left to the one
+    on its right, or to infinity on the right."""
     sides = mesh.sides()
     if len(mesh.voronoi_edges) != len(mesh.edges):
         yield "not as many Voronoi edges as edges"
@@ -195,7 +196,7 @@ def voronoi(mesh, given):
 
 
 def middles(mesh, _):
-    """Nodes 4, 5, 6 are amid the sides opposite the corners 1, 2, 3; attributes are means."""
+    """Nodes 4, 5, 6 are midpoints of the sides opposite corners 1, 2, 3. Their attributes are means."""
     for t, nodes in enumerate(mesh.triangles):
         for k in range(3 if len(nodes) == 6 else 0):
             a, b, m = nodes[(k + 1) % 3], nodes[(k + 2) % 3], nodes[3 + k]
@@ -208,7 +209,7 @@ def middles(mesh, _):
 
 
 def attributes(mesh, given):
-    """The first is an affine function, so that interpolation gives it back."""
+    """The first attribute is an affine function, so interpolation reproduces it."""
     if not mesh.attributes:
         return
     scale = max(abs(field(*p)) for p in given.case.points) + 1

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Compares our `triangle` and our triangulate() with Triangle 1.6 on generated inputs (differential.py). Triangle comes
-# as the Python package `triangle`, from PyPI, into a virtual environment in the work folder, which later runs use
-# again; it is not part of this project. PTRIANGLE_ORACLE_PYTHON names a Python that has it already. Without either: one
-# line and exit code 77.
-# Usage: run.sh BIN_DIR WORK_DIR C_COMPILER LIBTRIANGLE.a|"" (without it: the program alone)
+# Compares our `triangle` and our triangulate() with Triangle 1.6 on generated inputs (differential.py). Triangle is not
+# part of this project. It is installed as the Python package `triangle` from PyPI into a virtual environment in the
+# work folder, which later runs reuse. PTRIANGLE_ORACLE_PYTHON may name a Python that has it already. Without either:
+# one line and exit code 77.
+# Usage: run.sh BIN_DIR WORK_DIR C_COMPILER LIBTRIANGLE.a|"" (without it only the program is compared)
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$1
@@ -27,7 +27,7 @@ install_oracle() {
 
 works() { "$python" -c "import triangle.core" >/dev/null 2>&1; }
 
-# The archive hides its names from other programs; this makes one of them known.
+# The archive hides its names from other programs. This command exports one of them.
 share_library() {
     cat >"$work/entry.c" <<'END'
 int triangulate(const char *switches, void *in, void *out, void *vorout);

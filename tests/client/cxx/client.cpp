@@ -1,4 +1,4 @@
-/* A client in C++: triangulate(), its size test by the linker, and the library below it, on a square. */
+/* A client in C++: triangulate() with a size test found by the linker, and the library below it, on a square. */
 #include <cstdio>
 #include <cstdlib>
 
