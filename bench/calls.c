@@ -1,4 +1,4 @@
-/* How long a call of triangulate() takes, of ours or of another library's: the same input again and again. A shared
+/* Measures the time of a call of triangulate(), ours or that of another library: the same input repeatedly. A shared
  * library, for bench/peers/small_calls.py. */
 #include <stdlib.h>
 #include <string.h>
@@ -31,8 +31,8 @@ static void free_all(struct triangulateio *io)
     free(io->segmentmarkerlist);
 }
 
-/* Processor seconds of one call, with the freeing of its output, over so many seconds; *n_triangles receives those of
- * the mesh. other: triangulate() of another library; NULL: ours. */
+/* Processor seconds of one call including freeing its output, averaged over calls for the given seconds. *n_triangles
+ * receives the number of triangles. other: triangulate() of another library; NULL: ours. */
 double seconds_of_call(triangulate_function *other, const char *switches, struct triangulateio *in, double seconds,
                        int *n_triangles)
 {
@@ -42,7 +42,7 @@ double seconds_of_call(triangulate_function *other, const char *switches, struct
     long n = 0;
     for (; now - start < seconds; n++, now = processor_seconds()) {
         struct triangulateio out, voronoi;
-        char copy[64]; /* Triangle asks for one that could be written to */
+        char copy[64]; /* Triangle requires a writable string */
         memset(&out, 0, sizeof out);
         memset(&voronoi, 0, sizeof voronoi);
         strncpy(copy, switches, sizeof copy - 1);

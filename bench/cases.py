@@ -1,14 +1,16 @@
-"""What is timed: a program on a domain. Each case can run in memory, without writing a file, and can write its mesh for
-the judge. Both make the same mesh, which is checked by what a run says about it.
+"""Cases: a program on a domain. Each case can run in memory, without writing a file, and can write its mesh for the
+checker. Both runs make the same mesh, which is verified by the numbers that the run prints.
 
-Seconds of a run, by stage, all of wall time:
-  delaunay  points and segments in memory to the (constrained) Delaunay triangulation, emptied outside and in holes
+Wall seconds of a run, by stage:
+
+  delaunay  points and segments in memory to the (constrained) Delaunay triangulation without outside and holes
   quality   from there to the refined mesh
-  number    new numbers for it, along a curve, where a program does that
-  memory    these three
-  process   the whole process, with reading and, where the case says so, writing of files
+  number    renumbering along a curve, if the program does that
+  memory    the sum of these three
+  process   the whole process, including reading and, if the case says so, writing files
   processor its processor time
-and what a program reports beyond that.
+
+and further stages that a program reports.
 """
 import glob
 import json
@@ -22,7 +24,7 @@ LIMIT = 900  # seconds
 
 
 class Failure(Exception):
-    """A run that gave no result; `timed_out` tells why."""
+    """A run without a result; `timed_out`: because of the time limit."""
 
     def __init__(self, text, timed_out=False):
         super().__init__(text)
@@ -33,13 +35,13 @@ class Run:
     def __init__(self, seconds, ended, identity, facts=None):
         self.seconds = seconds    # stage: seconds
         self.peak = ended.peak
-        self.identity = identity  # what the program says of its mesh; None: nothing
+        self.identity = identity  # numbers that the program prints about its mesh; None: none
         self.facts = facts or {}
 
 
 class Case:
-    """ours: a failure or a fault is ours to mend. check: options of trianglecheck beyond bounds and input. judged: by
-    trianglecheck; else its triangles are counted alone, by itself."""
+    """ours: a failure or fault counts against our programs. check: options of trianglecheck besides bounds and input.
+    judged: by trianglecheck; otherwise only the number of triangles that the program prints is used."""
     ours, threads, check, limit, judged = True, 1, (), LIMIT, True
     compare_input, bounds_area = True, True
 
@@ -65,12 +67,12 @@ class Case:
 
     @property
     def missing(self):
-        """Why it cannot run here, or None."""
+        """Reason why the case cannot run here, or None."""
         return None
 
 
 class Ours(Case):
-    """ptriangle. `switches` beyond those of the domain: with `r`, its .poly file has a mesh beside it."""
+    """ptriangle. `switches`: besides those of the domain; with `r`, a mesh lies beside its .poly file."""
 
     def __init__(self, settings, domain, threads, switches="", files="", options=()):
         """files: "" for none, "text", or "HDF5"."""
@@ -102,7 +104,7 @@ class Ours(Case):
         return Run(seconds, ended, json.dumps(facts["mesh"]), facts)
 
     def run(self):
-        """With files: stages from one run, the process from another, that makes no report."""
+        """With files: the stages come from one run, and the process time from another without a report."""
         if not self.files:
             return self._call("-NEP")
         base = os.path.join(self.settings.scratch, "timed")
@@ -118,7 +120,7 @@ class Ours(Case):
 
 
 class Sequential(Case):
-    """Our `triangle`, which knows no threads. It tells milliseconds."""
+    """Our `triangle`, which uses one thread. It prints milliseconds."""
     name = "ours, sequential"
 
     def _call(self, path, extra=()):
@@ -145,9 +147,9 @@ class Sequential(Case):
 
 
 class Triangle(Case):
-    """Triangle 1.6 as PyPI brings it: its library function, timed alone. It makes triangulation and mesh in one call;
-    so `delaunay` is a call without bounds, and `quality` the difference. Timed calls ask for no output (N, E, P), so
-    that filling its arrays is not in the time."""
+    """Triangle 1.6 from PyPI; only its library function is timed. It makes triangulation and mesh in one call. So
+    `delaunay` is the time of a call without bounds, and `quality` the difference. Timed calls request no output (N, E,
+    P), so the time excludes filling its arrays."""
     ours, name = False, "Triangle 1.6"
 
     def __init__(self, settings, domain, switches="", judged=True):
@@ -188,8 +190,8 @@ class Triangle(Case):
 
 
 class Peer(Case):
-    """A program of bench/peers that takes INPUT and bounds, prints {"seconds": from input in memory to mesh in memory},
-    and writes the mesh if a base name follows."""
+    """A program of bench/peers that is called with INPUT and bounds. It prints {"seconds": from input in memory to mesh
+    in memory}, and writes the mesh if a base name follows."""
     ours, compare_input = False, False
 
     def command(self):
@@ -234,8 +236,8 @@ class Spade(Cgal):
 
 
 class Gmsh(Peer):
-    """gmsh has no bounds: asked for the edges of equilateral triangles of 0.66 of the area bound, our mean area. Its
-    meshes are not Delaunay after its own smoothing."""
+    """gmsh has no bounds. It gets the edge length of equilateral triangles whose area is 0.66 of the bound, our mean
+    area. Its meshes are not Delaunay after its own smoothing."""
     check, bounds_area = ("--no-delaunay",), False
 
     def __init__(self, settings, domain, algorithm, name):
@@ -253,7 +255,7 @@ class Gmsh(Peer):
 
 
 def python(settings):
-    """The one that the packages were installed for."""
+    """The Python for which the packages were installed."""
     own = os.path.join(settings.work, "python", "bin", "python")
     return own if os.path.exists(own) else sys.executable
 
@@ -263,6 +265,6 @@ def peer(name):
 
 
 def remove(base):
-    """A mesh and what was linked beside it."""
+    """Removes a mesh and the files linked beside it."""
     for path in glob.glob(glob.escape(base) + ".*"):
         os.remove(path)

@@ -1,5 +1,5 @@
-"""The domains that are measured. Each is written anew as a plain file (numbered from 0, no attributes, markers and
-comments), so that all programs read the same and the simplest reader will do."""
+"""The domains that are measured. Each is written as a new plain file (numbered from 0, no attributes, markers and
+comments), so that all programs read the same file and the simplest reader can read it."""
 import os
 import random
 from array import array
@@ -8,26 +8,26 @@ from decimal import Decimal
 
 import meshfiles
 
-LETTER_A_AREA, LETTER_AREA = 0.084127, 71.865746  # of the paper's letter A and of data/letter.poly
+LETTER_A_AREA, LETTER_AREA = 0.084127, 71.865746  # areas of the paper's letter A and of data/letter.poly
 
 
 @dataclass(frozen=True)
 class Domain:
     name: str
     path: str        # plain .poly or .node file
-    angle: float     # bounds in degrees and units of area; 0: none
+    angle: float     # bounds in degrees and in units of area; 0: none
     area: float
 
     @property
     def switches(self):
-        """As Triangle takes them: numbers have no exponent."""
+        """The bounds in Triangle's form, whose numbers have no exponent."""
         text = "p" if self.path.endswith(".poly") else ""
         text += f"q{self.angle:g}" if self.angle else ""
         return text + ("a" + format(Decimal(repr(self.area)), "f").removesuffix(".0") if self.area else "")
 
     @property
     def plain_switches(self):
-        """The triangulation before it is refined."""
+        """The triangulation without refinement."""
         return "p" if self.path.endswith(".poly") else ""
 
     def without_bounds(self):
@@ -46,7 +46,7 @@ def _data(settings, *name):
 
 
 def letter(settings, area):
-    """The paper's letter A where it is at hand, else a letter R with as many triangles: its bounds are scaled."""
+    """The paper's letter A if it is available, otherwise a letter R with as many triangles, by scaled bounds."""
     source = os.path.join(settings.shared, "classic_A.poly")
     if os.path.exists(source):
         return Domain("letter A", _plain(settings, "letter_a", source), 20, settings.bound(area))
@@ -71,9 +71,9 @@ def norway(settings, angle, area):
 
 
 def shared_coasts(settings, angle, area):
-    """Coasts of the world's oceans, where the folder of further inputs is at hand."""
+    """Coasts of the world's oceans, if the folder of further inputs exists."""
     found, files = [], [("oceans, 59,000 segments", "coast_ne50m_sea")]
-    if not settings.small:  # its bound on angles alone makes a million triangles
+    if not settings.small:  # the angle bound alone gives a million triangles
         files.append(("oceans, 78,000 segments", "coast_gshhg_l_clean"))
     for name, file in files:
         source = os.path.join(settings.shared, file + ".poly")

@@ -1,4 +1,4 @@
-"""Every mesh is judged by trianglecheck before a time of it is shown."""
+"""trianglecheck checks every mesh before its time is reported."""
 import json
 import os
 import zlib
@@ -10,14 +10,14 @@ from process import execute
 
 @dataclass
 class Verdict:
-    faults: str       # empty: none
+    faults: str       # empty: no fault
     vertices: int
     triangles: int
     subsegments: int
     smallest_angle: float
     total_area: float
-    checksum: int     # of the files; 0: not judged
-    seconds: float    # of processor time, that the judge took
+    checksum: int     # of the files; 0: not checked
+    seconds: float    # processor seconds of the checker
 
     @property
     def text(self):
@@ -25,7 +25,7 @@ class Verdict:
 
 
 def _checksum(base):
-    """Comments, which hold the command, do not count."""
+    """Checksum of a file without comments, since they contain the command."""
     value = 0
     for suffix in (".node", ".ele", ".poly"):
         if os.path.exists(base + suffix):
@@ -41,7 +41,7 @@ def _command(case, base):
         command += ["--poly", domain.path]
     if "c" in domain.switches:
         command += ["--keep-hull"]
-    if domain.path.endswith(".node") and not domain.angle:  # vertices put on the hull are rounded
+    if domain.path.endswith(".node") and not domain.angle:  # vertices inserted on the hull are rounded
         command += ["--convex"]
     if domain.angle and case.bounds_area:
         command += ["--min-angle", repr(domain.angle)]
@@ -60,7 +60,7 @@ def count(case):
 def judge(case):
     """Runs the case once, with files. Returns (Verdict, Run); raises Failure."""
     scratch = os.path.join(case.settings.scratch, "judged")
-    remove(scratch)  # of a run that was stopped
+    remove(scratch)  # files of a stopped run
     try:
         base, run = case.write(scratch)
         ended = execute(_command(case, base), 3600, case.settings.scratch)

@@ -1,4 +1,4 @@
-"""What was measured on, and whether the machine was quiet. Linux tells most of it; elsewhere it stays unknown."""
+"""The machine, and whether it was idle. Linux reports most facts; on other systems they stay unknown."""
 import os
 import re
 import resource
@@ -72,14 +72,14 @@ def describe(settings):
 
 
 class Others:
-    """How many cores all that is not ours kept busy, on average, since this was made."""
+    """Average number of cores that other processes kept busy since this object was made."""
 
     def __init__(self):
         self.start, self.busy, self.ours = time.perf_counter(), self._busy(), self._ours()
 
     @staticmethod
     def _busy():
-        """Seconds of all cores that were neither idle nor waiting for input; includes what the host took away."""
+        """Seconds of all cores that were neither idle nor waiting for input. Includes time used by the host."""
         stat = _lines("/proc/stat")
         if not stat:
             return None

@@ -1,4 +1,4 @@
-"""Cases are judged first; then all of them run in turns, so that what disturbs the machine disturbs all alike."""
+"""Cases are checked first. Then all of them run in turns, so that disturbances affect all cases equally."""
 import statistics
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class Times:
 
 
 def seconds_text(x):
-    """Three digits; fewer below ten milliseconds, where clocks and caches decide."""
+    """Three digits, fewer below ten milliseconds, where clocks and caches dominate."""
     return f"{x:.1f}" if x >= 100 else f"{x:.2f}" if x >= 10 else f"{x:.3f}"
 
 
@@ -66,7 +66,7 @@ class Measured:
             self.runs.append(run)
 
     def times(self, stage):
-        """None without such times."""
+        """Median seconds of a stage, or None if no run has them."""
         values = [r.seconds[stage] for r in self.runs if stage in r.seconds]
         return Times(statistics.median(values), min(values), max(values), len(values)) if values else None
 
@@ -83,11 +83,11 @@ class Measured:
         return max(r.peak for r in self.runs)
 
     def typical(self, stage="memory"):
-        """The run whose time is the median, or the next above."""
+        """The run whose time is the median, or the next larger one."""
         return sorted(self.runs, key=lambda r: r.seconds[stage])[len(self.runs) // 2]
 
     def rows(self, part):
-        """For results.csv."""
+        """Rows for results.csv."""
         d, v = self.case.domain, self.verdict
         head = {"part": part, "input": d.name, "switches": getattr(self.case, "switches", "") + d.switches,
                 "program": self.case.name, "threads": self.case.threads}
@@ -102,7 +102,7 @@ class Measured:
 
 
 def measure(title, cases, settings, repeats=None):
-    """List of Measured, in the order of the cases."""
+    """Measures the cases. Returns a list of Measured in the order of the cases."""
     say(title)
     measured = [Measured(case) for case in cases]
     for m in measured:
@@ -127,6 +127,6 @@ def millions_per_second(triangles, seconds):
 
 
 def table(head, rows):
-    """Markdown."""
+    """A Markdown table."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows]) + "\n"

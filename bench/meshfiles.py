@@ -1,5 +1,5 @@
-"""Triangle's text files, as far as the benchmark needs them. What it writes is plain: numbered from 0, no attributes,
-no markers, no comments, so that the smallest reader can read it."""
+"""Triangle's text files, as far as the benchmark needs them. Written files are plain: numbered from 0, no attributes,
+no markers, no comments, so that the simplest reader can read them."""
 import contextlib
 import os
 from array import array
@@ -7,7 +7,7 @@ from array import array
 
 @contextlib.contextmanager
 def whole_file(path):
-    """A text file that is there as a whole or not at all, whenever the run is stopped."""
+    """Writes a text file completely or not at all, even if the run is stopped."""
     new = f"{path}.{os.getpid()}.new"
     try:
         with open(new, "w", newline="") as file:
@@ -28,8 +28,8 @@ def rows(path):
 
 
 class Pslg:
-    """points: x, y one after the other; segments, triangles: point numbers from 0; holes: x, y one after the other;
-    regions: x, y, attribute, area bound one after the other."""
+    """points: x and y alternating; segments, triangles: point numbers from 0; holes: x and y alternating; regions: x,
+    y, attribute, area bound, one region after the other."""
 
     def __init__(self):
         self.points, self.segments, self.holes, self.triangles = array("d"), array("i"), array("d"), array("i")
@@ -79,7 +79,7 @@ def _table(file, header, values, width):
 
 
 def write(path, pslg):
-    """A .poly file, or a .node file: then of the points alone."""
+    """Writes a .poly file, or a .node file with only the points."""
     with whole_file(path) as file:
         _table(file, f"{len(pslg.points) // 2} 2 0 0", pslg.points, 2)
         if path.endswith(".poly"):
@@ -89,7 +89,7 @@ def write(path, pslg):
 
 
 def write_mesh(base, points, triangles, segments):
-    """base.node, base.ele, and base.poly if there are segments, of flat sequences."""
+    """Writes base.node, base.ele and, if there are segments, base.poly from flat sequences."""
     with open(base + ".node", "w") as file:
         _table(file, f"{len(points) // 2} 2 0 0", points, 2)
     with open(base + ".ele", "w") as file:

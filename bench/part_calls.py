@@ -1,4 +1,4 @@
-"""Small meshes, made many times in one process: the time of a call of triangulate(), beside Triangle's."""
+"""Small meshes made repeatedly in one process: the time of a call of triangulate(), compared with Triangle's."""
 import json
 import os
 import statistics
@@ -22,7 +22,7 @@ LIMIT = 60
 
 
 def _harness(settings):
-    """bench/calls.c with our library."""
+    """Builds bench/calls.c with our library."""
     made = os.path.join(settings.work, "calls.so")
     subprocess.run([os.environ.get("CC", "cc"), "-O2", "-fPIC", "-shared", "-D_POSIX_C_SOURCE=200809L",
                     "-I", os.path.join(settings.root, "triangle", "dropin"),

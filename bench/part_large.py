@@ -1,4 +1,5 @@
-"""Meshes of a hundred million triangles and more, in memory and within a bound: time, memory, and the judge's word."""
+"""Meshes of a hundred million triangles and more, in memory and within a memory bound: time, memory, and the verdict of
+the checker."""
 import json
 import os
 import re
@@ -15,11 +16,11 @@ from process import execute
 from settings import say
 
 AREA = 1.5e-8
-NEEDED = {"memory": 12e9, "disk": 12e9}  # bytes; the judge holds 8 GB, the text files take 7.5 GB
+NEEDED = {"memory": 12e9, "disk": 12e9}  # bytes; the checker needs 8 GB, the text files 7.5 GB
 
 
 def _lacking(settings):
-    """Why it cannot run here, or None."""
+    """Reason why the part cannot run here, or None."""
     if settings.small:
         return None
     if machine.memory() < NEEDED["memory"]:
@@ -48,18 +49,18 @@ def _lines(m):
         yield "overhead, waiting not counted", f"{schedule['overhead_percent']:.1f}%"
 
 
-# --- within a bound
+# --- within a memory bound
 
 
 @dataclass
 class Bounded:
-    """A mesh that is swept, or, without a bound, in memory; written and judged, or counted and let go."""
+    """A mesh that is swept or, without a bound, in memory. It is written and checked, or counted and discarded."""
     domain: Domain
     memory: float  # bytes; 0: no bound
     disk: float    # bytes that must be free; 0: no file
 
 
-LIMIT = 4 * 3600  # seconds
+LIMIT = 4 * 3600  # time limit in seconds
 
 
 def _bounded(settings):
@@ -105,7 +106,7 @@ REASONS = {"input_angle": "at small angles of the input", "narrow_gap": "between
 
 
 def _told(report):
-    """What the program says of triangles that stay below the bounds, and of what was parked."""
+    """The program's messages about triangles below the bounds, and about a parked mesh."""
     with open(report, encoding="utf-8") as file:
         schedule = json.load(file)["schedule"]
     if not schedule:
@@ -117,7 +118,7 @@ def _told(report):
 
 
 def _judged(settings, run):
-    """Triangles may be below the bounds where the judge sees a small angle of the input, and nowhere else."""
+    """Triangles may be below the bounds only if the checker finds a small angle of the input there."""
     d, path = run.domain, os.path.join(settings.scratch, "large.h5")
     report = os.path.join(settings.scratch, "large.json")
     bound = f"{int(run.memory / 1e6)}M"
@@ -143,7 +144,7 @@ def _judged(settings, run):
 
 
 def _measure_bounded(settings, run):
-    """A line of the table, and a row of results.csv."""
+    """One line of the table, and a row of results.csv."""
     d, bound = run.domain, f"{run.memory / 1e9:g} GB" if run.memory else "none"
     lacking = _lacks(settings, run)
     if lacking:

@@ -1,4 +1,4 @@
-"""Other mesh generators on the same domains at comparable bounds: speed, smallest angle, mesh size, memory."""
+"""Other mesh generators on the same domains with comparable bounds: speed, smallest angle, mesh size, memory."""
 from cases import Cgal, Gmsh, Ours, Sequential, Spade, Triangle
 from inputs import letter, norway, plate, random_points, square
 from measure import measure, millions_per_second, table
@@ -13,7 +13,7 @@ more than one thread. Peak memory is that of the process (Python's is included f
 
 """
 LIMIT, SMALL_LIMIT = 120, 20  # seconds of one run
-REPEATS = 3                   # at most: some take a minute
+REPEATS = 3                   # at most; some generators need a minute
 
 
 def _cases(settings, domain):
@@ -29,7 +29,8 @@ def _cases(settings, domain):
 
 
 def _judged(m, area):
-    """Whatever else the judge says, a mesh that does not cover the domain is another domain's. area: 0, not known."""
+    """A mesh that does not cover the domain is a mesh of another domain, regardless of other faults. area: 0,
+    unknown."""
     wrong = area and abs(m.verdict.total_area / area - 1) > 1e-9
     return f"covers {m.verdict.total_area / area:.6f} of the domain" if wrong else m.verdict.text
 

@@ -1,4 +1,4 @@
-"""The same mesh made by more and more threads; and what the report of one thread predicts for more than there are."""
+"""The same mesh made by increasing numbers of threads, and predictions for more threads from the report of one."""
 from cases import Ours
 from inputs import letter, norway, random_points, square
 from measure import measure, ratio, seconds_text, table
@@ -34,7 +34,7 @@ def _lines(measured):
 
 
 def _same(measured, settings):
-    """The files of all threads are compared by their checksums."""
+    """Compares the files of all numbers of threads by their checksums."""
     sums = [m.verdict.checksum for m in measured if m.verdict]
     if len(set(sums)) > 1:
         settings.fail("scaling: the files differ with the number of threads")

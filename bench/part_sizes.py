@@ -1,4 +1,5 @@
-"""Lengths of edges: how well they are met beside gmsh, and how many unknowns a solver needs for the same error."""
+"""Lengths of edges: how well they are met compared with gmsh, and how many unknowns a solver needs for the same
+error."""
 import json
 import math
 import os
@@ -55,7 +56,7 @@ def _greece(settings):
 
 
 def _judged(settings, case, h, growth):
-    """None: numpy or scipy is missing, or the case failed."""
+    """Measures a mesh. None: numpy or scipy is missing, or the case failed."""
     base = os.path.join(settings.scratch, "sized")
     try:
         written, _ = case.write(base)
@@ -73,7 +74,7 @@ def _cases(settings, domain, h, growth):
     ours = [Ours(settings, domain, 1, options=sizes),
             Ours(settings, domain, 1, options=(*sizes, "--optimise", "6"))]
     if not growth:
-        # Classic placement makes triangles of 0.66 of the bound on average; this bound gives the mean area asked for.
+        # Classic placement makes triangles of 0.66 of the bound on average. This bound gives the requested mean area.
         area = f"-a{0.66 ** -1 * 3 ** 0.5 / 4 * h * h:.12f}"
         ours.append(Ours(settings, domain, 1, options=("--placement", "classic", area)))
     peers = ((5, "Delaunay"),) if settings.small else ((5, "Delaunay"), (6, "frontal-Delaunay"))

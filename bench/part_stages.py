@@ -1,5 +1,4 @@
-"""Where the time goes, stage by stage, beside Triangle 1.6 on the same input in the same turns; and the targets
-that speak of it."""
+"""Times by stage, compared with Triangle 1.6 on the same input in the same turns, and the targets for them."""
 import os
 import statistics
 
@@ -40,7 +39,7 @@ def _line(m, other):
 
 
 def _ratio_target(asked, least, above, below, stage, of_above=None):
-    """Seconds of the one over seconds of the other."""
+    """Quotient of the seconds of two cases."""
     reached = above.median(of_above or stage) / below.median(stage) if above.good and below.good else None
     return {"asked": asked, "least": least, "reached": reached}
 
@@ -57,8 +56,8 @@ def _sequential_shares(m, threads=64):
 
 
 def _targets(domain, goals, measured):
-    """goals: of one thread (`triangle` or `ptriangle --threads 1`) and of all, in refinement; and of all threads
-    against one. 0: none is set."""
+    """goals: for refinement with one thread (`triangle` or `ptriangle --threads 1`), with all threads, and for the
+    quotient of both. 0: none is set."""
     targets, most, triangle = [], measured[MOST], measured[TRIANGLE]
     for goal, indices in ((goals[0], (SEQUENTIAL, ONE)), (goals[1], (MOST,))):
         for i in indices if goal else ():
@@ -104,7 +103,7 @@ def _files(settings, domain, goals):
 
 
 def _again(settings, domain):
-    """A mesh is read from text files and refined further, which is hardly any work."""
+    """A mesh is read from text files and refined further, with hardly any refinement work."""
     base = os.path.join(settings.work, "inputs", "again_small" if settings.small else "again")
     try:
         Ours(settings, domain, settings.threads).write(base)
@@ -122,7 +121,7 @@ def _again(settings, domain):
     return text, [row for m in measured for row in m.rows("stages again")], [target]
 
 
-# --- all
+# --- all stages
 
 
 def _jobs(settings):
@@ -146,7 +145,7 @@ def _stages(settings, domain, goals):
 
 
 def _triangulation(settings, domain):
-    """Of so many points that reading and judging take longer than all else: no more than twice."""
+    """A case with so many points that reading and checking dominate: the target is at most twice the time."""
     cases = [Triangle(settings, domain, judged=False), Ours(settings, domain, 1),
              Ours(settings, domain, settings.threads)]
     measured = measure(f"stages: {domain.name}", cases, settings, min(2, settings.repeats))

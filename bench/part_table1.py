@@ -1,5 +1,5 @@
-"""Table 1 of the paper: the letter A at 20 degrees, from 29 points to three area bounds; then the mesh of 1.3 million
-triangles refined further, once reconstructed from its triangles and once triangulated anew from its points."""
+"""Table 1 of the paper: the letter A at 20 degrees, from 29 points with three area bounds. Then the mesh of 1.3 million
+triangles is refined further, once reconstructed from its triangles and once triangulated again from its points."""
 import os
 
 import meshfiles
@@ -8,7 +8,7 @@ from inputs import Domain, letter
 from judge import judge
 from measure import measure, table
 
-# Of the paper: input triangles, points and segments; bound; triangles, points and segments made; seconds.
+# From the paper: input triangles, points and segments; bound; triangles, points and segments made; seconds.
 PAPER = (
     ("0 / 29 / 29", 1e-6, "130,405 / 66,647 / 2,889", "0.000", "–", "0.643"),
     ("0 / 29 / 29", 2.5e-8, "5,232,435 / 2,625,249 / 18,063", "0.000", "–", "24.641"),
@@ -32,7 +32,7 @@ def _cases(settings, domain, switches=""):
 
 
 def _coarse_mesh(settings):
-    """The third row's mesh, as files. Both programs start from it. None: it could not be made."""
+    """Files of the third row's mesh, from which both programs start. None: it could not be made."""
     base = os.path.join(settings.work, "inputs", "refined_small" if settings.small else "refined")
     case = Ours(settings, letter(settings, 1e-7), settings.threads)
     try:
@@ -45,7 +45,7 @@ def _coarse_mesh(settings):
 
 
 def _further_jobs(settings, figure):
-    """The mesh refined further: what is given, domain, switches."""
+    """The mesh refined further: description of the input, domain, switches."""
     made = _coarse_mesh(settings)
     if not made:
         return []

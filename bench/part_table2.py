@@ -1,11 +1,11 @@
-"""Table 2 of the paper, scaled speedup: as many workers as there are, and the problem grown with their number."""
+"""Table 2 of the paper, scaled speedup: the problem grows with the number of workers."""
 import machine
 from cases import Ours
 from inputs import square
 from measure import measure, seconds_text, table
 
-# Of the paper: workers; total; million elements; pre-refinement; refinement; communication and synchronisation; filling
-# in and merging; area bound in 1e-8.
+# From the paper: workers; total; million elements; pre-refinement; refinement; communication and synchronisation;
+# filling in and merging; area bound in 1e-8.
 PAPER = (
     (4, 293.7, 23.8, 0.24, 218.7, 32.7, 39.9, 5.00), (9, 294.7, 58.8, 0.44, 220.0, 35.4, 40.3, 2.22),
     (16, 295.4, 109.3, 0.71, 218.8, 37.1, 40.0, 1.25), (25, 296.8, 175.4, 1.05, 219.1, 39.1, 40.8, 0.80),
@@ -24,8 +24,8 @@ and what is left to one last sequential call. Numbering along a curve, which the
 after that. Median run of {}.
 
 """
-AREA = 2e-7              # times workers: the paper's 5e-8 for four
-BYTES_A_TRIANGLE = 100   # with the judge, which needs most
+AREA = 2e-7              # times number of workers: the paper's 5e-8 for four
+BYTES_A_TRIANGLE = 100   # including the checker, which needs most
 
 
 def _line(name, workers, total, elements, parts, area, numbering):
@@ -35,7 +35,7 @@ def _line(name, workers, total, elements, parts, area, numbering):
 
 
 def parts_of(report):
-    """Total without numbering; and of it, for one worker: pre-refinement, refinement, communication and
+    """Total without numbering and, of it, for one worker: pre-refinement, refinement, communication and
     synchronisation, merging. Waiting for the slowest block of a phase is synchronisation. None if the mesh was too
     small for a schedule."""
     schedule = report["schedule"]
@@ -48,7 +48,7 @@ def parts_of(report):
 
 
 def _measured(settings, workers):
-    """A line of the table, and rows of results.csv."""
+    """One line of the table, and rows of results.csv."""
     domain = square(settings, AREA / workers)
     if 1.55 / domain.area * BYTES_A_TRIANGLE > machine.memory():
         return ("ours", workers, "left out: too little memory", *[""] * 9), []

@@ -1,4 +1,4 @@
-"""Inputs of the worst kind at growing size: time divided by size should hardly grow."""
+"""Worst-case inputs of increasing size: time divided by size should hardly grow."""
 import os
 from dataclasses import dataclass
 

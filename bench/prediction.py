@@ -1,15 +1,15 @@
-"""What a run would have taken on other numbers of threads, or on the ranks of a network: predicted from the blocks that
-`ptriangle --report` of one process has timed, never measured.
+"""Predicts the time of a run on other numbers of threads, or on the ranks of a network, from the times of blocks in the
+report of one process (`ptriangle --report`). Nothing is measured.
 
-Threads. Phases follow one another, blocks of one phase are independent: list scheduling, the longest first, ends within
-4/3 of the best (R. L. Graham, SIAM J. Appl. Math. 17, 1969, theorem 2). What stages do in shares, and numbering, is
-shared out; all else is sequential.
+Threads. Phases follow one another, and blocks of one phase are independent. List scheduling, the longest first, ends
+within 4/3 of the optimum (R. L. Graham, SIAM J. Appl. Math. 17, 1969, theorem 2). Stages that work in shares, and
+numbering, are divided among the threads. All other work is sequential.
 
-Ranks. Every rank makes the coarse mesh. Tiles go to ranks, columns first, as in sched/ranks/territory.h; block
-(2 i + 1, 2 j + 1) is tile (i, j), others lie over two tiles or four. A block is done by the rank that owns the first of
-its tiles; other owners lend theirs and get them back. Each phase takes as long as its busiest rank refines, then as the
-busiest one packs and unpacks, then as the slowest one's messages are under way; agreements take latencies in proportion
-to the logarithm of the number of ranks. Caches and links that are shared, and files, are not in the model.
+Ranks. Every rank makes the coarse mesh. Tiles are assigned to ranks, columns first, as in sched/ranks/territory.h.
+Block (2 i + 1, 2 j + 1) is tile (i, j); other blocks lie over two or four tiles. The rank that owns the first tile of a
+block refines it. Owners of its other tiles lend them and get them back. The time of a phase is the sum of three maxima
+over ranks: refining, packing and unpacking, and sending messages. Agreements take latencies in proportion to the
+logarithm of the number of ranks. The model ignores shared caches, shared links, and files.
 
 Usage: python3 bench/prediction.py REPORT.json"""
 import collections
@@ -21,11 +21,11 @@ import math
 import sys
 
 MOST_SHARES = 64  # TRI_MOST_SHARES of triangle/base/executor.h
-Pair = collections.namedtuple("Pair", "bytes seconds swaps")  # of a block and one more rank that owns a part of it
+Pair = collections.namedtuple("Pair", "bytes seconds swaps")  # for a block and each further rank that owns a part of it
 
 
 def makespan(seconds, threads):
-    """Each piece of work goes to the thread that is free first, the longest first."""
+    """List scheduling: the longest item first, each on the thread that is free first."""
     load = [0.0] * threads
     for s in sorted(seconds, reverse=True):
         heapq.heapreplace(load, load[0] + s)
@@ -43,7 +43,7 @@ def sequential_seconds(schedule):
 
 
 def shared_seconds(schedule, had, threads):
-    """Item k of `shared` is of 2^k shares."""
+    """Item k of `shared` is work in 2^k shares."""
     return sum(s * min(had, 1 << k) / min(threads, 1 << k) for k, s in enumerate(schedule["seconds"]["shared"]))
 
 
@@ -65,18 +65,18 @@ def on_threads(report):
 @dataclasses.dataclass
 class How:
     ranks: int
-    threads: int = 1  # of each rank
-    times: int = 1  # the mesh is so many copies of the measured one, in each direction
-    latency: float = 0  # seconds of a message
-    bandwidth: float = 1e10  # bytes a second that a rank sends and receives
-    lateness: float = 0  # seconds, on average, that a rank which waits notices an agreement too late
-    pairs: tuple = ()  # of the first schedule and of the second
+    threads: int = 1  # threads of each rank
+    times: int = 1  # the mesh consists of this many copies of the measured one, in each direction
+    latency: float = 0  # seconds per message
+    bandwidth: float = 1e10  # bytes per second that a rank sends and receives
+    lateness: float = 0  # mean delay in seconds until a waiting rank notices an agreement
+    pairs: tuple = ()  # one Pair for the first schedule and one for the second
 
 
 def usual(ranks, threads, times, cell):
-    """The network of docs/scaling.md, and what 2, 4 and 9 ranks took for 15 million triangles, in cells of 65,536. In
-    the first schedule it goes with the area of a cell: seams are as long as a cell, and some triangles of the coarse
-    mesh wide, which grow with the cells."""
+    """The network of docs/scaling.md, with Pair values measured on 2, 4 and 9 ranks for 15 million triangles in cells
+    of 65,536. In the first schedule these values are proportional to the area of a cell. Seams are as long as a cell,
+    and some triangles of the coarse mesh are as wide as the cells."""
     share = cell / 65536
     pairs = Pair(168e3 * share, 0.0045 * share, 3), Pair(14e3, 0.0017, 6)
     return How(ranks, threads, times, 2e-6, 1e10, 2.5e-4, pairs)
@@ -85,7 +85,7 @@ def usual(ranks, threads, times, cell):
 class _Replay:
     def __init__(self, report, how):
         self.how, self.schedule, self.had = how, report["schedule"], report["threads"]
-        self.old = (self.schedule["columns"] - 1) // 2, (self.schedule["rows"] - 1) // 2  # tiles
+        self.old = (self.schedule["columns"] - 1) // 2, (self.schedule["rows"] - 1) // 2  # columns and rows of tiles
         self.columns, self.rows = self.old[0] * how.times, self.old[1] * how.times
         self.sum = collections.Counter()
         self.busy, self.sent = [0.0] * how.ranks, [0.0] * how.ranks
@@ -94,7 +94,7 @@ class _Replay:
                       for _ in range(rank * tiles // how.ranks, (rank + 1) * tiles // how.ranks)]
 
     def _take_blocks(self, which):
-        """Seconds by block; of later rounds, one rank's."""
+        """Seconds by block. Blocks of later rounds are summed for one rank."""
         measured, later, cells = collections.Counter(), 0, self.schedule["columns"] * self.schedule["rows"]
         for b in self.schedule["blocks"]:
             if b["schedule"] == self.schedule["schedule"] + which:
@@ -107,7 +107,7 @@ class _Replay:
 
     @staticmethod
     def _measured_at(at, old, total):
-        """Where copies of a mesh meet, what were two blocks at borders is one inside."""
+        """Where copies of a mesh meet, two blocks at borders become one block inside."""
         if at % (2 * old) or at == 0:
             return [at % (2 * old)]
         return [2 * old] if at == 2 * total else [2 * old, 0]
@@ -117,7 +117,7 @@ class _Replay:
                    for r in self._measured_at(row, self.old[1], self.rows))
 
     def _owners(self, column, row):
-        """Each once, the first tile's owner first."""
+        """Each owner once, beginning with the owner of the first tile."""
         columns = range(max(0, (column - 1) // 2), min(column // 2 + 1, self.columns))
         rows = range(max(0, (row - 1) // 2), min(row // 2 + 1, self.rows))
         return list(dict.fromkeys(self.owner[c * self.rows + r] for c in columns for r in rows))
@@ -142,7 +142,7 @@ class _Replay:
             self.busy[rank] += sum(seconds)
         for rank, n in pairs.items():
             self.busy[rank] += n * pair.seconds / 2
-            self.sent[rank] += n * pair.bytes / 2  # the other half comes
+            self.sent[rank] += n * pair.bytes / 2  # the other half is received
         self.sum["merge_seconds"] += max(pairs.values(), default=0) * pair.seconds / 2
         self.sum["bytes"] += sum(pairs.values()) * pair.bytes / 2
         self.sum["messages"] += len(speak) * pair.swaps
@@ -170,14 +170,14 @@ class _Replay:
 
 
 def on_ranks(report, how):
-    """Of blocks of the first rounds of the report's own schedule, and of the one behind it on the same cells; later
+    """Predicts the first rounds of the report's own schedule and of the following schedule on the same cells. Later
     rounds count as done by one rank. None: there are no cells."""
     schedule = report["schedule"]
     return _Replay(report, how).play() if schedule and schedule["columns"] > 1 and schedule["rows"] > 1 else None
 
 
-# Ranks, threads of each, triangles: this mesh; about the largest of the paper's Table 2, and one as large a rank; and
-# one of 10^10 on 4, 16 and 64 nodes of 64 cores.
+# Ranks, threads of each, triangles (0: this mesh). The next two: about the largest mesh of the paper's Table 2, and one
+# with as many triangles per rank. The last three: 10^10 triangles on 4, 16 and 64 nodes of 64 cores.
 ROWS = [(n, 1, 0) for n in (1, 2, 4, 9, 16, 64)] + [(121, 1, 8.7e8), (1024, 1, 7.4e9), (32, 8, 1e10), (128, 8, 1e10),
                                                    (512, 8, 1e10)]
 

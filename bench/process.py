@@ -1,4 +1,4 @@
-"""One process: its output, wall time and peak memory, under a limit."""
+"""Runs one process: its output, wall time and peak memory, with a time limit."""
 import os
 import subprocess
 import tempfile
@@ -12,14 +12,14 @@ class Ended:
     code: int
     output: str
     errors: str
-    wall: float      # seconds
+    wall: float      # wall seconds
     processor: float # seconds of processor time, of user and system
-    peak: int        # bytes resident at most; what a program of this size weighs is included
+    peak: int        # peak resident bytes; includes the size of the program itself
     timed_out: bool
 
 
 def execute(command, limit, cwd):
-    """Waits by wait4 because only that gives the memory of this one child."""
+    """Waits by wait4, since only wait4 reports the memory of this child alone."""
     with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
         start = time.perf_counter()
         child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, cwd=cwd)

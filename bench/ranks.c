@@ -1,4 +1,4 @@
-/* Measures par_stream_on: what each rank takes, and what moves. Each rank counts its tiles and lets them go.
+/* Measures par_stream_on: resources that each rank uses, and data sent. Each rank counts its tiles and discards them.
  * Usage: mpirun -n N ranks FILE.poly MIN_ANGLE MAX_AREA [THREADS_A_RANK] */
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ enum { SECONDS, SYSTEM, FAULTS, WAITS, MEGABYTES, MEASURES };
 
 static double seconds_of(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
 
-/* What this process has taken so far: of the processor, of that in the system, pages, times that it waited. */
+/* Resources that this process has used so far: processor time, its system part, page faults, waits, peak memory. */
 static void look(double taken[MEASURES])
 {
     struct rusage usage;
@@ -36,7 +36,7 @@ static void look(double taken[MEASURES])
     taken[MEGABYTES] = (double)usage.ru_maxrss / 1024;
 }
 
-/* Sums and largest values over the ranks, by rank 0. */
+/* Prints sums and maxima over the ranks, on rank 0. */
 static void print(int rank, int n_ranks, double wall, const double mine[MEASURES], const struct counts *counts,
                   const struct par_exchanges *moved)
 {

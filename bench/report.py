@@ -1,4 +1,4 @@
-"""results.csv and results.md from what the parts have left, each part from its last run."""
+"""Writes results.csv and results.md from the results of the parts, each from its last run."""
 import csv
 import json
 import os
@@ -39,7 +39,7 @@ def _write_csv(path, parts):
 
 
 def _machine_table(parts):
-    """What differs between the parts is told for each; parts of an earlier version may lack some of it."""
+    """Facts that differ between the parts are listed for each part. Parts of an earlier version may lack some."""
     lines = []
     for key in dict.fromkeys(key for part in parts.values() for key in part["machine"]):
         values = {name: str(part["machine"].get(key, "unknown")) for name, part in parts.items()}

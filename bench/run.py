@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Runs parts of the benchmark; see Makefile.bench. Each part is a module part_<name> with run(settings), which yields
-what it has so far, again and again: title, text (Markdown), rows (for results.csv) and targets. All of that is kept,
-so that a run that is interrupted has not been in vain. Exit code 1 if one of our meshes has a fault, or a program that
-is there fails."""
+"""Runs parts of the benchmark; see Makefile.bench. Each part is a module part_<name> with run(settings), which
+repeatedly yields its results so far: title, text (Markdown), rows (for results.csv) and targets. All results are kept,
+so an interrupted run loses little. Exit code 1 if one of our meshes has a fault, or a program that exists fails."""
 import importlib
 import json
 import sys

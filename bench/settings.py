@@ -1,4 +1,4 @@
-"""What one run of the benchmark is told, and where things are."""
+"""Settings of one run of the benchmark, and the locations of files."""
 import argparse
 import os
 from dataclasses import dataclass, field
@@ -14,10 +14,10 @@ class Settings:
     work: str      # scratch, inputs, peers, measurements
     shared: str    # further inputs; need not exist
     repeats: int
-    threads: int   # most threads
+    threads: int   # largest number of threads
     small: bool
     parts: list
-    failures: list = field(default_factory=list)  # runs that should not have failed
+    failures: list = field(default_factory=list)  # unexpected failures
 
     @property
     def root(self):
@@ -29,7 +29,8 @@ class Settings:
 
     @property
     def results(self):
-        """Folder of results.csv and results.md. Those of small runs say nothing and must not replace true ones."""
+        """Folder of results.csv and results.md. Small runs have a folder of their own, since their results mean
+        little."""
         return self.measurements if self.small else os.path.join(self.root, "bench")
 
     @property
@@ -40,11 +41,11 @@ class Settings:
         return os.path.join(self.programs, "bin", name)
 
     def bound(self, area):
-        """The area bound of a full run, or one that makes a mesh of a hundredth."""
+        """The area bound of a full run. For a small run, a bound that gives a hundredth of the triangles."""
         return float(f"{area * 100:.12g}") if self.small else area
 
     def thread_counts(self):
-        """1, 2, 4 and so on, and the most."""
+        """1, 2, 4 and so on, and the largest number."""
         return sorted({1 << k for k in range(10) if 1 << k < self.threads} | {self.threads})
 
     def fail(self, what):

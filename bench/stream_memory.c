@@ -1,4 +1,4 @@
-/* Measures par_mesh_stream: a mesh within a bound on memory, tile by tile, each counted, looked through and let go.
+/* Measures par_mesh_stream: a mesh within a memory bound, tile by tile. Each tile is counted, read and discarded.
  * Usage: stream FILE.poly MIN_ANGLE MAX_AREA BYTES [THREADS [SCRATCH]]; bytes 0: in memory */
 #include <stdio.h>
 #include <stdlib.h>

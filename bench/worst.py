@@ -1,4 +1,5 @@
-"""Inputs on which a careless triangulator takes quadratic time, of any size n: about so many vertices."""
+"""Inputs on which a naive triangulator takes quadratic time, of any size n, which is the approximate number of
+vertices."""
 import math
 import random
 from dataclasses import dataclass
@@ -48,7 +49,7 @@ def round_places(n, radius=lambda k: 1, first=0.1):
 
 
 def row(n, low, high, height):
-    """n places over an interval: (x, height(x))."""
+    """n points over an interval: (x, height(x))."""
     return [(x, height(x)) for x in (low + (high - low) * i / (n - 1) for i in range(n))]
 
 
@@ -63,7 +64,7 @@ def shuffled(items):
     return items
 
 
-# --- points alone
+# --- only points
 
 def _points(places):
     figure = Figure()
@@ -126,7 +127,7 @@ def far_points_and_a_row(n):
 
 
 def halving_row(n):
-    """Coordinates halve two hundred times: deep cells of any curve that fills the plane."""
+    """Coordinates are halved two hundred times, which gives deep cells in any space-filling curve."""
     source = random.Random(1)
     places = [2.0 ** (-i % 200) * 2.0 ** -200 * (1 + 1e-3 * source.random()) for i in range(n)]
     return _points((x, x * x * source.random()) for x in places)
@@ -160,7 +161,7 @@ def narrow_hub(n):
 
 
 def two_hubs(n):
-    """Two vertices near to each other, each with half of the spokes."""
+    """Two nearby vertices, each with half of the spokes."""
     figure = Figure()
     left, right = figure.point(-1e-4, 0), figure.point(1e-4, 0)
     for x, y in round_places(n):
@@ -183,7 +184,7 @@ def half_circle(n):
 
 
 def circle_with_chords(n, chords=30):
-    """Chords near to the centre; the corners are nearly cocircular: cavities of all triangles."""
+    """Chords near the centre. The corners are nearly cocircular, so cavities contain all triangles."""
     figure = Figure()
     ids = figure.ring(round_places(n))
     for k in range(chords):
@@ -225,14 +226,14 @@ def nested_triangles(n):
 
 
 def crossing_octagons(n):
-    """Each larger by 1 and turned: the crossings are some n * n / 150."""
+    """Each ring is larger by 1 and rotated: there are about n * n / 150 crossings."""
     figure = Figure()
     for k in range(n // 8):
         figure.ring(round_places(8, lambda _, k=k: 1 + k, 0.1 * k))
     return figure
 
 
-# --- teeth, rooms, places in them
+# --- teeth, rooms, points inside them
 
 def comb(n, height=1e5, base=1):
     figure, k = Figure(), n // 2
@@ -288,7 +289,7 @@ def _points_in_a_box(n):
 
 
 def holes_inside(n):
-    """All points of holes empty the same box."""
+    """The points of all holes lie in the same box."""
     figure = _points_in_a_box(n)
     figure.holes.extend(0.25 + 0.5 * c for place in random_places(n) for c in place)
     return figure
@@ -325,7 +326,7 @@ def thirty_crossings(n):
 
 
 def facing_curves(n):
-    """Two parabolas that bulge towards a segment between them: flips would be n * n."""
+    """Two parabolas that bulge towards a segment between them, which would need n * n flips."""
     figure = _points(p for x, y in row(n // 2, -1, 1, lambda x: 1e-3 + x * x) for p in ((x, y), (x, -y)))
     figure.across(2)
     return figure
@@ -364,7 +365,7 @@ def saws(n):
 
 
 def lattice_of_segments(n):
-    """As many crossings as about n."""
+    """About n crossings."""
     figure, source, k = Figure(), random.Random(1), math.isqrt(n)
     for i in range(k):
         a, b, c, d = (i + 0.1 * source.random() for _ in range(4))
@@ -374,7 +375,7 @@ def lattice_of_segments(n):
 
 
 def slits(n):
-    """Short segments at random places, which cross."""
+    """Short segments at random positions, which cross."""
     figure, source, k = Figure(), random.Random(2), n // 2
     for x, y in random_places(k):
         figure.segment(figure.point(x, y), figure.point(x + 2 / math.sqrt(k), y + 1e-9 * source.random()))
@@ -382,7 +383,7 @@ def slits(n):
 
 
 def parallels(n):
-    """Under a finely sampled curve, long parallels in the order of their heights, as strata are."""
+    """Long parallels below a finely sampled curve, in the order of their heights, like strata."""
     figure, k = Figure(), n // 3
     figure.put((i / k, 1 + 0.2 * math.sin(math.pi * i / k)) for i in range(k))
     for y in ((i + 1) / (k + 1) for i in range(k)):
@@ -408,7 +409,7 @@ def _around(figure, n):
 
 
 def one_segment_again(n):
-    """The same segment along three hundred vertices, again and again."""
+    """The same segment along three hundred vertices, repeated."""
     figure = Figure()
     ids = figure.put((k, 0) for k in range(300))
     for _ in range(n):
@@ -433,7 +434,7 @@ def overlapping_path(n, place=lambda x: (x, x)):
 
 
 def rounded_path(n):
-    """The same beside the line, as near to it as rounding lets points be."""
+    """The same beside the line, as close to it as rounding allows."""
     return overlapping_path(n, lambda x: polar(x, 0.3))
 
 
@@ -441,7 +442,7 @@ def rounded_path(n):
 class Case:
     build: Callable
     switches: str             # {n}: the number of vertices
-    largest: int = 1_000_000  # vertices; less where meshes are many times as large, or grow faster than inputs
+    largest: int = 1_000_000  # number of vertices; smaller if meshes are much larger than inputs, or grow faster
 
 
 POINTS = (random_points, cocircular, cocircular_with_centre, parabola, two_parallel_rows, two_rows_at_right_angles,

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Configures and builds a preset of CMakePresets.json on all cores, into build/<preset>.
 # Usage: tools/build.sh PRESET [CMAKE_OPTION...]
-# PTRIANGLE_BUILD names another folder for the builds, PTRIANGLE_TARGET what of it is built: all without.
+# PTRIANGLE_BUILD: another folder for the builds. PTRIANGLE_TARGET: the target to build; default: all.
 set -eu
 cd "$(dirname "$0")/.."
 preset=$1

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Builds the Debian packages of the tree as it is, tracked files alone, and says what lintian thinks of them if it is
-# there.
+# Builds the Debian packages from the tracked files of the tree in their current state, and prints lintian's findings if
+# lintian is installed.
 # Usage: tools/deb.sh [OUTPUT_FOLDER]     default: out/deb
-# What is needed: apt-get install build-essential debhelper, and apt-get build-dep . in this folder.
+# Needs: apt-get install build-essential debhelper, and apt-get build-dep . in this folder.
 set -eu
 here=$(pwd)
 cd "$(dirname "$0")/.."

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Builds the site build/site from docs/, the headers, the docstrings and the help texts, without a warning. Open
-# build/site/index.html; the site works from a folder. Sphinx and its extensions come from PyPI into a virtual environment
-# of their own, Doxygen from the system. If PyPI or Doxygen cannot be had, one line says so, and nothing is built.
-# Usage: tools/docs.sh [FOLDER]   build/site without
+# Builds the site build/site from docs/, the headers, the docstrings and the help texts. Warnings are errors. Open
+# build/site/index.html; the site needs no web server. Sphinx and its extensions come from PyPI into a separate virtual
+# environment, Doxygen from the system. If PyPI or Doxygen is not available, one line says so, and nothing is built.
+# Usage: tools/docs.sh [FOLDER]     default: build/site
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -23,7 +23,7 @@ tools/setup.sh docs >"$work/log" 2>&1 || skip "$(tail -n 1 "$work/log")"
 [ -x "$work/venv/bin/python" ] || python3 -m venv "$work/venv" || skip "python3 has no venv (Debian: python3-venv)"
 pip install numpy scikit-build-core sphinx furo myst-parser breathe || skip "PyPI cannot be reached ($(tail -n 1 "$work/log"))"
 
-# The wheel of tools/python.sh if it is not older than the sources.
+# The wheel of tools/python.sh, if it is not older than the sources.
 wheel=$(find "$build/python/wheels" -name 'ptriangle-*.whl' 2>/dev/null | head -n 1)
 if [ -z "$wheel" ] || [ -n "$(find CMakeLists.txt cmake include python/ptriangle sched triangle -newer "$wheel" -type f | head -n 1)" ]; then
     must pip wheel --no-build-isolation --no-deps --wheel-dir "$work/wheels" "$root"

@@ -9,7 +9,7 @@ import re
 SOURCE, TARGET = "docs/scaling.md", "docs/pictures/growth.svg"
 WIDTH, HEIGHT, LEFT, TOP, RIGHT, BOTTOM = 640, 360, 60, 20, 60, 40
 LOW, HIGH = 7, 9.5  # powers of ten of triangles
-SCALES = {"processor seconds": (0, 3.5, "#b2182b"), "megabytes": (2, 4, "#2166ac")}  # powers of ten
+SCALES = {"processor seconds": (0, 3.5, "#b2182b"), "megabytes": (2, 4, "#2166ac")}  # powers of ten of each quantity
 
 
 def points():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the speed of refinement beside Triangle: reads the first table of "Beside Triangle" in docs/performance.md, and
-writes docs/pictures/speed.svg.
+"""Draws the speed of refinement compared with Triangle: reads the first table of "Beside Triangle" in
+docs/performance.md, and writes docs/pictures/speed.svg.
 
 Usage: tools/draw_speed.py    (in the root of the repository)"""
 import re
@@ -12,12 +12,12 @@ WIDTH, LEFT, RIGHT, TOP, BAR, GAP = 720, 130, 70, 62, 13, 14
 
 
 def seconds(cell):
-    """The first number of a cell: `0.48 + 0.21` is refinement and numbering, `1.20 (0.95)` median and least."""
+    """The first number of a cell: `0.48 + 0.21` is refinement and numbering, `1.20 (0.95)` median and minimum."""
     return float(re.match(r"[\d.]+", cell).group())
 
 
 def rows():
-    """(label, triangles in millions, seconds of each program, Triangle's time over that of each) of each row."""
+    """(label, triangles in millions, seconds of each program, Triangle's time divided by each of them) of each row."""
     with open(SOURCE, encoding="utf-8") as file:
         table = re.search(r"\n## Beside Triangle\n.*?\n\|[-|]+\|\n((?:\|[^\n]*\n)+)", file.read(), re.S)
     for line in table.group(1).splitlines():

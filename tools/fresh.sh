@@ -1,9 +1,8 @@
 #!/bin/sh
-# The two commands of README as somebody new types them: in a clean clone of this tree, where nothing is installed but a
-# minimal Debian or Ubuntu, this machine's own release, made by debootstrap from this machine's own mirror and thrown
-# away at the end. Debootstrap is installed if it is missing; that adds nothing to what the commands see. Where such a
-# root cannot be made (no root, no apt, no mirror), one line says so, and the commands run in a clean clone beside what
-# this machine has.
+# Runs the two commands of the README like a new user: in a clean clone of this tree, on a minimal Debian or Ubuntu
+# system. The system has this machine's release. debootstrap makes it from this machine's mirror, and it is deleted at
+# the end. debootstrap is installed if missing, which does not affect the minimal system. If such a system cannot be
+# made (no root, no apt, no mirror), one line says so, and the commands run in a clean clone on this machine.
 # Usage: tools/fresh.sh
 set -eu
 cd "$(dirname "$0")/.."
@@ -14,7 +13,7 @@ trap 'rm -rf --one-file-system "$work"' EXIT
 trap 'exit 1' INT TERM
 commands=$(sed -n '/^## Set up/,/^## [^S]/s/^    \(tools\/[a-z-]*\.sh\).*/\1/p' README.md | head -n 2)
 
-# URI, release and section of each package list of this machine that is the distribution's own.
+# URI, release and section of each package list of this machine that belongs to the distribution.
 sources() {
     # shellcheck disable=SC1091,SC2154,SC2016 # os-release sets them; apt fills in
     (. /etc/os-release && apt-get indextargets --format '$(REPO_URI) $(CODENAME) $(COMPONENT) $(ORIGIN)' \
@@ -38,7 +37,7 @@ make_root() {
     cp /etc/resolv.conf "$root/etc/"
 }
 
-in_root() { # in_root COMMAND...: in a namespace whose mounts end with it
+in_root() { # in_root COMMAND...: runs it in a namespace whose mounts end with it
     unshare --mount sh -euc 'root=$1; shift
         mount -t proc proc "$root/proc"
         mount --rbind /dev "$root/dev"

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Builds the fuzz targets (preset fuzz) and runs each for so many seconds, as many at a time as there are
-# processors; what they find is written to build/fuzz/found.
+# Builds the fuzz targets (preset fuzz) and runs each for the given number of seconds, as many at a time as there are
+# processors. Findings are written to build/fuzz/found.
 # Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read sizes triangulate mesh schedule
-# Again, with one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
-# PTRIANGLE_FUZZ_IGNORE="area,angle" lets kinds of faults of the mesh pass (see tests/fuzz/fuzz_mesh.c).
-# PTRIANGLE_FUZZ_SEED=N makes runs alike, so that a failure speaks of the change; default: another seed each time.
-# Says so and succeeds where the compiler has no libFuzzer.
+# To repeat one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
+# PTRIANGLE_FUZZ_IGNORE="area,angle" ignores kinds of faults of the mesh (see tests/fuzz/fuzz_mesh.c).
+# PTRIANGLE_FUZZ_SEED=N makes runs repeatable, so that a failure is due to the change. Default: a new seed each time.
+# If the compiler has no libFuzzer, the script says so and succeeds.
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:-60}

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Makes data/coast/ from Natural Earth (public domain) as packed in the npm package world-atlas 2.0.2.
 
-    npm pack world-atlas@2.0.2 && tar xzf world-atlas-2.0.2.tgz
-    python3 tools/make_coast.py package [data/coast]
+  npm pack world-atlas@2.0.2 && tar xzf world-atlas-2.0.2.tgz
+  python3 tools/make_coast.py package [data/coast]
 
-Standard library only. TopoJSON arcs are decoded, projected by a stereographic projection (conformal) about the middle
-of the region and rounded to whole metres, so that every test below is exact and every coordinate is exact in the file.
-Rounding can make rings touch; the planar arrangement of all segments is taken, edges given an even number of times
-(spikes without width) vanish, and each face is called land or sea by the parity of the rings around it. So what is
-written is a valid PSLG: no crossing, no vertex on a foreign segment, no duplicate; this is asserted.
+Uses only the standard library. TopoJSON arcs are decoded, projected by a stereographic projection (conformal) about the
+middle of the region and rounded to whole metres. So every test below is exact, and every coordinate is exact in the
+file. Rounding can make rings touch. The planar arrangement of all segments is computed, edges that occur an even number
+of times (spikes of zero width) are removed, and each face is classified as land or sea by the parity of the rings
+around it. The output is therefore a valid PSLG without crossings, vertices on other segments, or duplicates, which is
+asserted.
 """
 import json
 import math
@@ -98,7 +99,7 @@ def box_outline(box, step):
 
 
 def thin(points, least):
-    """Drops points of a closed ring nearer than `least` metres to the last one kept."""
+    """Drops points of a closed ring that are closer than `least` metres to the last one kept."""
     kept = []
     for p in points:
         if not kept or (p[0] - kept[-1][0]) ** 2 + (p[1] - kept[-1][1]) ** 2 >= least * least:
@@ -121,7 +122,8 @@ def parity(edges):
 # --- faces
 
 def clean(edges):
-    """Arrangement with all nodes at integers and no crossing: crossings are rounded and the arrangement taken again."""
+    """Arrangement whose nodes are all integers. Crossings are rounded and the arrangement is computed again, until none
+    is left."""
     while True:
         points = sorted({p for edge in edges for p in edge})
         index = {p: i for i, p in enumerate(points)}
@@ -164,7 +166,8 @@ class Faces:
         self.inner = [None] + [self.interior(f) for f in range(1, self.sub.n_faces)]
 
     def interior(self, face):
-        """A point well inside the face: middle of the longest chord on one of some horizontal lines, in halves."""
+        """A point well inside the face: the midpoint of the longest chord on one of several horizontal lines, in
+        halves."""
         pieces = [(self.points[a], self.points[b]) for walk in self.walks[face]
                   for a, b in zip(walk, walk[1:] + walk[:1])]
         low, high = (f(p[1] for p, _ in pieces) for f in (min, max))
@@ -223,7 +226,8 @@ def write(path, about, edges, marker_of, holes, regions):
 # --- the maps
 
 def make_sea(topology, path, about, centre, box, step, least, smallest):
-    """Box minus land. Rings are thinned to segments of `least` metres; land or sea faces under `smallest` m2 go."""
+    """Box minus land. Rings are thinned to segments of `least` metres. Land or sea faces below `smallest` m2 are
+    removed."""
     project = stereographic(*centre)
     kept = []
     for _, ring in topology.rings("land"):
@@ -243,7 +247,7 @@ def make_sea(topology, path, about, centre, box, step, least, smallest):
     for face in range(1, faces.sub.n_faces):
         if faces.area(face) < smallest:
             sea[face] = not sea[face]
-    # The largest connected sea is the domain; lakes, lagoons cut off and what is land become one class.
+    # The largest connected sea is the domain. Lakes, isolated lagoons and land become one class.
     faces = Faces(faces.edges_between(sea))
     biggest = max(range(1, faces.sub.n_faces), key=faces.area)
     wet = [face == biggest for face in range(faces.sub.n_faces)]
@@ -259,7 +263,7 @@ def make_sea(topology, path, about, centre, box, step, least, smallest):
 
 
 def chosen_rings(topology, project, ids, smallest):
-    """Rings (signed arc indices) of the countries with these codes; a ring of smaller extent is left out."""
+    """Rings (signed arc indices) of the countries with these codes. Rings of smaller extent are left out."""
     rings = {}
     for country, ring in topology.rings("countries"):
         if country["id"] in ids:
@@ -270,7 +274,7 @@ def chosen_rings(topology, project, ids, smallest):
 
 
 def thin_arc(points, least):
-    """As thin(), but both ends stay, because other arcs meet there."""
+    """Like thin(), but both ends are kept, because other arcs meet there."""
     body = thin(points[:-1], least)
     while points[0] != points[-1] and len(body) > 1 and math.dist(body[-1], points[-1]) < least:
         body.pop()
@@ -297,7 +301,7 @@ def make_borders(topology, path, about, centre, ids, least):
     used = {index if index >= 0 else ~index for country in rings.values() for ring in country for index in ring}
     arcs = {arc: thin_arc([project(p) for p in topology.arcs[arc]], least) for arc in used}
     faces = Faces(clean([(a, b) for points in arcs.values() for a, b in zip(points, points[1:]) if a != b]))
-    # Thinning can make slivers that no country owns or that split one country: only true borders stay.
+    # Thinning can make slivers that belong to no country or split one country: only true borders are kept.
     edges = faces.edges_between(owners(faces, rings, arcs))
     faces = Faces(edges)
     owner = owners(faces, rings, arcs)

@@ -26,21 +26,21 @@ class Case:
 
 
 def case(name, what, right, runs=("-p",)):
-    """Registers a builder. It returns a Poly, or bytes for files that are written as they are."""
+    """Registers a builder. It returns a Poly, or bytes for files that are written unchanged."""
     def register(build):
         CASES.append(Case(name, build, what, right, runs))
         return build
     return register
 
 
-# --- polys and writing
+# --- Poly, and writing
 
 def number(value):
     return repr(value)[:-2] if isinstance(value, float) and repr(value).endswith(".0") else repr(value)
 
 
 class Poly:
-    """Points, segments, holes and regions while they are collected. Equal points given to point() are one vertex."""
+    """Collects points, segments, holes and regions. Equal points given to point() become one vertex."""
 
     def __init__(self, base=1, with_markers=True):
         self.base, self.with_markers = base, with_markers
@@ -484,7 +484,7 @@ def identical():
     return cloud([(1.5, 2.5)] * 5)
 
 
-# --- segments that meet wrongly
+# --- segments that meet incorrectly
 
 @case("nasty/duplicates.poly", "square with a diagonal chain; most segments name second or third copies of the points",
       "moves segments to the copy with the lowest number; does not crash")
@@ -962,7 +962,8 @@ def ring_levels():
     return figure(star + box, sides + [(120 + k, 120 + (k + 1) % 4) for k in range(4)])
 
 
-# --- what broke once, found elsewhere: files as they are, read here for the tables; tests/cli/regress.sh says how
+# --- defects of earlier versions, found elsewhere: files are read here for the tables and not written;
+# tests/cli/regress.sh explains them
 
 FOUND = [
     Case("regress/doubled_lines.poly", None, "two lines that cross, each given two or three times, 10^-12 apart",
@@ -1198,8 +1199,8 @@ def table_row(entry, pslg, facts):
 
 
 def examine(folder, entry):
-    """Facts of each run of an input: (pslg, facts, lines), with None for pslg and facts where it is refused, for facts
-    where there is no run."""
+    """Facts of each run of an input: (pslg, facts, lines). pslg and facts are None if the input is refused, facts is
+    None if there is no run."""
     pslg, first, lines = None, None, []
     if not entry.runs:
         pslg = pslg_facts.read(os.path.join(folder, entry.name))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the examples of ptriangle.compat, python/ptriangle/data/: figures written anew, meshed by the package itself.
+"""Makes the examples of ptriangle.compat, python/ptriangle/data/: new figures, meshed by the package itself.
 
-Usage: tools/make_examples.py, where `import ptriangle` works.
+Usage: tools/make_examples.py, in an environment where `import ptriangle` works.
 """
 import math
 from pathlib import Path
@@ -18,7 +18,7 @@ def lines(rows, form):
 
 
 def write(name, data):
-    """name.node or name.poly, and name.ele."""
+    """Writes name.node or name.poly, and name.ele."""
     points, markers = data["vertices"], data.get("vertex_markers")
     rows = ["%d 2 0 %d" % (len(points), markers is not None)]
     for k, (x, y) in enumerate(points):
@@ -52,7 +52,7 @@ def plate():
 
 
 def ground():
-    """Two layers of ground, with an area bound each."""
+    """Two layers of soil, each with an area bound."""
     points = [[0, 0], [6, 0], [6, 1], [6, 2], [3, 2.5], [0, 2], [0, 1.2], [3, 0.8]]
     segments = ring(0, 7) + [[6, 7], [7, 2]]
     return {"vertices": np.array(points, float), "segments": np.array(segments),

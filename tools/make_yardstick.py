@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the sizes of the meshes that Triangle 1.6 makes of the inputs: data/yardstick.txt.
 
-    python3 -m venv v && v/bin/pip install triangle==20250106 && v/bin/python tools/make_yardstick.py [data]
+  python3 -m venv v && v/bin/pip install triangle==20250106 && v/bin/python tools/make_yardstick.py [data]
 
 The PyPI package `triangle` is used as a black box, one process per run with a time limit, because it crashes and hangs.
 With -p the triangle counts are compared with data/expected.txt.
@@ -22,7 +22,7 @@ HEAD = """\
 
 
 def measure(path, switches):
-    """Runs in the child process: prints used vertices and triangles."""
+    """Runs in the child process: prints the numbers of used vertices and of triangles."""
     import triangle
     pslg = pslg_facts.read(path)
     content = {"vertices": pslg.points}

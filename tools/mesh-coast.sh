@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the programs and meshes a real coastline: the sea off Norway, with no angle below 30 degrees except where the
-# coast itself is sharper. Then the checker judges the mesh, and it is drawn. What is missing of compiler, make, CMake
-# and cairo is installed first (tools/setup.sh says how to go without).
+# coast itself is sharper. Then the checker verifies the mesh, and it is drawn. A missing compiler, make, CMake or cairo
+# is installed first (tools/setup.sh explains how to avoid that).
 # Usage: tools/mesh-coast.sh [OUTPUT_FOLDER]     default: out
 set -eu
 here=$(pwd)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the pictures of README and of the site from data/: docs/pictures/*.png by meshplot, docs/pictures/speed.svg by
+# Makes the pictures of the README and the site from data/: docs/pictures/*.png by meshplot, docs/pictures/speed.svg by
 # tools/draw_speed.py. PNG files are smaller if pngquant and optipng are installed.
 # Usage: tools/pictures.sh     after tools/build.sh release
 set -eu
@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$pictures"
 
-plot() { # plot NAME BASE OPTION...: docs/pictures/NAME.png of the mesh BASE.1
+plot() { # plot NAME BASE OPTION...: writes docs/pictures/NAME.png of the mesh BASE.1
     name=$1
     base=$2
     shift 2
@@ -24,7 +24,7 @@ plot() { # plot NAME BASE OPTION...: docs/pictures/NAME.png of the mesh BASE.1
     cp "$scratch/$name.png" "$pictures/"
 }
 
-mesh() { # mesh INPUT OPTION...: $scratch/NAME.1 of data/INPUT, which is NAME.poly in some folder
+mesh() { # mesh INPUT OPTION...: writes $scratch/NAME.1 from data/INPUT, which is NAME.poly in some folder
     cp "data/$1" "$scratch/"
     input=$scratch/$(basename "$1")
     shift

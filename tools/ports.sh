@@ -2,15 +2,15 @@
 # Builds for other processors and another C library, runs the fast tests there, and compares the meshes of a list of
 # runs, byte by byte, with those of this machine's own build.
 # Usage: tools/ports.sh [quick|resume] [PORT...]
-#   arm64   64 bits, fused multiply-add at hand; by qemu-user
-#   s390x   big-endian, FLT_EVAL_METHOD 1; by qemu-user
-#   i386    32 bits, with the x87 at hand; x86-64 kernels run it
-#   musl    static, with musl and libc++, by the compiler zig of PyPI; sequential programs alone, and the tests of the
-#           command line alone
-# Without a name the first three; quick: programs and meshes, no tests; resume: of the same sources, the tests that a
-# run which was cut short has not finished. Needs x86-64, Debian 12 or newer, and hours for all of it (quick: some
-# minutes). Libraries for the other processors are unpacked below build/ports; what is
-# installed on the machine itself is qemu-user and compilers.
+#   arm64   64 bits, with fused multiply-add; runs in qemu-user
+#   s390x   big-endian, FLT_EVAL_METHOD 1; runs in qemu-user
+#   i386    32 bits, with the x87; runs on x86-64 kernels
+#   musl    static, with musl and libc++, by the compiler zig of PyPI; only the sequential programs and the tests of the
+#           command line
+# Without a name: the first three. quick: programs and meshes, no tests. resume: with unchanged sources, runs the tests
+# that an interrupted run has not finished. Needs x86-64, Debian 12 or newer, and hours for everything (quick: some
+# minutes). Libraries for the other processors are unpacked below build/ports. Only qemu-user and compilers are
+# installed on the machine itself.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -31,9 +31,9 @@ for port; do
     esac
 done
 
-# --- what differs between ports
+# --- differences between ports
 
-triplet() { # of the compilers
+triplet() { # name of the port in compilers
     case $1 in
     arm64) echo aarch64-linux-gnu ;;
     i386) echo i686-linux-gnu ;;
@@ -41,14 +41,14 @@ triplet() { # of the compilers
     esac
 }
 
-library_folder() { # of the libraries, in Debian's words
+library_folder() { # name of the port's library folder in Debian
     case $1 in
     i386) echo i386-linux-gnu ;;
     *) triplet "$1" ;;
     esac
 }
 
-emulator() { # nothing: the kernel runs it
+emulator() { # command that runs a port's programs; empty: the kernel runs them
     case $1 in
     arm64) echo qemu-aarch64 -L /usr/aarch64-linux-gnu ;;
     s390x) echo qemu-s390x -L /usr/s390x-linux-gnu ;;
@@ -92,7 +92,7 @@ toolchain() {
     triplet=$(triplet "$port")
     libraries=$work/$port/root/usr/lib/$(library_folder "$port")
     link="-Wl,-rpath,$libraries"
-    # the cross compilers' C library does not lie where the kernel looks for it
+    # the C library of cross compilers is not where the kernel searches for it
     [ -n "$(emulator "$port")" ] ||
         link="$link -Wl,-rpath,/usr/$triplet/lib -Wl,--dynamic-linker=/usr/$triplet/lib/ld-linux.so.2"
     cat <<EOF
@@ -110,7 +110,7 @@ set(CMAKE_CROSSCOMPILING_EMULATOR "$(emulator "$port" | tr ' ' ';')")
 EOF
 }
 
-# build FOLDER TESTS OPTION...: asserts stay where tests run
+# build FOLDER TESTS OPTION...: assertions are compiled in if tests run
 build() {
     folder=$1
     flags=-O2
@@ -121,7 +121,7 @@ build() {
     cmake --build "$folder" --parallel "$jobs" >"$folder.build.log" 2>&1 || { tail -n 40 "$folder.build.log"; exit 1; }
 }
 
-# Scripts that run the emulator take the place of the programs, so that the tests of the command line need not know.
+# Scripts that run the emulator replace the programs, so that the command line tests need no change.
 wrap() {
     port=$1
     folder=$2
@@ -176,8 +176,8 @@ runs() {
     echo "ptriangle -pqDa0.00001Q data/koch_lake.poly"
 }
 
-# mesh BIN LIST: one line for each run: what was run, exit code, sum of all files, what refining the mesh gives. Runs of
-# programs that were not built are left out.
+# mesh BIN LIST: one line per run: the run, its exit code, a checksum of all files, and a checksum after refining the
+# mesh again. Runs of programs that were not built are skipped.
 mesh() {
     bin=$1
     list=$2
@@ -223,7 +223,7 @@ tests() { # tests PORT FOLDER
             sh tests/cli/run.sh $topic "$2/bin" "$root/data" "" "$work/musl/tests/$topic" || failed="$failed $1"
         done
     else
-        log=$work/$1.tests.log # of all parts of a run
+        log=$work/$1.tests.log # log of all parts of a run
         [ -n "$resume" ] || rm -f "$log"
         # shellcheck disable=SC2086
         ctest $resume --test-dir "$2" -L fast --parallel "$jobs" --output-on-failure --no-tests=error | tee -a "$log"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Downloads packages of Debian for another architecture, or sources, without a change to the system: an apt of its own in
+# Downloads Debian packages for another architecture, or sources, without changing the system: uses a separate apt in
 # FOLDER/apt. Usage: private_apt.sh FOLDER deb|deb-src ARCHITECTURE; then APT_CONFIG=FOLDER/apt/conf apt-get ...
 set -eu
 apt=$1/apt

@@ -1,13 +1,13 @@
-"""Exact facts of a planar straight line graph, found without triangulating it.
+"""Exact facts about a planar straight line graph, found without triangulating it.
 
-Reads .node and .poly files (decimal numbers, the lexical rules of the format) and computes, in rational arithmetic
-wherever floating point is unsure, the planar subdivision that the segments span: vertices, crossings, faces.
+Reads .node and .poly files (decimal numbers, with the lexical rules of the format). Computes the planar subdivision
+that the segments span (vertices, crossings, faces), in rational arithmetic whenever floating point is uncertain.
 
-The number of triangles follows from it. A face whose boundary has h half-edges in b connected pieces (an isolated
-vertex is a piece without half-edges) is cut into h + 2 b - 4 triangles by any triangulation that adds no vertex:
-Euler's formula. So the counts in data/expected.txt rest on no mesh generator.
+The number of triangles follows from it. Consider a face whose boundary has h half-edges in b connected pieces (an
+isolated vertex is a piece without half-edges). By Euler's formula, any triangulation that adds no vertex divides it
+into h + 2 b - 4 triangles. So the counts in data/expected.txt depend on no mesh generator.
 
-Standard library only.
+Uses only the standard library.
 """
 from fractions import Fraction
 from functools import cmp_to_key
@@ -16,7 +16,7 @@ import re
 
 
 class InputError(Exception):
-    """The file has no meaning as input: a right program refuses it."""
+    """The file is invalid, and a correct program refuses it."""
 
 
 # --- reading
@@ -104,7 +104,7 @@ def read(path):
     for k in range(integer(fields[0]) if fields else 0):
         fields = line(4, "region %d" % (k + 1))
         values = [real(f) for f in fields[1:5]]
-        pslg.regions.append((*values[:3], values[-1]))  # a single value is attribute and area bound
+        pslg.regions.append((*values[:3], values[-1]))  # a single value is both attribute and area bound
     return pslg
 
 
@@ -115,7 +115,7 @@ def sign(value):
 
 
 def orient(a, b, c):
-    """Sign of twice the area of a b c; float filter, then exact. Coordinates are floats, ints or Fractions."""
+    """Sign of twice the area of a b c, by a float filter, then exactly. Coordinates are floats, ints or Fractions."""
     if type(a[0]) is not Fraction and type(b[0]) is not Fraction and type(c[0]) is not Fraction:
         left = (a[0] - c[0]) * (b[1] - c[1])
         right = (a[1] - c[1]) * (b[0] - c[0])
@@ -137,7 +137,7 @@ def crossing(a, b, c, d):
 # --- arrangement
 
 class Arrangement:
-    """Planar graph of a PSLG: every crossing and touching is a node, every edge is given once."""
+    """Planar graph of a PSLG: every crossing or contact is a node, and every edge occurs once."""
 
     def __init__(self, points, segments):
         self.nodes = []              # exact coordinates
@@ -317,7 +317,7 @@ class Subdivision:
         return max(0, min(len(self.bins) - 1, k))
 
     def walk_above_edge_below(self, point):
-        """The walk seen straight below the point (moved right by an infinitesimal step), or None."""
+        """The walk directly below the point (moved right by an infinitesimal step), or None."""
         best = None
         for u, v in self.bins[self.bin(float(point[0]))]:
             p, q = self.nodes[u], self.nodes[v]
@@ -330,7 +330,8 @@ class Subdivision:
         return None if best is None else best[1]
 
     def nest(self):
-        """Gives every walk and every component its face; the last node of a component looks at larger ones only."""
+        """Assigns a face to every walk and component. The last node of a component is located only in larger
+        components."""
         self.n_faces = 1
         self.face_of_walk = [-1] * len(self.walks)
         for k, area in enumerate(self.area2):
@@ -352,7 +353,7 @@ class Subdivision:
         return 0 if walk is None else self.face_of_walk[walk]
 
     def triangles(self, eaten):
-        """Number of triangles of the faces not eaten."""
+        """Number of triangles of the remaining faces."""
         halves, pieces = [0] * self.n_faces, [0] * self.n_faces
         for k, walk in enumerate(self.walks):
             halves[self.face_of_walk[k]] += len(walk)
@@ -376,7 +377,7 @@ class Subdivision:
         return sum(self.area2[k] for k in range(len(self.walks)) if self.face_of_walk[k] not in eaten) / 2
 
     def smallest_angle(self, eaten):
-        """Smallest angle in degrees between two segments with domain in between; 360 where there is none."""
+        """Smallest angle in degrees between two segments with domain in between; 360 if there is none."""
         least = 360.0
         for u, around in enumerate(self.rotation):
             for i, v in enumerate(around):
@@ -410,7 +411,7 @@ def hull_edges(points):
 
 
 class Facts:
-    """What is true of any correct triangulation of the input with the given switches."""
+    """Facts that hold for any correct triangulation of the input with the given switches."""
 
     def __init__(self, pslg, switches):
         points = pslg.points

@@ -1,8 +1,8 @@
 #!/bin/sh
-# The Python package as users get it: builds the wheel, installs it where there is no compiler to be found, runs its
-# tests, mypy --strict on a client of it, and every example in Python of README and docs/ as it is written, and compares
-# ptriangle.compat with the package `triangle` from PyPI. Where PyPI cannot be reached, one line says so.
-# Usage: tools/python.sh [FOLDER]   a scratch folder; build/python without
+# The Python package as users get it: builds the wheel, installs it in an environment without a compiler, runs its
+# tests, mypy --strict on a client, and every Python example of README and docs/ without changes. Compares
+# ptriangle.compat with the package `triangle` from PyPI. If PyPI cannot be reached, one line says so.
+# Usage: tools/python.sh [FOLDER]     scratch folder; default: build/python
 set -eu
 cd "$(dirname "$0")/.."
 root=$(pwd)
@@ -33,7 +33,7 @@ must pip install "$wheel"
 grep -q 'licenses/.*THIRD-PARTY' "$work/contents" || { echo "python: the wheel does not say what it carries"; exit 1; }
 
 cd "$work"
-mkdir none # is all there is in the path: no compiler
+mkdir none # the only folder in the path: there is no compiler
 PATH=$work/none "$work/venv/bin/python" -m pytest -q -rs -p no:cacheprovider "$root/python/tests" -o testpaths=
 cp "$root/python/tests/typed_client.py" "$work"
 "$work/venv/bin/python" -m mypy --strict typed_client.py

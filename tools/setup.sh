@@ -1,17 +1,18 @@
 #!/bin/sh
-# Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
+# Installs packages that building needs and this machine lacks, through apt. Without apt, it prints what is needed.
 # Usage: tools/setup.sh [coast|build|tests|ci|ports|windows|docs]
-#   coast  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot)
-#   build  and jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the libraries)
-#   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
-#   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (what
-#          .ci/run needs)
-#   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
-#   windows  compiler and emulator for Windows (what tools/windows.sh needs beside `build`)
-#   docs   Doxygen and Python's venv (what tools/docs.sh needs beside `build`)
-# Works as root or with sudo, asks nothing, says what it installs and for what, and does not touch a machine that has
-# everything. cairo, jansson, HDF5 and, for `build`, pkg-config can be done without: PTRIANGLE_SETUP=least leaves them
-# out; PTRIANGLE_SETUP=no installs nothing.
+#   coast    C and C++ compiler, make, CMake (for the programs), and cairo (for meshplot)
+#   build    coast, jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the
+#            libraries)
+#   tests    build, cmocka, GMP (for tools/test.sh)
+#   ci       tests, clang with its OpenMP library, fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (for
+#            .ci/run)
+#   ports    build, compilers for other processors and their emulator (for tools/ports.sh)
+#   windows  build, compiler and emulator for Windows (for tools/windows.sh)
+#   docs     build, Doxygen and Python's venv (for tools/docs.sh)
+# Works as root or with sudo and asks no questions. It prints each package and its purpose, and changes nothing on a
+# machine that has all of them. cairo, jansson, HDF5 and, for `build`, pkg-config are optional: PTRIANGLE_SETUP=least
+# leaves them out. PTRIANGLE_SETUP=no installs nothing.
 set -eu
 wanted=${1:-build}
 how=${PTRIANGLE_SETUP:-all}
@@ -32,7 +33,7 @@ links() { # links HEADER LIBRARY: a C program with this header and library can b
     return $result
 }
 
-hdf5() { # with its header in a folder of its own (Debian), or not
+hdf5() { # the header may be in a folder of its own (Debian) or not
     probe=$(mktemp)
     program='#include <hdf5.h>
 int main(void) { return 0; }'
@@ -65,7 +66,7 @@ fuzzer_with_clang() {
     return $result
 }
 
-# Debian's package of clang's runtime libraries has its version in the name.
+# Debian's package of clang's runtime libraries has the version in its name.
 fuzzer_package() {
     echo "libclang-rt-$(clang --version 2>/dev/null | sed -n 's/.*version \([0-9]*\).*/\1/p' | head -n 1 | grep . || echo 14)-dev"
 }
@@ -77,7 +78,7 @@ cmake_is_new_enough() {
 
 compilers() { command -v cc && command -v c++ && links stdio.h c; }
 
-wish() { # wish PACKAGE CHECK...: as need, of what can be done without
+wish() { # wish PACKAGE CHECK...: like need, for optional packages
     package=$1
     shift
     [ "$how" = least ] || "$@" >/dev/null 2>&1 || wished="${wished:+$wished }$package"
@@ -132,7 +133,7 @@ list_missing() {
     need gcovr command -v gcovr
 }
 
-purposes() { # what each package is for
+purposes() { # prints the purpose of each package
     for package; do
         case $package in
         gcc | g++ | libc6-dev | make | cmake) purpose="to build the programs" ;;
@@ -147,14 +148,14 @@ purposes() { # what each package is for
     done
 }
 
-amount() { # of all that apt brings for these: packages, and their size on the disk
+amount() { # number and disk size of all packages that apt would install
     as_root env LC_ALL=C apt-get install --download-only --no-install-recommends --assume-no "$@" 2>/dev/null | awk '
         / newly installed/ { packages = $3 } # "0 upgraded, 64 newly installed, ..."
         /^After this operation/ { size = $4 " " $5 }
         END { if (packages > 0) print "in all " packages " packages, " size }'
 }
 
-consequence() { # what a machine without $wished does without
+consequence() { # consequence of leaving out $wished
     case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
     case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
     case $wished in *hdf5*) printf '.h5 files are neither written nor read; ' ;; esac
@@ -182,7 +183,7 @@ coast | build | tests | ci | ports | windows | docs) ;;
 esac
 
 list_missing
-# What can be done without must not be the reason for asking a password.
+# Optional packages alone must not cause a request for a password.
 if [ -n "$wished" ] && [ -z "$missing" ] && [ "$(id -u)" -ne 0 ] && ! sudo -n true 2>/dev/null; then
     echo "setup: without $wished: $(consequence)" >&2
     wished=""

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Builds and runs tests; installs what is missing first.
+# Builds and runs tests; installs missing packages first.
 # Usage: tools/test.sh [PRESET [CTEST_OPTION...]]
-#   tools/test.sh                       debug, the fast tests: at most three minutes on two cores, build included; says
-#                                       at its end what did not run
+#   tools/test.sh                       debug, the fast tests: at most three minutes on two cores including the build;
+#                                       lists at the end the tests that were not run
 #   tools/test.sh debug                 all tests of that build
-#   tools/test.sh asan -L full          those with a label
+#   tools/test.sh asan -L full          the tests with a label
 set -eu
 cd "$(dirname "$0")/.."
 chosen=$#

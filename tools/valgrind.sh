@@ -1,6 +1,6 @@
 #!/bin/sh
-# The programs under valgrind, on a few small inputs: reads of what was never written, which no sanitizer of gcc sees.
-# (Leaks are AddressSanitizer's.) Usage: tools/valgrind.sh
+# Runs the programs under valgrind on a few small inputs, to find reads of uninitialised memory, which no sanitizer of
+# gcc detects. (AddressSanitizer finds leaks.) Usage: tools/valgrind.sh
 set -eu
 cd "$(dirname "$0")/.."
 folder=${PTRIANGLE_BUILD:-build}/debug
@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 cp data/letter.poly data/section.poly data/nasty/*.poly data/regress/*.poly "$work"
 cd "$work"
 
-run() { # run PROGRAM WORD...: exit codes other than valgrind's are the program's business
+run() { # run PROGRAM WORD...: ignores all exit codes except valgrind's
     code=0
     valgrind --quiet --leak-check=no --error-exitcode=99 "$@" >log 2>&1 || code=$?
     [ "$code" -ne 99 ] || {

@@ -1,10 +1,10 @@
 #!/bin/sh
 # Builds the mesher as WebAssembly, the npm package and the page, and tests them in node and in headless Chromium.
 # Usage: tools/web.sh [WORKDIR]      default: build/web
-# Leaves ptriangle.wasm, package/ (the npm package) and ptriangle.html (the page, one file that works offline) in
-# WORKDIR. PTRIANGLE_BIN names a folder with a native `triangle` for comparison; without it one is built.
-# Needs Debian's clang-19 with its parts for wasm32, node, npm, chromium; installs them if it may. Where they cannot be
-# had, it says so in one line and ends with 0.
+# Writes ptriangle.wasm, package/ (the npm package) and ptriangle.html (the page, one file that works offline) into
+# WORKDIR. PTRIANGLE_BIN: a folder with a native `triangle` for comparison; without it one is built.
+# Needs Debian's clang-19 with its parts for wasm32, node, npm, chromium, and installs them if permitted. If they are
+# not available, it says so in one line and ends with exit code 0.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -44,7 +44,7 @@ cp web/package.json "$work/npm/package.json"
 
 # --- the module
 
-# Compiled for size, except where refinement spends its time. Without a 128-bit integer decimal.cpp has no table.
+# Compiled for size, except the hot code of refinement. Without a 128-bit integer, decimal.cpp has no table.
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -n 1)
 flags="--target=wasm32-wasi -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
     -fno-tree-slp-vectorize -Wall -Wextra -Werror -Wno-unused-function -U__SIZEOF_INT128__ -I$root -I$root/include"
@@ -100,7 +100,7 @@ cd "$root"
 # --- tests
 
 bin=${PTRIANGLE_BIN:-$root/build/release/bin}
-if command -v cc >/dev/null && [ -e /usr/include/cmocka.h ]; then # decimal.cpp as libc++ 19 makes it
+if command -v cc >/dev/null && [ -e /usr/include/cmocka.h ]; then # decimal.cpp in the variant for libc++ 19
     c++ -O1 -std=c++17 -DPTRIANGLE_NO_CHARCONV -I. -c triangle/text/decimal.cpp -o "$work/objects/native_decimal.o"
     cc -std=c11 -I. -Iinclude -Itests tests/test_decimal.c "$work/objects/native_decimal.o" -lcmocka -lstdc++ -lm \
         -o "$work/objects/test_decimal"

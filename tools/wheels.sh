@@ -1,10 +1,11 @@
 #!/bin/sh
-# Python wheels for the systems that a Linux machine can build for: one wheel for each system serves all versions of
-# Python from 3.9 on. For Linux the compiler is zig of PyPI, which carries the C libraries; for Windows mingw-w64
-# (tools/setup.sh windows). The wheels for macOS are made by .github/workflows/wheels.yml on machines of Apple.
-# Usage: tools/wheels.sh [FOLDER] [SYSTEM...]   FOLDER: build/wheels without. Systems: manylinux_x86_64 manylinux_aarch64
-#        musllinux_x86_64 musllinux_aarch64 win_amd64; all without. The wheels lie in FOLDER/dist afterwards.
-# The first build for a system compiles its C and C++ libraries, some minutes of a core; then one minute each.
+# Python wheels for the systems for which a Linux machine can build. One wheel per system serves all versions of Python
+# from 3.9 on. For Linux the compiler is zig from PyPI, which includes the C libraries; for Windows it is mingw-w64
+# (tools/setup.sh windows). Wheels for macOS are built by .github/workflows/wheels.yml on macOS machines.
+# Usage: tools/wheels.sh [FOLDER] [SYSTEM...]     default: build/wheels and all systems
+#   Systems: manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
+# The wheels are written to FOLDER/dist. The first build for a system compiles its C and C++ libraries, which takes some
+# minutes on one core. Later builds take one minute each.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -17,7 +18,7 @@ mkdir -p "$work"
 work=$(cd "$work" && pwd)
 [ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
 
-triple() { # what zig calls the system, with the oldest C library that the wheel needs
+triple() { # zig's name of the system, with the oldest C library that the wheel supports
     case $1 in
     manylinux_*) echo "${1#manylinux_}-linux-gnu.2.17" ;;
     musllinux_*) echo "${1#musllinux_}-linux-musl" ;;
@@ -26,7 +27,7 @@ triple() { # what zig calls the system, with the oldest C library that the wheel
     esac
 }
 
-tag() { # of the wheel's platform, in words of PEP 600 and 656
+tag() { # the wheel's platform tag (PEP 600 and 656)
     case $1 in
     manylinux_*) echo "manylinux_2_17_${1#manylinux_}" ;;
     musllinux_*) echo "musllinux_1_1_${1#musllinux_}" ;;
@@ -34,7 +35,7 @@ tag() { # of the wheel's platform, in words of PEP 600 and 656
     esac
 }
 
-toolchain() { # toolchain SYSTEM FOLDER: the compiler as CMake wants it
+toolchain() { # toolchain SYSTEM FOLDER: writes CMake's description of the compiler
     [ "$1" != win_amd64 ] || { mkdir -p "$2" && cp cmake/windows/mingw64.cmake "$2/toolchain.cmake" && return; }
     mkdir -p "$2"
     for driver in cc c++ ar ranlib; do
@@ -50,7 +51,7 @@ set(CMAKE_C_COMPILER "$2/cc")
 set(CMAKE_CXX_COMPILER "$2/c++")
 set(CMAKE_AR "$2/ar")
 set(CMAKE_RANLIB "$2/ranlib")
-set(CMAKE_FIND_ROOT_PATH "$2") # nothing of this machine
+set(CMAKE_FIND_ROOT_PATH "$2") # use no libraries of this machine
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_EXE_LINKER_FLAGS_INIT -s)

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Builds the programs and the library for Windows on x86-64 by mingw-w64, packs them in one zip, and runs what is in the
-# zip under wine: its files are compared with those of this machine's own build, byte by byte; then stops, kills,
-# checkpoints, names and errors are tried.
+# Builds the programs and the library for Windows on x86-64 with mingw-w64, packs them into one zip, and runs the
+# contents of the zip under wine. Files are compared with those of this machine's own build, byte by byte. Then stops,
+# kills, checkpoints, names and errors are tested.
 # Usage: tools/windows.sh [quick] [FOLDER]     default: build/windows-port
-#   quick  a part of the inputs, and without meshplot, whose library cairo is built from Debian's sources (3 minutes)
-# Installs compiler and emulator through apt (tools/setup.sh windows); where they cannot be had, says so and ends with
-# success. The zip is FOLDER/ptriangle-VERSION-windows-x86_64.zip.
+#   quick  some of the inputs, and without meshplot, whose library cairo is built from Debian's sources (3 minutes)
+# Installs compiler and emulator through apt (tools/setup.sh windows). If they are not available, it says so and ends
+# with success. The zip is FOLDER/ptriangle-VERSION-windows-x86_64.zip.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -37,7 +37,7 @@ cairo() {
     rm -rf "$work/cairo"
     tools/private_apt.sh "$work/cairo" deb-src "$(dpkg --print-architecture)"
     cd "$work/cairo"
-    for package in libpng1.6 pixman cairo; do # whose patches for Debian are not needed
+    for package in libpng1.6 pixman cairo; do # Debian's patches of these packages are not needed
         APT_CONFIG=$PWD/apt/conf apt-get -qq source --download-only "$package" || true
         tar xf "$package"_*.orig.tar.*z
     done
@@ -86,7 +86,7 @@ wine=/usr/lib/wine/wine64
 export WINEPREFIX="$work/wine" WINEDEBUG=-all
 unset DISPLAY
 
-start_wine() { # with one server for all programs, which would end and start in between
+start_wine() { # uses one server for all programs; otherwise a server would end and start in between
     mkdir -p "$WINEPREFIX"
     /usr/lib/wine/wineserver64 -p
     trap '/usr/lib/wine/wineserver64 -k' EXIT
@@ -115,7 +115,7 @@ there() { # there PROGRAM ARGUMENT...
     timeout 300 $wine "$work/unpacked/$name/$program.exe" "$@" </dev/null
 }
 
-# Files less who has made them; what was said less times, memory, and how programs are called.
+# Files without the name of their program; output without times, memory, and the way programs are called.
 plain() {
     for f in *; do
         case $f in
@@ -126,7 +126,7 @@ plain() {
     done
 }
 
-# One run on each side, in folders of their own.
+# One run on each side, in separate folders.
 same() { # same INPUT PROGRAM ARGUMENT...
     input=$1
     program=$2
@@ -173,14 +173,14 @@ compare() {
 
 # --- stops, names, errors
 
-fresh() { # an empty folder with an input
+fresh() { # makes an empty folder with an input
     rm -rf "$work/there"
     mkdir -p "$work/there"
     cp data/letter.poly "$work/there/"
     cd "$work/there"
 }
 
-poke() { # poke HOW MILLISECONDS PROGRAM ARGUMENT...: its exit code in $code
+poke() { # poke HOW MILLISECONDS PROGRAM ARGUMENT...: stores the exit code in $code
     how=$1
     after=$2
     program=$3
@@ -233,7 +233,7 @@ checkpoints() {
             *) poke $how 2500 ptriangle -pq30a0.00015 --checkpoint kept --every 0.01 $memory letter.poly ;;
             esac
             # shellcheck disable=SC2086
-            { [ -e letter.1.ele ] && [ ! -e kept ]; } || # else a checkpoint is there, or not yet
+            { [ -e letter.1.ele ] && [ ! -e kept ]; } || # otherwise a checkpoint may or may not exist
                 there ptriangle -pq30a0.00015 --resume kept --checkpoint kept $memory letter.poly >out 2>err || true
             check "$how $memory: the mesh of a run without stop" like_here
             check "$how: no checkpoint is left" test ! -e kept
@@ -277,7 +277,7 @@ telling() {
     cd "$root"
 }
 
-library() { # a C program that was linked with the import library, and finds the DLL beside itself
+library() { # a C program that is linked with the import library and finds the DLL in its own folder
     cd "$work/there"
     cp "$work/unpacked/$name/ptriangle.dll" .
     $triplet-gcc-posix -O1 -I"$work/unpacked/$name/include" "$root/examples/checkerboard.c" -o board.exe \
@@ -288,7 +288,7 @@ library() { # a C program that was linked with the import library, and finds the
     cd "$root"
 }
 
-# --- all
+# --- all tests
 
 tools/build.sh release >"$work/native.log" 2>&1 || { tail -n 40 "$work/native.log"; exit 1; }
 set -- -DCMAKE_TOOLCHAIN_FILE="$root/cmake/windows/mingw64.cmake" -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_OPENMP=OFF

@@ -1,12 +1,12 @@
 #!/bin/sh
-# What a build is without MPI, HDF5, cairo, jansson, OpenMP and Python: with each of them hidden alone, configures, builds
-# and runs the fast tests. Takes a quarter of an hour on two cores: for once a week.
+# Builds without MPI, HDF5, cairo, jansson, OpenMP and Python: hides one of them at a time, configures, builds and runs
+# the fast tests. Takes a quarter of an hour on two cores, so it is meant for once a week.
 # Usage: tools/without.sh [NAME...]       default: mpi hdf5 cairo jansson openmp python
 set -eu
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- mpi hdf5 cairo jansson openmp python
 
-hide() { # the option of CMake that hides it, as a machine without it would
+hide() { # prints the CMake option that hides the library, as on a machine without it
     case $1 in
     mpi) echo -DCMAKE_DISABLE_FIND_PACKAGE_MPI=ON ;;
     hdf5) echo -DHDF5_LIBRARY=OFF ;;

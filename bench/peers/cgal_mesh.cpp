@@ -28,9 +28,9 @@ using Point = Kernel::Point_2;
 
 // A model of CGAL's concept MeshingCriteria_2: bounds on areas and on the smallest angle, as other programs have them.
 struct Bounds {
-    double area, sine2; // of the smallest angle, squared
+    double area, sine2; // squared sine of the smallest angle
 
-    // The least is taken first: the largest above its area bound, then the smallest angle.
+    // The smallest element comes first: the triangle that exceeds its area bound most, then the smallest angle.
     struct Quality {
         double excess, sine2;
         bool operator<(const Quality &q) const
@@ -95,7 +95,7 @@ static Input read(const char *path)
     return input;
 }
 
-// In the domain: all faces where there are no segments.
+// The domain consists of all faces if there are no segments.
 template <class Triangulation>
 static void write(const std::string &base, const Triangulation &mesh, bool marked)
 {

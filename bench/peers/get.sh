@@ -1,6 +1,6 @@
 #!/bin/sh
-# Gets and builds the other mesh generators that the benchmark runs beside ours, into WORK. None of them is needed: what
-# cannot be had is left out, with a line that says so. Usage: bench/peers/get.sh WORK
+# Downloads and builds the other mesh generators for the benchmark, into WORK. All are optional: if one is not
+# available, a line says so and it is left out. Usage: bench/peers/get.sh WORK
 set -u
 work=$1
 peers=$(dirname "$0")
@@ -9,7 +9,7 @@ mkdir -p "$work"
 
 without() { echo "bench: without $1: $2"; }
 
-pip_get() { # pip_get PACKAGE VERSION PROBE: without what the package needs; it works if Python runs PROBE
+pip_get() { # pip_get PACKAGE VERSION PROBE: installs without dependencies; it works if Python runs PROBE
     [ -e "$work/python/$1-$2" ] && return
     { [ -x "$work/python/bin/pip" ] || "$python" -m venv "$work/python"; } >"$work/pip.log" 2>&1 &&
         "$work/python/bin/pip" install --quiet --disable-pip-version-check --no-deps --retries 1 --timeout 20 \
@@ -19,10 +19,10 @@ pip_get() { # pip_get PACKAGE VERSION PROBE: without what the package needs; it 
         without "$1" "$1==$2 cannot be installed from PyPI, or does not run ($work/pip.log)"
 }
 
-# triangle/__init__.py wants numpy; only the library inside is called, so that its files are enough.
+# triangle/__init__.py needs numpy, but only the library inside is called, so its files are enough.
 pip_get triangle 20250106 "import glob, sysconfig; glob.glob(sysconfig.get_path('platlib') + '/triangle/core*.so')[0]"
 pip_get gmsh 4.15.2 "import gmsh; gmsh.initialize()"
-pip_get numpy 2.4.6 "import numpy" # these two for the part `sizes`
+pip_get numpy 2.4.6 "import numpy" # both for the part `sizes`
 pip_get scipy 1.17.1 "import scipy.spatial"
 
 if [ ! "$work/cgal_mesh" -nt "$peers/cgal_mesh.cpp" ]; then

@@ -1,8 +1,9 @@
-"""Meshes a plain .poly file with gmsh: gmsh_mesh.py INPUT SIZE ALGORITHM [BASE]. SIZE: edge length everywhere (gmsh
-bounds neither angles nor areas), which the edges of the input may make shorter; or H,GROWTH: H at the segments, growing
-by GROWTH for a distance of 1, whatever the edges of the input. ALGORITHM: Mesh.Algorithm, 5 Delaunay,
-6 frontal-Delaunay.
-Prints the seconds of meshing curves and surface, the geometry being ready; BASE: writes the mesh there.
+"""Meshes a plain .poly file with gmsh: gmsh_mesh.py INPUT SIZE ALGORITHM [BASE].
+
+SIZE: edge length everywhere (gmsh bounds neither angles nor areas); edges of the input may make it shorter. Or
+H,GROWTH: H at the segments, growing by GROWTH for a distance of 1, independent of the lengths of the input's edges.
+ALGORITHM: Mesh.Algorithm, 5 Delaunay, 6 frontal-Delaunay. Prints the seconds for meshing curves and surface, after the
+geometry is complete. BASE: writes the mesh there.
 """
 import json
 import os
@@ -15,7 +16,7 @@ import meshfiles  # noqa: E402
 
 
 def loops_of(segments):
-    """Closed chains of segment numbers; each vertex has two segments or none."""
+    """Closed chains of segment numbers. Each vertex has two segments or none."""
     at = {}
     for i in range(len(segments) // 2):
         for v in segments[2 * i:2 * i + 2]:
@@ -44,14 +45,14 @@ def area_of(loop, pslg):
 
 
 def build(pslg, size):
-    """The outline is the loop of the largest area, all others are holes; free points are embedded."""
+    """The outline is the loop with the largest area, all others are holes. Free points are embedded."""
     geo = gmsh.model.geo
     for i in range(len(pslg.points) // 2):
         geo.addPoint(pslg.points[2 * i], pslg.points[2 * i + 1], 0, size, i + 1)
     for i in range(len(pslg.segments) // 2):
         geo.addLine(pslg.segments[2 * i] + 1, pslg.segments[2 * i + 1] + 1, i + 1)
     loops = sorted(loops_of(pslg.segments), key=lambda loop: -abs(area_of(loop, pslg)))
-    if area_of(loops[0], pslg) < 0:  # triangles turn as the outline does
+    if area_of(loops[0], pslg) < 0:  # triangles have the orientation of the outline
         loops[0] = [-i for i in reversed(loops[0])]
     surface = geo.addPlaneSurface([geo.addCurveLoop(loop) for loop in loops])
     geo.synchronize()
@@ -72,7 +73,7 @@ def write(base):
 
 
 def grow(pslg, size, growth):
-    """Sizes by a field alone, of distances from places on all lines, that is as fine as `size` asks for."""
+    """Sets sizes by a field alone, of distances from points on all lines, spaced as finely as `size` requires."""
     field, p, s = gmsh.model.mesh.field, pslg.points, pslg.segments
     longest = max((abs(p[2 * a] - p[2 * b]) + abs(p[2 * a + 1] - p[2 * b + 1]) for a, b in zip(s[::2], s[1::2])))
     field.add("Distance", 1)

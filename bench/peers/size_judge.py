@@ -1,10 +1,12 @@
-"""How well a mesh keeps sizes, and what it is worth to a solver: size_judge.py BASE POLY H GROWTH. Lengths of H at the
-segments of POLY, growing by GROWTH for a distance of 1. Prints JSON:
+"""Measures how well a mesh meets sizes, and its value for a solver: size_judge.py BASE POLY H GROWTH.
+
+Lengths are H at the segments of POLY and grow by GROWTH for a distance of 1. Prints JSON:
+
   quality   the mean of 4 sqrt(3) area / sum of squared edges
-  wanted    triangles over the number of equilateral ones that the lengths ask for
+  wanted    triangles divided by the number of equilateral ones that the lengths request
   within    the share of edges that are 0.7 to 1.4 times as long as their length
   unknowns  of linear elements for Poisson's equation with u = sin(k x) sin(k y), u given on the boundary
-  error     in the mean square over the domain, over the square root of its area
+  error     root mean square error over the domain
 """
 import json
 import os
@@ -21,7 +23,7 @@ WAVES = 3  # periods of u across the larger side of the domain
 
 
 def lengths(at, pslg, h, growth):
-    """By places on the segments, at most h / 4 apart."""
+    """Target lengths at places, from points on the segments that are at most h / 4 apart."""
     if growth == 0:
         return np.full(len(at), h)
     a, b = np.array(pslg.points).reshape(-1, 2)[np.array(pslg.segments).reshape(-1, 2)].transpose(1, 0, 2)
@@ -32,7 +34,7 @@ def lengths(at, pslg, h, growth):
 
 
 def poisson(points, triangles, areas):
-    """(unknowns, error) by three places of each triangle, exact for quadratic functions."""
+    """(unknowns, error) by three points in each triangle, exact for quadratic functions."""
     k = 2 * np.pi * WAVES / np.ptp(points, axis=0).max()
 
     def exact(at):
@@ -44,7 +46,7 @@ def poisson(points, triangles, areas):
     rows, columns = np.repeat(triangles, 3, axis=1).ravel(), np.tile(triangles, (1, 3)).ravel()
     matrix = coo_matrix((stiff.ravel(), (rows, columns)), (n, n)).tocsr()
     middles = (np.roll(corners, -1, 1) + np.roll(corners, -2, 1)) / 2
-    source = 2 * k * k * exact(middles)  # at the middle opposite each corner, where its function is 0, others 1/2
+    source = 2 * k * k * exact(middles)  # at the midpoint opposite each corner, where the functions are 0, 1/2 and 1/2
     load = np.bincount(triangles.ravel(), ((source.sum(axis=1)[:, None] - source) / 6 * areas[:, None]).ravel(), n)
     edges = np.sort(np.concatenate([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]]), axis=1)
     edges, times = np.unique(edges, axis=0, return_counts=True)

@@ -1,9 +1,9 @@
-"""Processor time of calls of triangulate() on small inputs, again and again in one process:
+"""Processor time of calls of triangulate() on small inputs, repeated in one process:
 
-    small_calls.py CALLS LIBRARY SECONDS INPUT SWITCHES [INPUT SWITCHES ...]
+  small_calls.py CALLS LIBRARY SECONDS INPUT SWITCHES [INPUT SWITCHES ...]
 
-CALLS is bench/calls.c as a shared library; LIBRARY that of the PyPI package `triangle`, or `ours`. Prints a line of
-JSON: for each input and switches the seconds of a call and the number of triangles.
+CALLS is bench/calls.c as a shared library. LIBRARY is that of the PyPI package `triangle`, or `ours`. Prints a line of
+JSON: the seconds of a call and the number of triangles, for each input and switches.
 """
 import ctypes
 import json

@@ -1,10 +1,10 @@
-"""One call of the library function triangulate() of Triangle 1.6, as the PyPI package `triangle` has it, and its time:
+"""Times one call of the library function triangulate() of Triangle 1.6, from the PyPI package `triangle`:
 
-    triangle_call.py LIBRARY INPUT SWITCHES [BASE]
+  triangle_call.py LIBRARY INPUT SWITCHES [BASE]
 
-INPUT is a .poly or .node file; with `r` among the switches the mesh beside the .poly file is read too. All is ready in
-arrays before the clock starts, and the package's own conversions (lists, dictionaries, numpy) are not in the path.
-BASE: write the mesh there. Prints a line of JSON.
+INPUT is a .poly or .node file. With `r` among the switches, the mesh beside the .poly file is read as well. All input
+is in arrays before the clock starts. The package's own conversions (lists, dictionaries, numpy) are not used. BASE:
+writes the mesh there. Prints a line of JSON.
 """
 import ctypes
 import json
@@ -19,7 +19,7 @@ REAL_P, INT_P, INT = ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_in
 
 
 class Triangulateio(ctypes.Structure):
-    """The order of the fields is Triangle's binary interface."""
+    """Triangle's struct. The order of the fields is its binary interface."""
     _fields_ = [
         ("points", REAL_P), ("point_attributes", REAL_P), ("point_markers", INT_P), ("n_points", INT),
         ("n_point_attributes", INT),
@@ -31,12 +31,12 @@ class Triangulateio(ctypes.Structure):
 
 
 def pointer(values, kind):
-    """The array's own memory; the array must live on."""
+    """Pointer to the array's own memory. The array must stay alive."""
     return ctypes.cast(values.buffer_info()[0], kind) if len(values) else None
 
 
 def given(path, switches):
-    """The input, whose arrays must live on, and what triangulate() is given of it."""
+    """The input, whose arrays must stay alive, and the struct that triangulate() gets."""
     pslg = meshfiles.read_mesh(path) if "r" in switches else meshfiles.read(path)
     io = Triangulateio()
     io.points, io.n_points = pointer(pslg.points, REAL_P), len(pslg.points) // 2

@@ -1,5 +1,5 @@
-"""Recipe for Spack: put it into a repository of packages as packages/ptriangle/package.py; then, in the root of the
-tree, spack dev-build ptriangle@0.1.0
+"""Recipe for Spack. Copy it into a repository of packages as packages/ptriangle/package.py. Then run, in the root of
+the tree: spack dev-build ptriangle@0.1.0
 """
 
 from spack.package import *
