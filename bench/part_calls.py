@@ -12,8 +12,9 @@ from settings import say
 
 HEAD = ("input", "switches", "triangles", "ours, µs", "Triangle 1.6, µs", "Triangle over ours")
 NOTE = """\
-Processor time of one call of the library function, its output freed again, in a process that makes many; median of {}
-runs in turns. Points and segments lie in arrays before, the mesh after. These meshes are not judged here.
+Processor time of one call of the library function, including freeing its output, in a process that makes many calls.
+Median of {} runs in turns. Points and segments are in arrays before the call, the mesh after it. These meshes are not
+checked here.
 
 """
 LETTER = ("p", "pq20", "pa0.001", "pq30a0.0001", "pq30a0.00001")

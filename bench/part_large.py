@@ -38,9 +38,9 @@ def _lines(m):
     yield "judged", v.text
     yield "Quality", m.text("quality") + " s"
     yield "numbering", m.text("number") + " s"
-    yield "speed", millions_per_second(v.triangles, m.median("quality")) + " million triangles a second"
+    yield "speed", millions_per_second(v.triangles, m.median("quality")) + " million triangles per second"
     yield "peak memory", f"{m.peak / 1e9:.2f} GB"
-    yield "bytes a triangle", f"{m.peak / v.triangles:.1f}"
+    yield "bytes per triangle", f"{m.peak / v.triangles:.1f}"
     yield "whole process with text files written", f"{m.first.seconds['process']:.1f} s (one run)"
     schedule, parts = report["schedule"], parts_of(report)
     if parts:

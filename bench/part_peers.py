@@ -5,11 +5,11 @@ from measure import measure, millions_per_second, table
 
 HEAD = ("program", "triangles", "smallest angle", "seconds", "M/s", "peak memory, MB", "judged")
 NOTE = """\
-Seconds from points and segments in memory to the mesh in memory. Bounds are 20 degrees and the area given, for CGAL
-(Delaunay mesher, criteria of ours) and spade too. gmsh has neither: it is asked for edges of equilateral triangles of
-0.66 of the area bound, has its geometry before the clock starts, and is not judged as Delaunay. Only `ptriangle` has
-more than one thread. Peak memory is that of the process (Python's is included for Triangle and gmsh). Median
-(least–most) of {} runs in turns.
+Seconds from points and segments in memory to the mesh in memory. Bounds are 20 degrees and the given area, also for
+CGAL (Delaunay mesher with criteria of ours) and spade. gmsh has neither bound: it gets the edge length of equilateral
+triangles of 0.66 of the area bound, has its geometry before the clock starts, and is not checked for the Delaunay
+property. Only `ptriangle` uses more than one thread. Peak memory is that of the process (including Python for Triangle
+and gmsh). Median (least–most) of {} runs in turns.
 
 """
 LIMIT, SMALL_LIMIT = 120, 20  # seconds of one run

@@ -7,10 +7,9 @@ from prediction import on_threads
 HEAD = ("threads", "Delaunay, s", "Quality, s", "speedup of Quality", "efficiency", "predicted Quality, s",
         "predicted speedup")
 NOTE = """\
-`ptriangle` on one to all cores; efficiency is speedup over threads. Predicted: the blocks of the run on one thread
-dealt to more by list scheduling, looking for bad triangles in equal shares, all else as sequential as there; nothing
-of it was measured. Median (least–most) of
-{} runs in turns.
+`ptriangle` on one to all cores. Efficiency is speedup divided by threads. Predicted times are computed from the run on
+one thread: list scheduling of its blocks, equal shares of the search for bad triangles, and all other work sequential.
+Median (least–most) of {} runs in turns.
 
 """
 
@@ -40,7 +39,7 @@ def _same(measured, settings):
         settings.fail("scaling: the files differ with the number of threads")
         return "THE FILES DIFFER."
     if len(sums) < len(measured):
-        return f"Of {len(measured)} numbers of threads {len(sums)} made files; these do not differ."
+        return f"Only {len(sums)} of {len(measured)} numbers of threads made files, and these are equal."
     return "Same files, byte for byte, for all numbers of threads."
 
 

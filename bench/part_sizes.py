@@ -11,15 +11,15 @@ from cases import Failure, Gmsh, Ours, peer, python, remove
 from inputs import Domain
 from measure import measure, table
 
-HEAD = ("program", "triangles", "of those asked for", "edges within 0.7 to 1.4", "mean quality", "smallest angle",
+HEAD = ("program", "triangles", "of those requested", "edges within 0.7 to 1.4", "mean quality", "smallest angle",
         "seconds", "unknowns", "error", "unknowns for the error of `-a`")
 NOTE = """\
-Lengths are H at the boundary and grow by 0.15 for a distance of 1, or are the same everywhere. "Of those asked for":
-triangles over the number of equilateral ones of these lengths that fill the domain. Quality is 4 sqrt(3) area / sum of
-squared edges. gmsh takes the distance from places on the boundary. Unknowns and error (root of the mean square) are
-those of linear elements for Poisson's equation. Since the error falls as 1 / unknowns, the last column is (unknowns
-times error) over that of `-a` with `--placement classic`, where lengths are the same everywhere. Seconds from points
-and segments in memory to the mesh in memory, on one thread, median of {} runs.
+Lengths are H at the boundary and grow by 0.15 for a distance of 1, or are the same everywhere. "Of those requested":
+triangles divided by the number of equilateral triangles of these lengths that fill the domain. Quality is 4 sqrt(3)
+area / sum of squared edges. gmsh measures distances from points on the boundary. Unknowns and error (root mean square)
+are those of linear elements for Poisson's equation. The error falls as 1 / unknowns. So the last column is (unknowns
+times error) divided by that of `-a` with `--placement classic`, whose lengths are the same everywhere. Seconds from
+points and segments in memory to the mesh in memory, on one thread, median of {} runs.
 
 """
 GROWTH, CORNERS = 0.15, 720

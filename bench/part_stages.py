@@ -8,16 +8,16 @@ from measure import measure, millions_per_second, ratio, table
 from prediction import on_threads
 
 HEAD = ("program", "triangles", "smallest angle", "Delaunay, s", "Quality, s", "numbering, s", "all, s",
-        "M/s in Quality", "Triangle's Quality over it", "Triangle's all over it", "bytes a triangle")
+        "M/s in Quality", "Triangle's Quality over it", "Triangle's all over it", "bytes per triangle")
 FILES_HEAD = ("program", "read, s", "Delaunay, s", "Quality, s", "numbering, s", "write, s", "process, s",
               "Triangle's call over it")
 NOTE = """\
-In memory, without files. Triangle 1.6: Delaunay is a call of its library function without bounds, all a call with
-them, Quality the difference; the calls ask for no output arrays, and all conversion of input is outside the clock.
-Ours, sequential: `triangle`; else `ptriangle`, which numbers the mesh along a curve when it is done (unless told
-`--numbering blocks`); Triangle and `triangle` leave their triangles in the order in which they came about. Bytes a
-triangle: resident peak of the whole process over triangles made, input and, for Triangle, Python included. Triangle's
-meshes are counted and not judged here. Median (least–most) of {} runs in turns.
+In memory, without files. Triangle 1.6: Delaunay is a call of its library function without bounds, All is a call with
+bounds, and Quality the difference. The calls request no output arrays, and all conversion of input is outside the
+clock. Ours on one core: `triangle`; all others: `ptriangle`, which finally numbers the mesh along a curve (unless
+`--numbering blocks` is given). Triangle and `triangle` leave their triangles in the order in which they were made.
+Bytes per triangle: peak resident memory of the whole process divided by triangles, including input and, for Triangle,
+Python. Triangle's meshes are counted but not checked here. Median (least–most) of {} runs in turns.
 
 """
 TRIANGLE, SEQUENTIAL, ONE, MOST = range(4)

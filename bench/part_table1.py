@@ -18,10 +18,10 @@ PAPER = (
 HEAD = ("given: triangles / points / segments", "area bound", "program", "made: triangles / points / segments",
         "Delaunay, s", "Reconstruct, s", "Quality, s", "process, s")
 NOTE = """\
-Input: {}, 20 degrees. Median (least–most) of {} runs in turns. Triangle 1.6 makes triangulation and mesh in one call:
-its first column is a call without bounds, Quality the difference of the two; no output arrays are asked for. Ours are
-stages of one run, but for the process, which has reading its input from text files in it and writes nothing. Rows four
-and five start from our mesh of row three. Triangle's meshes are counted and not judged here.
+Input: {}, 20 degrees. Median (least–most) of {} runs in turns. Triangle 1.6 makes triangulation and mesh in one call.
+Its first column is a call without bounds, and Quality the difference between the two calls; no output arrays are
+requested. Our columns are stages of one run. The process column includes reading the input from text files and writes
+nothing. Rows four and five start from our mesh of row three. Triangle's meshes are counted but not checked here.
 
 """
 

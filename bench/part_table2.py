@@ -16,12 +16,12 @@ HEAD = ("program", "workers", "total, s", "elements, millions", "pre-refinement,
         "communication and synchronisation, s", "filling in and merging, s", "area bound",
         "elements a second and worker", "overhead", "numbering, s")
 NOTE = """\
-Unit square with 1,000 random points, 20 degrees; about as many triangles for each worker in every row. The paper's
-workers are processors of 650 and 900 MHz with Triangle inside, ours threads. Seconds are those of one worker. Ours:
-refinement is the mean over workers of the time inside blocks; communication and synchronisation is waiting for the
-last block of a phase, finding bad triangles, cutting into blocks, dealing worklists and room; merging is closing gaps
-and what is left to one last sequential call. Numbering along a curve, which the paper's program does not do, comes
-after that. Median run of {}.
+Unit square with 1,000 random points, 20 degrees, about the same number of triangles per worker in every row. The
+paper's workers are processors of 650 and 900 MHz that run Triangle; ours are threads. Seconds are those of one worker.
+Ours: refinement is the mean over workers of the time inside blocks. Communication and synchronisation consists of
+waiting for the last block of a phase, finding bad triangles, cutting into blocks, and distributing worklists and room.
+Merging consists of closing gaps and the last sequential call. Numbering along a curve comes after that; the paper's
+program does not do it. Median run of {}.
 
 """
 AREA = 2e-7              # times number of workers: the paper's 5e-8 for four

@@ -9,9 +9,9 @@ from inputs import Domain
 from measure import measure, table
 
 NOTE = """\
-Microseconds of processor time, of the whole process, a vertex of the input and triangle of the mesh: `triangle`,
-without writing of files; in brackets those of `trianglecheck` on the mesh, its files read; then triangles a vertex of
-the input. Median of {} runs.
+Microseconds of processor time of the whole process, per vertex of the input and triangle of the mesh: `triangle`
+without writing files. In brackets: `trianglecheck` on the mesh, including reading its files. Then triangles per vertex
+of the input. Median of {} runs.
 
 """
 

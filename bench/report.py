@@ -11,10 +11,10 @@ COLUMNS = ("part", "input", "switches", "program", "threads", "stage", "runs", "
            "max_seconds", "triangles", "vertices", "smallest_angle", "peak_bytes", "judged", "commit", "compiler",
            "processor", "cores", "load", "others")
 NOTE = """\
-Made by `make -f Makefile.bench`. Every mesh was judged by trianglecheck before its time was taken. `others`: cores that
-other work kept busy meanwhile, on average; above 0.1 the times are distorted. M/s: million triangles a second.
+Made by `make -f Makefile.bench`. trianglecheck checked every mesh before its time was measured. `others`: average
+number of cores kept busy by other work; above 0.1 the times are distorted. M/s: million triangles per second.
 """
-SMALL = "A hundredth of the size, to see that all parts work: THE TIMES SAY NOTHING.\n"
+SMALL = "A hundredth of the size, to test that all parts work: THE TIMES ARE MEANINGLESS.\n"
 
 
 def path_of(settings, part):
@@ -65,7 +65,7 @@ def _targets(parts):
     for part in parts.values():
         for t in part["targets"]:
             lines.append((t["asked"], _bound(t), *_reached(t)))
-    return table(("target", "asked", "reached", ""), lines)
+    return table(("target", "required", "reached", ""), lines)
 
 
 def write(settings):
@@ -76,7 +76,7 @@ def write(settings):
     text = ["# Measurements\n", NOTE, *([SMALL] if settings.small else []), _machine_table(parts)]
     text += [f"Not measured: {', '.join(missing)}.\n"] if missing else []
     text += [f"## {part['title']}\n\n{part['text']}" for part in parts.values()]
-    text += ["## Targets\n", "Triangle 1.6 over ours in time, where a target names nothing else.\n", _targets(parts)]
+    text += ["## Targets\n", "Time of Triangle 1.6 divided by ours, unless a target says otherwise.\n", _targets(parts)]
     _write_csv(os.path.join(settings.results, "results.csv"), parts)
     with whole_file(os.path.join(settings.results, "results.md")) as file:
         file.write("\n".join(text))

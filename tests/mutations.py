@@ -494,7 +494,7 @@ def main():
                 continue
             failures += 1
             print(f"{change.__name__}: {kind or 'no fault'} expected, found {found}")
-    print(f"{len(MUTATIONS)} mutations, {failures} not named")
+    print(f"{len(MUTATIONS)} mutations, {failures} not detected")
     return failures > 0
 
 

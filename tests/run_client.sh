@@ -26,11 +26,11 @@ echo "== find_package"
 
 echo "== pkg-config"
 if ! command -v pkg-config >/dev/null; then
-    echo "pkg-config is not installed: this half was not tested" >&2
+    echo "pkg-config is not installed: this part was not tested" >&2
     exit 1
 fi
 if "$cc" -std=c11 "$client/client.c" -o "$work/unaided" 2>/dev/null; then
-    echo "the client compiles without pkg-config: this half would prove nothing" >&2
+    echo "the client compiles without pkg-config: this part would test nothing" >&2
     exit 1
 fi
 pc=$(find "$work/prefix" -name ptriangle.pc)

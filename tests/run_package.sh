@@ -115,4 +115,4 @@ echo "== subproject"
 sub/triangle
 "$cmake" --install sub --prefix "$work/sub_installed" >install.log
 [ "$(find sub_installed -type f | wc -l)" -eq 1 ] || fail "the subproject installs files of its own"
-echo "package: as it should be"
+echo "package: passed"

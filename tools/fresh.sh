@@ -28,7 +28,7 @@ make_root() {
     command -v debootstrap || apt-get -q install -y --no-install-recommends debootstrap || return 1
     # shellcheck disable=SC2046 # three words
     set -- $(sources | head -n 1)
-    [ $# -eq 3 ] || { echo "apt names no mirror"; return 1; }
+    [ $# -eq 3 ] || { echo "apt has no mirror"; return 1; }
     sections=$(sources | awk -v uri="$1" '$1 == uri { print $3 }' | paste -s -d ,)
     eval "$(apt-config shell http_proxy Acquire::http::Proxy https_proxy Acquire::https::Proxy)"
     export ${http_proxy:+http_proxy} ${https_proxy:+https_proxy}
@@ -45,7 +45,7 @@ in_root() { # in_root COMMAND...: runs it in a namespace whose mounts end with i
             ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} "$@"' sh "$root" "$@"
 }
 
-git diff --quiet HEAD -- || echo "fresh: changes that are not committed are not in the clone"
+git diff --quiet HEAD -- || echo "fresh: the clone does not contain uncommitted changes"
 if make_root >"$work/log" 2>&1; then
     echo "fresh: in a minimal root: $(sed -n 's/^PRETTY_NAME=//p' "$root/etc/os-release")," \
         "$(find "$root/var/lib/dpkg/info" -name '*.list' | wc -l) packages"

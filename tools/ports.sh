@@ -210,7 +210,7 @@ compare() { # compare PORT BIN
         echo "ports: $1: the same bytes in all $(wc -l <"$work/$1.meshes") runs"
     else
         diff "$work/$1.expected" "$work/$1.meshes" || true
-        echo "ports: $1: OTHER MESHES than this machine's" >&2
+        echo "ports: $1: MESHES DIFFER from this machine's" >&2
         failed="$failed $1"
     fi
 }
@@ -246,4 +246,4 @@ for port; do
     [ "$quick" = yes ] || tests "$port" "$folder"
 done
 [ -z "$failed" ] || { echo "ports: failed:$failed" >&2; exit 1; }
-echo "ports: all as it should be"
+echo "ports: passed"

@@ -22,7 +22,7 @@ python3 -m venv "$work/venv" >"$work/log" 2>&1 || skip "python3 has no venv (Deb
 pip install numpy pytest scikit-build-core mypy || skip "PyPI cannot be reached"
 for package in matplotlib ipython shapely geopandas h5py meshio numba pyvista scipy rasterio scikit-fem; do
     pip install "$package" ||
-        echo "python: without $package, which does not install here ($(tail -n 1 "$work/log"))"
+        echo "python: without $package, which cannot be installed here ($(tail -n 1 "$work/log"))"
 done
 
 must pip wheel --no-build-isolation --no-deps --wheel-dir "$work/wheels" "$root"
@@ -30,7 +30,7 @@ wheel=$(echo "$work"/wheels/ptriangle-*-py3-none-*.whl)
 [ -f "$wheel" ] || { echo "python: no wheel py3-none-PLATFORM: $(ls "$work/wheels")"; exit 1; }
 must pip install "$wheel"
 "$work/venv/bin/python" -m zipfile -l "$wheel" >"$work/contents"
-grep -q 'licenses/.*THIRD-PARTY' "$work/contents" || { echo "python: the wheel does not say what it carries"; exit 1; }
+grep -q 'licenses/.*THIRD-PARTY' "$work/contents" || { echo "python: the wheel does not list its third-party parts"; exit 1; }
 
 cd "$work"
 mkdir none # the only folder in the path: there is no compiler
@@ -55,5 +55,5 @@ done
 if pip install triangle==20250106; then
     PATH=$work/none "$work/venv/bin/python" "$root/python/tests/against_pypi.py"
 else
-    echo "python: not compared: the package triangle does not install here ($(tail -n 1 "$work/log"))"
+    echo "python: not compared: the package triangle cannot be installed here ($(tail -n 1 "$work/log"))"
 fi

@@ -137,9 +137,9 @@ purposes() { # prints the purpose of each package
     for package; do
         case $package in
         gcc | g++ | libc6-dev | make | cmake) purpose="to build the programs" ;;
-        libcairo2-dev) purpose="meshplot, which draws meshes; can be done without" ;;
-        libjansson-dev) purpose="ptriangle --report; can be done without" ;;
-        libhdf5-dev) purpose=".h5 files; can be done without" ;;
+        libcairo2-dev) purpose="meshplot, which draws meshes (optional)" ;;
+        libjansson-dev) purpose="ptriangle --report (optional)" ;;
+        libhdf5-dev) purpose=".h5 files (optional)" ;;
         pkg-config) purpose="programs that call the libraries" ;;
         libcmocka-dev | libgmp-dev) purpose="the tests" ;;
         *) purpose="the checks of tools/setup.sh $wanted" ;;
@@ -159,7 +159,7 @@ consequence() { # consequence of leaving out $wished
     case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
     case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
     case $wished in *hdf5*) printf '.h5 files are neither written nor read; ' ;; esac
-    echo "all else is"
+    echo "everything else works"
 }
 
 as_root() {
@@ -189,12 +189,12 @@ if [ -n "$wished" ] && [ -z "$missing" ] && [ "$(id -u)" -ne 0 ] && ! sudo -n tr
     wished=""
 fi
 if [ -n "$missing$wished" ] && [ "$how" != no ] && command -v apt-get >/dev/null; then
-    apt update || echo "setup: apt-get update failed; trying with the package lists that are here" >&2
+    apt update || echo "setup: apt-get update failed; trying with the existing package lists" >&2
     echo "setup: installing through apt:"
     # shellcheck disable=SC2086 # one word a package
     purposes $missing $wished
     # shellcheck disable=SC2086
-    echo "setup: $(amount $missing $wished). PTRIANGLE_SETUP=least leaves out what can be done without;" \
+    echo "setup: $(amount $missing $wished). PTRIANGLE_SETUP=least leaves out optional packages;" \
         "PTRIANGLE_SETUP=no installs nothing"
     # shellcheck disable=SC2086 # one word a package
     [ -z "$missing" ] || apt install -y --no-install-recommends $missing || true
