@@ -401,7 +401,7 @@ static void test_split_points_lie_at_the_fraction(void **state)
 }
 
 /* A strip that is 10^6 wide and a few units in the last place high, with area bounds. Split points must lie at
-   multiples of the finer coordinate's unit. With units of the larger coordinate, points would gather beside the
+   multiples of the finer coordinate's unit. With units of the larger coordinate, points would gather near the
    boundary endlessly. */
 static void test_refinement_of_strips_of_a_few_ulps_ends(void **state)
 {
