@@ -59,7 +59,7 @@ class Case:
     def execute(self, *command):
         ended = execute(command, self.limit, self.settings.scratch)
         if ended.timed_out:
-            raise Failure(f"not done in {self.limit:g} s", True)
+            raise Failure(f"not finished in {self.limit:g} s", True)
         if ended.code:
             lines = (ended.errors.strip() or ended.output.strip()).splitlines()
             raise Failure(f"exit code {ended.code}: {lines[-1][:200] if lines else ''}")

@@ -65,7 +65,7 @@ def judge(case):
         base, run = case.write(scratch)
         ended = execute(_command(case, base), 3600, case.settings.scratch)
         if ended.code not in (0, 1) or not ended.output:
-            raise Failure("the judge cannot read the mesh: " + ended.errors.strip())
+            raise Failure("trianglecheck cannot read the mesh: " + ended.errors.strip())
         said = json.loads(ended.output)
         faults = "; ".join(f"{c['name']}: {c['count']}" for c in said["checks"] if c["state"] == "failed")
         return Verdict(faults, said["vertices"], said["triangles"], said["subsegments"], said["smallest_angle"] or 0.0,

@@ -128,7 +128,7 @@ def judge(code, failure, error, before, after, whole):
     if code != failure:
         return f"exit code {code}: {error[-300:]}"
     if after != before:
-        return f"exit code {code}, but files were touched: {sorted(set(after) ^ set(before))}"
+        return f"exit code {code}, but files were changed: {sorted(set(after) ^ set(before))}"
     lines = [line for line in error.splitlines() if "memory" in line or "annot" in line]
     return "" if len(lines) == 1 and error.count("\n") == 1 else f"no one line: {error!r}"
 

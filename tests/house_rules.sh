@@ -49,7 +49,7 @@ refuse() {
 # 1. Every source file is in a list, and every list entry is a file.
 for file in triangle/*/*.c triangle/*/*.cpp sched/*/*.c; do
     [ -f "$file" ] || continue
-    grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
+    grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file is in no list of cmake/sources.cmake"
 done
 for file in tests/test_*.c; do
     [ -f "$file" ] || continue
@@ -120,10 +120,10 @@ refuse '#[[:space:]]*include[[:space:]]*"triangle/refine/' 'includes an upper fo
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/hdf5/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(text|hdf5|check)/' 'includes another folder' triangle/dropin/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
+refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes a private header' \
     include/ptriangle/*.h
 # shellcheck disable=SC2046 # one word a file
-refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|threads)\.h>|tri_(thread_(start|join)|monitor_)' 'knows threads' \
+refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|threads)\.h>|tri_(thread_(start|join)|monitor_)' 'uses threads' \
     $(ls triangle/*/*.[ch] triangle/*/*.cpp | grep -v '^triangle/base/system')
 
 # The interface to the system is triangle/base/system.h: no other file uses names beyond those of C's own library. The
@@ -143,7 +143,7 @@ refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes a header of a h
 # The sequential program includes no schedule, nor do the stages that it shares with the parallel program
 # (drivers/mesh/stages.h).
 # shellcheck disable=SC2046 # one word a file
-refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/mesh/triangle.c \
+refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and includes the schedule' drivers/mesh/triangle.c \
     $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_/]+' | sed 's/$/.c/; p; s/c$/h/')
 
 # Only one file runs work in parallel. All other files pass tasks to an executor.
@@ -160,7 +160,7 @@ refuse '[^a-z_]realloc\(' 'grows an array without triangle/base/grow.h' $others
 # Only one file includes MPI, so that all others can be compiled and tested without it.
 others=$(ls triangle/*/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
-refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $others
+refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'includes MPI' $others
 
 # The checker uses nothing of the mesher except input, predicates and tools, since it must be independent of the code
 # that it checks.
@@ -176,7 +176,7 @@ hooks='mesh/(mesh|fence|surface)|refine/(refine|census|smooth)|size/estimate|api
 tools='base/[a-z_]+|geometry/(hilbert|point|shape)'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
-[ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
+[ -z "$strange" ] || breach "sched/ includes headers that are not hooks: $strange"
 
 # 3. Libraries do not print, end the process or change the locale. The only exception is the one line of triangulate().
 others=$(ls triangle/*/*.[ch] triangle/*/*.cpp sched/*/*.[ch] |
@@ -221,7 +221,7 @@ known='\.(ci|clang-format|clang-tidy|gitattributes|github|gitignore)|[A-Z]+(\.md
 known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|examples|include|python|sched|tests|tools|triangle|web"
 if [ -e .git ] && command -v git >/dev/null; then
     strange=$(git ls-files | cut -d / -f 1 | sort -u | grep -vxE "$known")
-    [ -z "$strange" ] || breach "committed at the top:" $strange
+    [ -z "$strange" ] || breach "unexpected files in the top folder:" $strange
 fi
 
 [ "$breaches" -eq 0 ] && echo "house rules: kept"

@@ -186,16 +186,16 @@ def chain(program, mpirun, source, number):
         story.append(f"{n}{'m' if bound else ''}{how}{'w' if how and while_written else ''}:{code}"
                      f"{'s' if os.path.exists('state/state-0') else ''}{'f' if found else ''}")
         if any(good.get(suffix) != found[suffix] for suffix in found):
-            errors.append("a file has its name and other bytes")
+            errors.append("a file with its final name has wrong bytes")
         if code == 0 and how in ("rank", "some", "term") and not found:
-            errors.append("exit code 0, and no file")
+            errors.append("exit code 0, but no file")
         if code == 0 or errors:
             break
         if seconds is None:
             with open("log", "rb") as log:
                 errors.append("the last run fails: " + log.read()[-400:].decode(errors="replace"))
     if not errors and good != digests("two"):
-        errors.append("other files")
+        errors.append("wrong bytes in the final files")
     if not errors and os.path.exists("state"):
         errors.append("a checkpoint is left")
     if not errors and temporaries():

@@ -48,7 +48,7 @@ for colour in quality area region none; do
 done
 draws -o density.png --color density --size 300
 draws -o density.svg --color density --size 300 --window 0,0,2,2
-grep -q '<image' density.svg || fault "a picture of densities holds no image"
+grep -q '<image' density.svg || fault "a picture of densities contains no image"
 draws -o block.svg --color block --blocks blocks.txt --edges off --segments off --legend off
 for colour in quality area region block; do
     [ "$(fills $colour.svg)" -eq 2 ] || fault "$colour.svg has $(fills $colour.svg) colours instead of 2"
@@ -58,8 +58,8 @@ done
 # More triangles than are drawn one by one: densities, unless the window contains few enough.
 export PTRIANGLE_TEST_TRIANGLES=1
 draws -o many.png --size 300 --color area
-grep -q '^meshplot: there are more than 1 triangles to show: a picture of densities' out.txt || fault "not a word of it"
-cmp -s many.png density.png || fault "many.png is no picture of densities"
+grep -q '^meshplot: there are more than 1 triangles to show: a picture of densities' out.txt || fault "no message about densities"
+cmp -s many.png density.png || fault "many.png is not a picture of densities"
 draws -o one.svg --window 0.4,1.4,0.5,1.5 --edges off --segments off --legend off
 [ -s out.txt ] && fault "one triangle is not too many"
 unset PTRIANGLE_TEST_TRIANGLES
@@ -76,7 +76,7 @@ cp mesh.1.node points.node
 cp mesh.1.node loose.node
 cp mesh.1.ele loose.ele
 printf '0 2 0 1\n1 1\n1 -7 2 1\n0\n' >loose.poly # the coordinates of the missing vertex are not read
-"$plot" loose -o loose.svg >out.txt 2>&1 || fault "a segment that names no vertex: $(head -n 1 out.txt)"
+"$plot" loose -o loose.svg >out.txt 2>&1 || fault "a segment without a vertex: $(head -n 1 out.txt)"
 "$plot" points -o points.png >out.txt 2>&1 || fault "points alone: $(head -n 1 out.txt)"
 
 refuses 2 mesh.1

@@ -54,7 +54,7 @@ configure shared -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_PROGRAMS=OFF -DPTRIANGLE_PRE
 "$cmake" --build shared --parallel 2 >shared.log 2>&1 || fail "shared: $(errors shared.log)"
 "$cmake" --install shared --prefix "$work/staged" >install.log
 mv staged prefix # an installed tree can be moved
-[ -z "$(find prefix -name '*.a')" ] || fail "static libraries among the shared ones"
+[ -z "$(find prefix -name '*.a')" ] || fail "static libraries in the shared package"
 ln -s pt-triangle.h prefix/include/triangle.h # the clients include it by this name
 libraries=$(dirname "$(find prefix -name libptriangle.so)")
 mkdir shared_clients
@@ -68,7 +68,7 @@ done | sort -u >exported.txt
 absent=none
 [ -e "$libraries/libptriangle-mpi.so" ] || absent=par_stream_on # the one extra name that the library for MPI exports
 sed -n 's/^ *\([a-z0-9_]*\);.*$/\1/p' "$root/cmake/exports.map" | grep -vx $absent | sort >listed.txt
-diff listed.txt exported.txt || fail "what is exported is not what is listed"
+diff listed.txt exported.txt || fail "exported names differ from the list"
 for name in $(sed -n 's/^ *\(\(tri\|par\)_[a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map" | grep -vx $absent); do
     grep -rqE "\b$name\(" prefix/include || fail "$name is exported, but in no public header"
 done
@@ -89,8 +89,8 @@ configure own_threads -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_PREFIX=
 "$cmake" --install own_threads --prefix "$work/alone" >install.log
 ! readelf -d alone/bin/ptriangle | grep -q 'NEEDED.*lib[gi]*omp' || fail "ptriangle needs OpenMP's library"
 for name in pt-triangle pt-trianglecheck; do
-    "alone/bin/$name" --version | grep -q "^$name " || fail "$name does not know its name"
-    readelf -d "alone/bin/$name" | grep -q 'NEEDED.*libstdc++' || fail "$name carries the C++ runtime inside"
+    "alone/bin/$name" --version | grep -q "^$name " || fail "$name prints another name"
+    readelf -d "alone/bin/$name" | grep -q 'NEEDED.*libstdc++' || fail "$name contains the C++ runtime"
     ! readelf -d "static/bin/${name#pt-}" | grep -q 'NEEDED.*libstdc++' || fail "${name#pt-} needs a C++ runtime"
 done
 cp "$root/data/square.poly" .

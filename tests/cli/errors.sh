@@ -142,7 +142,7 @@ wrote
 
 # both streams go to one place: the error is printed once
 "$bin/triangle" -p truncated >.out 2>&1
-check "told once" sh -c 'test "$(grep -c truncated.poly: .out)" -eq 1'
+check "reported once" sh -c 'test "$(grep -c truncated.poly: .out)" -eq 1'
 
 # --- outputs that cannot be written
 fresh letter.poly
@@ -165,7 +165,7 @@ what="ulimit -f"
     "$bin/triangle" -pqa.01 letter >.out 2>.err
 )
 check "a file too large is an error" test $? -eq 1
-check "the old file is there" grep -qx old letter.1.node
+check "the old file is kept" grep -qx old letter.1.node
 complains "cannot write"
 wrote letter.1.node
 
@@ -195,7 +195,7 @@ for signal in TERM INT HUP; do
     wait $job 2>/dev/null
     check "ended by the signal" test $? -gt 128
     wrote
-    check "the old file is there" grep -qx old letter.1.node
+    check "the old file is kept" grep -qx old letter.1.node
 done
 
 # --- standard output

@@ -191,7 +191,7 @@ unset PTRIANGLE_TEST_BLOCK
 
 # --- pieces of a segment have its direction
 runs_its_way() { # runs_its_way BASE POLY: compares directions; such segments of POLY have unique markers
-    check "pieces of $1 run their segments' way" awk '/^#/ { next } FNR == 1 { file++; n = $1; next }
+    check "pieces of $1 have the direction of their segments" awk '/^#/ { next } FNR == 1 { file++; n = $1; next }
         file == 1 { if (FNR <= n + 1) { x[$1] = $2; y[$1] = $3 } else if (NF == 4) { a[$4] = $2; b[$4] = $3 } }
         file == 2 { X[$1] = $2; Y[$1] = $3 }
         file == 3 && NF == 4 && ($4 in a) { p = a[$4]; q = b[$4]; k++

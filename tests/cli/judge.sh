@@ -130,7 +130,7 @@ part_by_part() { # part_by_part WORDS...: expects the same verdict of trianglech
         check "trianglecheck $* --memory $memory: the same verdict" cmp whole parts
         check "trianglecheck $* --memory $memory: the same words" cmp whole.err parts.err
     done
-    check "nothing is left of scratch files" test -z "$(ls -d -- *-?????? 2>/dev/null)"
+    check "no scratch file is left" test -z "$(ls -d -- *-?????? 2>/dev/null)"
 }
 fresh section.poly letter.poly
 for switches in -pq30aA -pq30aAzo2n -pq30Dnj; do

@@ -81,7 +81,7 @@ done
 what="ptriangle -o2j -S --memory"
 rm -f out*
 program 0 -Qpq20a0.000002o2jS260000 s --output out --threads 2 --memory 55M --report out.json
-check "parked is told" grep -q '"way": "parked"' out.json
+check "parking is reported" grep -q '"way": "parked"' out.json
 full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least

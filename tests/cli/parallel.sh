@@ -13,13 +13,13 @@ check "many blocks" test "$(grep -c '"block":' report.json)" -gt 4
 judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.1
 fresh regress/graded_1899.poly # a triangle deferred by a block is listed once; otherwise work doubles in every phase
 PTRIANGLE_TEST_BLOCK=60 program 0 -pcOq25DQ --report report.json graded_1899
-check "worklist come back in numbers" awk '/"worklist":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"worklist\":") n += $(i + 1) }
+check "the worklist does not double" awk '/"worklist":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"worklist\":") n += $(i + 1) }
     END { exit !(n > 0 && n < 50000) }' report.json
 fresh regress/tangle.poly # triangles that one stage makes bad are in the list of the next
 PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 --report report.json tangle
-check "all bad triangles have had their turn" grep -q 'below the bounds: [0-9]* at small angles of the input\.$' .out
+check "all bad triangles have been treated" grep -q 'below the bounds: [0-9]* at small angles of the input\.$' .out
 below=$(sed -n 's/^\([0-9]*\) triangles stay below the bounds.*/\1/p' .out)
-check "the report tells of them" test "$(grep -A1 below_bounds report.json | grep -c "\"input_angle\": $below,$")" = 1
+check "the report lists them" test "$(grep -A1 below_bounds report.json | grep -c "\"input_angle\": $below,$")" = 1
 
 # --- long options
 fresh letter.poly
@@ -72,10 +72,10 @@ judge rings.1 --poly rings.poly --any-holes --min-angle 30 --max-area 0.5
 cp "$data/regress/carved_fan.poly" . # markers of the pieces that remain of segments within rounding of each other
 program 0 --holes auto -pQ carved_fan
 judge carved_fan.1 --poly carved_fan.poly --any-holes
-check "what is odd stays" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
+check "odd rings are kept" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
 cp rings.1.ele auto.ele
 program 0 --holes points -pq30a0.5Q rings
-check "without, all stays" sh -c 'test "$(sed -n 1s/\ .*//p rings.1.ele)" -gt "$(sed -n 1s/\ .*//p auto.ele)"'
+check "with --holes points all rings are kept" sh -c 'test "$(sed -n 1s/\ .*//p rings.1.ele)" -gt "$(sed -n 1s/\ .*//p auto.ele)"'
 fresh letter.poly
 program 1 --no-such-thing letter
 complains '^ptriangle: there is no option --no-such-thing'
@@ -173,16 +173,16 @@ for words in "-pq30a0.01" "-pq30a0.01 --placement lattice"; do
     PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
     judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.01
     check "a third fewer triangles" sh -c 'n=$(head -n 1 letter.1.ele | cut -d " " -f 1); [ $n -gt 7000 ] && [ $n -lt 8500 ]'
-    check "the report says so" grep -q '"placement": "lattice"' report.json
+    check "the report contains it" grep -q '"placement": "lattice"' report.json
 done
 PTRIANGLE_TEST_BLOCK=60 program 0 -pq30a0.01 letter --placement=classic --report report.json
 counts 5755 10968
-check "the report says so" grep -q '"placement": "classic"' report.json
+check "the report contains it" grep -q '"placement": "classic"' report.json
 program 0 -pq20a0.1 letter --placement=classic
 counts 611 1074
 for words in -pq33a0.01 -pq30; do # no lattice: high angle bounds, or no bound on areas
     PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --report report.json
-    check "the report says so" grep -q '"placement": "classic"' report.json
+    check "the report contains it" grep -q '"placement": "classic"' report.json
     cp letter.1.ele one.ele
     PTRIANGLE_TEST_BLOCK=60 program 0 $words letter --placement classic
     check "one mesh" alike one.ele letter.1.ele

@@ -49,7 +49,7 @@ what="tasks of a launcher that is none"
 checks=$((checks + 1))
 SLURM_STEP_NUM_TASKS=3 SLURM_PROCID=0 "$bin/ptriangle" -Qpq30a0.01 letter >.out 2>.err </dev/null
 [ $? -eq 1 ] || fault "not refused"
-check "it is told once" grep -q 'started as 3 tasks' .err
+check "it is reported once" grep -q 'started as 3 tasks' .err
 check "nothing is written" test ! -e letter.1.ele
 if [ -z "${MPIEXEC:-}" ]; then
     return
@@ -85,7 +85,7 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
     # shellcheck disable=SC2086
     with_one 1 'cd /' 0 -Q $case --output two
     for file in one.*; do
-        check "the same but for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
+        check "the same except for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
     done
     rm -f one.* two.*
 done
@@ -101,7 +101,7 @@ for case in "-p letter --size field.asc" "-p letter --size-near 1:0.05 --max-siz
     # shellcheck disable=SC2086
     ranks 0 3 -Q $case --output three
     for file in one.*; do
-        check "the same but for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
+        check "the same except for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
         check "the same of three: $case, $file" same_but_for_comments "$file" "three${file#one}"
     done
     rm -f one.* two.* three.*
@@ -153,7 +153,7 @@ for others in "" "--output two.vtu"; do
     check "tiles moved if and only if they had to: $others" test \
         "$(grep -q '"tiles": [0-9]\{6\}' report.json && echo moved)" = "${others:+moved}"
     for file in $files; do
-        check "the same but for the command: $others, $file" same_but_for_comments "$file" "two${file#one}"
+        check "the same except for the command: $others, $file" same_but_for_comments "$file" "two${file#one}"
     done
     rm -f two.*
 done
@@ -275,7 +275,7 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         sleep 0.5
         "$bin/ptriangle" -Qpq30a0.01 letter --output two >.out 2>.err
     done
-    check "what killed tasks have left is gone" test -z "$(ls .tri-* 2>/dev/null)"
+    check "files of killed tasks are removed" test -z "$(ls .tri-* 2>/dev/null)"
 fi
 
 # --- stopped and resumed by other numbers of tasks: one task from the state of three, two from the state of one
@@ -299,7 +299,7 @@ while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
     in_time "$found"
     tries=$((tries + 1))
 done
-check "the same bytes by whoever goes on" same_but_for_comments one.node two.node
+check "the same bytes by any number of resuming tasks" same_but_for_comments one.node two.node
 
 # --- the owner of a checkpoint is checked before its run: the state of one task, swept or not, is refused by several
 leave_state() { # N WORDS...: stops a run with a state, unless it finishes before
@@ -349,7 +349,7 @@ for output in "-e --output two" "--output two.vtu" "--output two.msh" "--output 
     for file in one/*; do
         grep -av '^#' "$file" >.one
         grep -av '^#' "${file#one/}" >.two
-        check "the same but for the command: $output, $file" cmp .one .two
+        check "the same except for the command: $output, $file" cmp .one .two
     done
     check "the standard input is whole" test "$(cat .stdin)" = precious
     check "no checkpoint is left" test ! -e state
@@ -374,7 +374,7 @@ while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
 done
 check "exit code $found: $(head -n 3 .err)" test "$found" -eq 0
 for suffix in node ele edge poly; do
-    check "the same .$suffix by whoever goes on" same_but_for_comments one.$suffix two.$suffix
+    check "the same .$suffix by any number of resuming tasks" same_but_for_comments one.$suffix two.$suffix
 done
 rm -rf state two.*
 
@@ -386,8 +386,8 @@ timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
     "$0" "$@"
     echo $? >".code$rank"' "$bin/ptriangle" -Qpq30a0.001 letter --output two --checkpoint state \
     >.out 2>.err
-check "the first one's" test "$(cat .code0)" -eq 124
-check "the other's" test "$(cat .code1)" -eq 124
+check "exit code of the first task" test "$(cat .code0)" -eq 124
+check "exit code of the other task" test "$(cat .code1)" -eq 124
 check "the checkpoint stays, as after any stop" test -e state/manifest
 rm -rf state
 
@@ -406,9 +406,9 @@ while [ ! -e state/state-0 ] && kill -0 $launcher; do
 done
 kill -TERM "$(cat .pid1)"
 wait $launcher
-check "the first one's" test "$(cat .code0)" -eq 143
-check "the other's" test "$(cat .code1)" -eq 143
-check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* no file was written' .err)" -eq 1
+check "exit code of the first task" test "$(cat .code0)" -eq 143
+check "exit code of the other task" test "$(cat .code1)" -eq 143
+check "it is reported once" test "$(grep -c 'stopped by SIGTERM after .* no file was written' .err)" -eq 1
 check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
 rm -rf state
 
@@ -426,14 +426,14 @@ done
 kill -TERM "$(cat .pid1)"
 wait $launcher
 complains 'stopped by .* while [a-z]+: about [0-9]+ triangles; no file was written'
-check "both lines tell of as many" test "$(grep -Eo '[0-9]+ triangles' .err | uniq | wc -l)" -eq 1
+check "both lines report the same number" test "$(grep -Eo '[0-9]+ triangles' .err | uniq | wc -l)" -eq 1
 rm -rf state two.*
 
 # --- stopped by the time limit, the first task writes the current mesh
 ranks 124 2 -Qpq30a0.000003 letter --output two --write-partial --time-limit 2
-check "it says so" grep -q 'the mesh so far is written' .err
+check "it reports this" grep -q 'the mesh so far is written' .err
 check "once" test "$(grep -c 'stopped by' .err)" -eq 1
-check "the mesh is there" test -s two.ele
+check "the mesh exists" test -s two.ele
 rm -f two.*
 
 # --- one error, no file

@@ -94,7 +94,7 @@ printf '0 2 0 1\n4 1\n1 1 5 11\n2 2 5 12\n3 3 5 0\n4 4 5 13\n1\n1 5 5\n1\n1 1 .5
 run 0 -rpa four # bounds apply within the segments
 says "Opening four.area."
 header four.1.ele "$(records four.1.ele | head -n 1 | cut -d ' ' -f 1) 3 2"
-check "attributes and areas stay where they are" awk '
+check "attributes and areas are unchanged" awk '
     /^#/ { next } FNR == 1 { next }
     FILENAME ~ /node/ { x[$1] = $2; y[$1] = $3; next }
     { mx = (x[$2] + x[$3] + x[$4]) / 3 - 1; my = (y[$2] + y[$3] + y[$4]) / 3 - 1

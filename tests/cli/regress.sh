@@ -113,8 +113,8 @@ for more in "" -Y; do
     # shellcheck disable=SC2086
     run 0 -p -P -j -q30 -e -A -a -z -Q -I $more femm.poly
     wrote femm.node femm.ele femm.edge
-    check "nothing is said" test ! -s .out -a ! -s .err
-    check "the input is as it was" cmp femm.poly kept.poly
+    check "nothing is printed" test ! -s .out -a ! -s .err
+    check "the input is unchanged" cmp femm.poly kept.poly
     rm -f femm.node femm.ele femm.edge
 done
 # base 0 as FEMM writes it: all numbers in the files count from 0
@@ -141,8 +141,8 @@ records section.poly | head -n $((n + 1)) | awk 'NR > 1 { $1 = $1 - 1 } { print 
 ls >.before
 run 0 -a -q30 -A -p -V -D -e -n base.0
 wrote base.1.node base.1.ele base.1.poly base.1.edge base.1.neigh
-check "attributes are whole numbers" test "$(records base.1.ele | awk 'NR > 1 && $5 !~ /^-?[0-9]+$/' | wc -l)" -eq 0
-check "each table has as many columns everywhere" awk '/^#/ || FNR == 1 { next }
+check "attributes are integers" test "$(records base.1.ele | awk 'NR > 1 && $5 !~ /^-?[0-9]+$/' | wc -l)" -eq 0
+check "all rows of a table have the same number of columns" awk '/^#/ || FNR == 1 { next }
     !(FILENAME in n) { n[FILENAME] = NF } NF != n[FILENAME] { exit 1 }' base.1.node base.1.ele base.1.edge base.1.neigh
 judge base.1 --min-angle 30
 

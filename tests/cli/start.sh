@@ -13,7 +13,7 @@ names=$(for module in "$modules"/*.so; do basename "$module" .so; done)
 fresh letter.poly
 for each in $names; do
     if command -v nm >/dev/null; then
-        check "$each.so lets out program_main alone" sh -c \
+        check "$each.so exports only program_main" sh -c \
             '[ "$(nm -D --defined-only "$1" | awk "{ print \$3 }" | grep -v "^program_")" = "" ]' sh "$modules/$each.so"
     fi
     if command -v readelf >/dev/null; then

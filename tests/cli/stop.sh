@@ -7,7 +7,7 @@ await() { # await COMMAND...: repeats the command until it succeeds
         tries=$((tries + 1))
         sleep 0.05
     done
-    check "has not come about: $*" "$@"
+    check "condition not met in time: $*" "$@"
 }
 
 # Outputs are opened once, empty, before the mesh is made, to check that they can be written.
@@ -54,7 +54,7 @@ for signal in HUP:1 INT:2 QUIT:3 TERM:15 ALRM:14 USR1:10 USR2:12 XCPU:24 VTALRM:
         ended $((128 + number))
         complains "stopped by SIG$signal (after [0-9.]+ s )?while writing(: [0-9]+ triangles)?; nothing was written"
         wrote
-        check "the old file is there" grep -qx old letter.1.node
+        check "the old file is kept" grep -qx old letter.1.node
     done
     fresh letter.poly
     mkfifo pipe.node
@@ -89,10 +89,10 @@ if [ -x "$bin/ptriangle" ]; then
     check "exit code" test $? -eq 143
     complains "stopped by SIGTERM .* while refining: [0-9]+ triangles, [0-9]+ of them below the bounds; the mesh so far is written"
     counted=$(sed -n 's/.*while refining: \([0-9]*\) triangles.*/\1/p' .err)
-    check "all triangles are counted, those of blocks at work, too" sh -c "head -1 letter.1.ele | grep -q '^$counted '"
+    check "all triangles are counted, including those of running blocks" sh -c "head -1 letter.1.ele | grep -q '^$counted '"
     wrote letter.1.node letter.1.ele letter.1.poly ${report:+report.json}
     judge letter.1 --poly letter.poly
-    [ -z "$report" ] || check "the report tells" grep -q '"stopped": "SIGTERM"' report.json
+    [ -z "$report" ] || check "the report contains it" grep -q '"stopped": "SIGTERM"' report.json
     fresh letter.poly
     mesher 0 ptriangle -Qpq30a0.01 letter --time-limit 2h --write-partial
     judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.01
@@ -113,9 +113,9 @@ if [ -x "$bin/ptriangle" ]; then
     wait $job 2>/dev/null
     check "exit code" test $? -eq 143
     complains '^ptriangle: stopped by SIGTERM after .* while refining: about [1-9][0-9]* triangles; no file was written$'
-    check "the last line tells what is kept" sh -c 'tail -n 1 .err | grep -Eq \
+    check "the last line lists the kept files" sh -c 'tail -n 1 .err | grep -Eq \
         "^ptriangle: [1-9][0-9]* triangles are kept; to go on: ptriangle -pq30a0.000005 .*--progress --resume state\$"'
-    check "it is not said to be refined" sh -c '! grep -Eq "refined to|-[0-9]+/s" .err'
+    check "it is not reported as refined" sh -c '! grep -Eq "refined to|-[0-9]+/s" .err'
     check "the state is there" test -s state/state-0
     check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
     rm -rf state
@@ -260,5 +260,5 @@ ls -A | grep -v "^\.tri-$host-$job-" | grep -v '^\.before$' >.keep
 mv .keep .before
 mesher 0 triangle -p letter
 wrote letter.1.node letter.1.ele letter.1.poly
-check "another's file is there" test -f ".tri-$host-$$-0.tmp" -a -f .tri-another-host-99999999-0.tmp
+check "another program's file is kept" test -f ".tri-$host-$$-0.tmp" -a -f .tri-another-host-99999999-0.tmp
 rm -f .tri-*

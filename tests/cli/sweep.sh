@@ -78,8 +78,8 @@ for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" 
     check "the same files" test "$(echo whole.*)" = "$(echo swept.* | sed 's/swept/whole/g')"
 done
 PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5 --report report.json
-check "the report tells the way" grep -q '"way": "swept"' report.json
-check "no shapes are told" grep -q '"smallest_angle": null' report.json
+check "the report names the method" grep -q '"way": "swept"' report.json
+check "no shapes are reported" grep -q '"smallest_angle": null' report.json
 matches '^Sweeping: about [0-9.]+ (thousand|million) triangles'
 sed -n '/^Statistics/,$p' .out >.expected
 program 0 -pq30a0.002 letter --output whole.h5
@@ -124,7 +124,7 @@ wrote
 # --- the folder for parked meshes is tested before the work
 PTRIANGLE_TEST_SWEEP=1 program 1 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
 complains 'nowhere: cannot park a mesh in this directory: No such file or directory'
-check "it comes before the work" sh -c '! grep -q "^Sweeping" .out'
+check "the line is printed before the work" sh -c '! grep -q "^Sweeping" .out'
 wrote
 program 0 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
 wrote x.h5 x.xdmf
@@ -138,10 +138,10 @@ echo precious >x/tiles
 echo p >x/piece-notes.txt
 program 1 -Qpq30a0.01 x/piece-3.poly --output o --checkpoint x
 complains '^x: holds a file tiles, but no checkpoint: choose another folder$'
-check "all files are there" test "$(cat x/tiles x/piece-notes.txt | tr '\n' ' ')" = "precious p "
+check "all files exist" test "$(cat x/tiles x/piece-notes.txt | tr '\n' ' ')" = "precious p "
 rm x/tiles
 program 0 -Qpq30a0.01 x/piece-3.poly --output o --checkpoint x
-check "they stay" test "$(ls x | tr '\n' ' ')" = "piece-3.poly piece-notes.txt "
+check "they are kept" test "$(ls x | tr '\n' ' ')" = "piece-3.poly piece-notes.txt "
 rm x/*
 program 1 -Qpq30a0.01 x/absent.poly --checkpoint x
 check "the folder stays" test -d x
@@ -164,7 +164,7 @@ program 0 -pq30a0.0005 spike --output whole.h5
 grep 'below the bounds' .out >.expected
 killed_and_on 0.05 -pq30a0.0005 spike --output out.h5
 check "the same bytes" cmp whole.h5 out.h5
-check "bad triangles are told of" test -s .expected
+check "bad triangles are reported" test -s .expected
 grep 'below the bounds' .out | cmp -s - .expected || fault "bad triangles: $(cat .expected .out)"
 fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5

@@ -184,7 +184,7 @@ run 0 -po2 letter
 header letter.1.node "171 2 1 1"
 header letter.1.ele "57 6 0"
 says "  Mesh vertices: 171"
-check "nodes amid edges opposite their corners" awk '
+check "nodes at midpoints of the edges opposite their corners" awk '
     /^#/ { next } FNR == 1 { next }
     FILENAME ~ /node/ { x[$1] = $2; y[$1] = $3; a[$1] = $4; next }
     { for (k = 0; k < 3; k++) { p = $(2 + (k + 1) % 3); q = $(2 + (k + 2) % 3); m = $(5 + k)
@@ -202,7 +202,7 @@ run 0 -pjen duplicates
 header duplicates.1.node "5 2 0 1"
 judge duplicates.1 --poly duplicates.poly --jettisoned
 sides() { records duplicates.1.ele | awk 'NR > 1 { print $2, $3 "\n" $3, $4 "\n" $4, $2 }'; }
-check "edges name vertices as triangles do" \
+check "edges and triangles use the same vertex numbers" \
     test "$({ sides; records duplicates.1.edge | awk 'NR > 1 { print $2, $3 }'; } |
     awk '{ print ($1 < $2) ? $1 " " $2 : $2 " " $1 }' | sort -u | wc -l)" \
     -eq "$(records duplicates.1.edge | awk 'NR == 1 { print $1 }')"
@@ -263,7 +263,7 @@ counts 4 2
 # --- markers
 fresh box_hole.poly
 run 0 -pqea.5 box_hole
-check "markers of sides go to their pieces and vertices" awk '
+check "pieces and vertices of a side have its marker" awk '
     FNR > 1 && !/^#/ { seen[$4] = 1 }
     END { exit !(seen[1] && seen[2] && seen[3] && seen[4] && seen[5] && seen[0]) }' box_hole.1.edge
 judge box_hole.1 --poly box_hole.poly --min-angle 20 --max-area .5
@@ -277,4 +277,4 @@ fresh section.poly
 run 0 -a1 -q30 -A -p -V -D -e -n section
 wrote section.1.node section.1.ele section.1.poly section.1.edge section.1.neigh
 matches "^  Mesh vertices: [0-9]+$"
-check "attributes are whole numbers" test "$(records section.1.ele | awk 'NR > 1 && $5 !~ /^[0-9]+$/' | wc -l)" -eq 0
+check "attributes are integers" test "$(records section.1.ele | awk 'NR > 1 && $5 !~ /^[0-9]+$/' | wc -l)" -eq 0

@@ -55,7 +55,7 @@ def vertices(ours, theirs, case, switches):
         yield f"{len(ours.points)} vertices instead of {len(theirs.points)}"
     n = len(case.points) if ours.triangles and not ("j" in switches and "duplicates" in case.traits) else 0
     if ours.points[:n] != theirs.points[:n]:
-        yield "input vertices differ in place or order"
+        yield "input vertices differ in position or order"
     if "duplicates" not in case.traits:
         if (ours.attributes or theirs.attributes) and ours.attributes[:n] != theirs.attributes[:n]:
             yield "attributes of input vertices differ"
@@ -134,7 +134,7 @@ def compare(ours, theirs, case, switches):
     jettisoned = "j" in switches
     our_names, their_names = names(ours, ours, case, jettisoned), names(theirs, ours, case, jettisoned)
     if their_names is None:
-        return ["a vertex is not where ours is"]
+        return ["a vertex has no counterpart in our mesh"]
     found += tables(ours, theirs, our_names, their_names, "r" in switches)
     if not jettisoned:
         found += new_vertices(ours, theirs, our_names, their_names, len(case.points))

@@ -76,7 +76,7 @@ def vertex_markers(mesh, given):
             allowed = set(markers) | or_boundary(markers, v in rim) if len(set(markers)) > 1 else \
                 or_boundary(markers, v in rim)
         if found not in allowed:
-            yield f"vertex {v} has marker {found}, allowed are {sorted(allowed)}"
+            yield f"vertex {v} has marker {found}, allowed: {sorted(allowed)}"
 
 
 def edge_marker_faults(mesh, given, ends, markers, what):
@@ -93,7 +93,7 @@ def edges(mesh, given):
     if mesh.edges is None:
         return
     if sorted(pair(*e) for e in mesh.edges) != sorted(mesh.sides()):
-        yield "the edges are not those of the triangles"
+        yield "the edges differ from those of the triangles"
     yield from edge_marker_faults(mesh, given, mesh.edges, mesh.edge_markers, "edge")
 
 
@@ -102,11 +102,11 @@ def segments(mesh, given):
         return
     sides = mesh.sides()
     if any(pair(*s) not in sides for s in mesh.segments):
-        yield "a subsegment is no edge"
+        yield "a subsegment is not an edge"
     if len({pair(*s) for s in mesh.segments}) != len(mesh.segments):
-        yield "a subsegment is there twice"
+        yield "a subsegment occurs twice"
     if not mesh.boundary() <= {pair(*s) for s in mesh.segments}:
-        yield "a boundary edge is no subsegment"
+        yield "a boundary edge is not a subsegment"
     yield from edge_marker_faults(mesh, given, mesh.segments, mesh.segment_markers, "subsegment")
 
 
@@ -173,7 +173,7 @@ def voronoi_edges(mesh, _):
     on its right, or to infinity on the right."""
     sides = mesh.sides()
     if len(mesh.voronoi_edges) != len(mesh.edges):
-        yield "not as many Voronoi edges as edges"
+        yield "the numbers of Voronoi edges and edges differ"
     for k, ((a, b), (left, right)) in enumerate(zip(mesh.edges, mesh.voronoi_edges)):
         beside = set(sides[pair(a, b)])
         if {left, right} - {-1} != beside or left < 0 or not on_the_left(mesh.corners()[left], a, b):
@@ -188,7 +188,7 @@ def voronoi(mesh, given):
     if mesh.voronoi_points is None:
         return
     if len(mesh.voronoi_points) != len(mesh.triangles):
-        yield "not as many Voronoi vertices as triangles"
+        yield "the numbers of Voronoi vertices and triangles differ"
         return
     yield from voronoi_vertices(mesh, given)
     if mesh.edges is not None:
@@ -202,10 +202,10 @@ def middles(mesh, _):
             a, b, m = nodes[(k + 1) % 3], nodes[(k + 2) % 3], nodes[3 + k]
             middle = [(x + y) / 2 for x, y in zip(mesh.points[a], mesh.points[b])]
             if not close(mesh.points[m], middle, extent(mesh.points), 1e-12):
-                yield f"node {k + 4} of triangle {t} is not amid its side"
+                yield f"node {k + 4} of triangle {t} is not the midpoint of its side"
             if mesh.attributes and any(abs(u + v - 2 * w) > 1e-12 * (abs(u) + abs(v) + 1) for u, v, w in
                                        zip(mesh.attributes[a], mesh.attributes[b], mesh.attributes[m])):
-                yield f"node {k + 4} of triangle {t} has no mean attributes"
+                yield f"node {k + 4} of triangle {t} does not have the mean attributes"
 
 
 def attributes(mesh, given):
