@@ -32,10 +32,11 @@ void arguments_free(struct arguments *arguments);
 /* The name of the next iteration, malloc'ed; NULL: no memory. box -> box.1, box.9 -> box.10, d.1/box -> d.1/box.1. */
 char *next_iteration(const char *name);
 
-/* --- What -h prints, and what is printed where no input file is named. */
+/* --- Print the text of -h (help_full), or the short text for a command line without input file (help_usage). */
 
 void help_usage(const char *program);
-/* where it works: "on one core"; further: a paragraph about more options, or NULL. */
-void help_full(const char *program, const char *where, const char *further);
+/* where: completes "Makes triangle meshes ...", such as "on one core". further: a paragraph about more options, as
+ * parts that end with NULL; or NULL if there are none. */
+void help_full(const char *program, const char *where, const char *const *further);
 
 #endif

@@ -70,7 +70,8 @@ enum tri_status long_options_check(const struct long_options *options, struct tr
  * sets; 0: OpenMP decides, as it does where OMP_NUM_THREADS is set. */
 int long_options_threads(const struct long_options *options);
 
-/* A paragraph about them, for the help. */
-extern const char long_options_help[];
+/* The help text of the long options: parts to be printed one after the other, then NULL. Compilers may limit the
+ * length of one string. */
+extern const char *const long_options_help[];
 
 #endif

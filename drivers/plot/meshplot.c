@@ -23,31 +23,31 @@ enum { TROUBLE = 1, MISUSE = 2 };
 
 static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg [options]\n";
 
-static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+static const char help[] = /* cmake/help.awk turns it into a manual page */
     "\n"
-    "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtkhdf, .vtu, .msh,\n"
-    ".2dm, .14 or .grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or\n"
-    "that has more than 16.7 million triangles, what lies in the window is drawn; if that is more than so many\n"
-    "triangles, densities are.\n"
+    "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly if that file exists. Without BASE.ele\n"
+    "it draws points and segments only. BASE can also be the name of one file that ptriangle has written: .h5,\n"
+    ".vtkhdf, .vtu, .msh, .2dm, .14 or .grd. If the mesh is larger than the memory (.h5 and text files) or has more\n"
+    "than 16.7 million triangles, only the part inside the window is drawn. If that part has more than 16.7 million\n"
+    "triangles, the picture shows their density instead.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
     "  -c, --color quality|area|region|block|none|density\n"
     "                           quality (default): the smallest angle of each triangle; region: its first\n"
-    "                           attribute; block: see --blocks; density: how many triangles there are at each\n"
-    "                           pixel, below 1 where they are larger than pixels, for a mesh of any size\n"
-    "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
-    "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
-    "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
-    "  -e, --edges auto|on|off  auto (default): short ones fade\n"
-    "      --segments on|off    (default on)\n"
-    "      --legend on|off      (default on)\n"
-    "  -t, --title TEXT         a line above the picture\n"
-    "  -b, --blocks FILE        one line `block phase` for each triangle, in the order of BASE.ele; a phase\n"
-    "                           below 0: in no block\n"
-    "      --version, --help    name and version; this help\n"
+    "                           attribute; block: see --blocks; density: number of triangles per pixel, below 1\n"
+    "                           if triangles are larger than pixels, for meshes of any size\n"
+    "  -s, --size WIDTH         width of the picture in pixels, 64 to 12000 (default 1200)\n"
+    "  -w, --window X0,Y0,X1,Y1  part of the mesh to show (default: all)\n"
+    "  -m, --mark X0,Y0,X1,Y1  draw a red frame around this part\n"
+    "  -e, --edges auto|on|off  auto (default): short edges fade\n"
+    "      --segments on|off    draw segments (default on)\n"
+    "      --legend on|off      draw a legend (default on)\n"
+    "  -t, --title TEXT         print a line above the picture\n"
+    "  -b, --blocks FILE        file with one line `block phase` for each triangle, in the order of BASE.ele; a\n"
+    "                           negative phase means that the triangle is in no block\n"
+    "      --version, --help    print name and version; print this help\n"
     "\n"
-    "Exit code: 0 drawn, 1 files that cannot be read or written, 2 wrong usage.\n";
+    "Exit code: 0 for success, 1 if a file cannot be read or written, 2 for wrong usage.\n";
 
 enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSITY };
 
