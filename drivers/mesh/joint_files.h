@@ -22,46 +22,48 @@
 
 enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };
 
-struct joint_h5 {                 /* an HDF5 file: the first three on rank 0 alone, the rest on all ranks */
+struct joint_h5 {                 /* an HDF5 file: the first three members on rank 0 only, the others on all ranks */
     struct tri_h5_writer *writer; /* NULL: there is no such file, or this is not rank 0 */
-    struct tri_sink sink;         /* of the writer */
-    struct tri_output *output;    /* of the writer */
-    struct tri_h5_layout layout;  /* where rows belong; ours, except that rank 0 refers to the writer's */
-    struct tri_h5_part *part;     /* writes this rank's rows; NULL: not begun, or no such file */
+    struct tri_sink sink;         /* sink of the writer */
+    struct tri_output *output;    /* output of the writer */
+    struct tri_h5_layout layout;  /* place of rows in the file; owned here, except that on rank 0 it refers to the
+                                     writer's */
+    struct tri_h5_part *part;     /* writes the rows of this rank; NULL: not begun, or no such file */
 };
 
 struct joint_files {
-    /* Asked for. */
-    struct par_carrier *carrier;          /* between the ranks */
-    const char *scratch;                  /* the folder of spools */
-    bool no_sync;                         /* files get their names without a look at the disk */
-    const struct tri_stop *stop;          /* of what other ranks than the first one write; NULL: never asked */
-    struct tri_text_options text_options; /* its three outputs on rank 0 alone */
-    struct tri_sink text;                 /* rank 0: that of these files; all NULL: there are none */
-    struct joint_h5 h5[JOINT_H5];         /* those that there are come first */
-    struct orphans orphans;               /* which HDF5 files leave out */
-    /* Found. */
+    /* Set by the caller. */
+    struct par_carrier *carrier;          /* connection between the ranks */
+    const char *scratch;                  /* folder for temporary files */
+    bool no_sync;                         /* files get their names before they are on the disk */
+    const struct tri_stop *stop;          /* stops the writes of ranks other than 0; NULL: no stop */
+    struct tri_text_options text_options; /* its three outputs are set on rank 0 only */
+    struct tri_sink text;                 /* sink for text files on rank 0; all NULL: there are none */
+    struct joint_h5 h5[JOINT_H5];         /* existing files come first */
+    struct orphans orphans;               /* points that HDF5 files leave out */
+    /* Results. */
     bool together;                        /* all ranks write */
-    struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files; an empty path: no such file */
-    struct tri_output file[JOINT_FILES];  /* where others than rank 0 have joined in */
-    struct tri_output spool[JOINT_TEXTS]; /* their lines, until all know where these belong */
-    struct tri_text_stream *stream;       /* into these; NULL: not begun, or rank 0 */
-    struct tri_sink to_spool;             /* of the stream */
-    int32_t n_attributes;                 /* of a point */
-    int64_t total[3];                     /* vertices, triangles, segments of all ranks, once the sink has begun */
-    int64_t n_input;                      /* points before refinement, without orphans; counted on rank 0, else 0 */
+    struct tri_ticket *ticket;            /* [JOINT_FILES] text files, then HDF5 files; an empty path: no such file */
+    struct tri_output file[JOINT_FILES];  /* the files as opened by ranks other than 0 */
+    struct tri_output spool[JOINT_TEXTS]; /* lines of this rank, until their place in the file is known */
+    struct tri_text_stream *stream;       /* writes into the spools; NULL: not begun, or rank 0 */
+    struct tri_sink to_spool;             /* sink of the stream */
+    int32_t n_attributes;                 /* number of attributes of a point */
+    int64_t total[3];                     /* vertices, triangles, segments of all ranks; valid after the sink has
+                                             begun */
+    int64_t n_input;                      /* points before refinement, without orphans; on rank 0, otherwise 0 */
     double bounds[4];                     /* least x, least y, greatest x, greatest y of this rank's points */
 };
 
-/* Collective, on files just opened: finds out whether all ranks can write them. wanted, of rank 0: they shall. The
- * agreement includes the status. To be closed in any case. */
+/* Finds out whether all ranks can write the files that were just opened. Collective. wanted, on rank 0: all ranks shall
+ * write. The ranks also agree on the status. joint_files_close must be called in any case. */
 enum tri_status joint_files_open(struct joint_files *joint, bool wanted, enum tri_status status,
                                  struct tri_error *error);
 
-/* On each rank, where all write together. */
+/* Returns the sink of each rank, if all ranks write together. */
 struct tri_sink joint_files_sink(struct joint_files *joint);
 
-/* Collective: an agreement on the status. */
+/* Completes the files. Collective: the ranks agree on the status. */
 enum tri_status joint_files_close(struct joint_files *joint, enum tri_status status, struct tri_error *error);
 
 #endif
