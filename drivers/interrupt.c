@@ -1,18 +1,17 @@
 /* Handlers and the program share one word, the state, and the names of the temporary files. The state says who has
- * asked for the end, whether the time to end in is over (LATE), whether the program is changing the set of files, or
- * telling of its end (HELD), whether it must end as soon as it no longer is (DUE), and whether somebody ends it
- * (ENDING). Every transition is one compare-and-exchange of the word:
+ * requested the end, whether the grace period is over (LATE), and whether the program is changing the set of files or
+ * reporting its end (HELD). It also says whether the program must end after that (DUE), and whether a thread is ending
+ * it (ENDING). Every transition is one compare-and-exchange of the word:
  *
- *     nobody has asked    -- first request -->          asked; the grace begins
+ *     no request          -- first request -->          asked; the grace begins
  *     asked               -- grace is over -->          LATE; patience begins, if there is any
  *     LATE, HELD          -- a request or the clock --> DUE; the handler returns
  *     LATE, not HELD      -- a request or the clock --> ENDING, by the handler
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
- * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`. A handler never waits
- * (docs/theory.md, the end by a signal), and calls and reads only what C and triangle/base/system.h allow in a
- * handler. */
+ * INVARIANT: while the state is not HELD, all temporary files are listed in `temporaries`. A handler never waits
+ * (docs/theory.md, the end by a signal). It calls and reads only what C and triangle/base/system.h allow in a handler. */
 #include "drivers/interrupt.h"
 
 #include <limits.h>
@@ -246,7 +245,7 @@ void interrupt_pass_on(int (*function)(void *user, int who), void *user)
     may_pass_on = function != NULL;
 }
 
-/* Checks the network, so it is not called on every request. */
+/* Passes requests between the tasks. It uses the network, so it does so at most every 5 ms. */
 static void ask_others(void)
 {
     static const double PAUSE = 0.005;

@@ -1,5 +1,5 @@
-/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
- * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
+/* trianglecheck: checks a mesh in files, made by any program. triangle/check/check.h does the checking; this file
+ * handles arguments, files and printing. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -70,19 +70,19 @@ static const char help[] = /* cmake/help.awk turns it into a manual page */
     "BASE.ele that do not exist). Printed numbers count from 0 or 1, as the files do.\n";
 
 struct settings {
-    const char *base; /* name without suffix, or of one file */
-    bool is_base;     /* a suffix has been cut off */
+    const char *base; /* base name, or name of one file */
+    bool is_base;     /* a suffix was removed */
     const char *input;
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
     int64_t threads; /* 0: not given */
-    double memory, memory_share; /* one of them, or 0: not given */
-    const char *scratch;         /* NULL: not given */
+    double memory, memory_share; /* bytes, or a share of the free memory; 0: not given */
+    const char *scratch;         /* folder; NULL: not given */
 };
 
-/* --- judging */
+/* --- checking */
 
-/* Bytes that the process may use: the number asked for, or the share of what there is; by default most of that. */
+/* Returns the bytes that the process may use: the requested number, or a share of the free memory. */
 static double memory_to_use(const struct settings *s)
 {
     enum { USUAL_PERCENT = 80 };
@@ -91,10 +91,10 @@ static double memory_to_use(const struct settings *s)
     return tri_memory_left() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
-/* Of the program itself: code, stacks, what allocators keep. */
+/* Bytes for the program itself: code, stacks, reserves of allocators. */
 static const double TO_COME = 4e6;
 
-/* What stays in memory beside the parts leaves room for them, and for the program itself, or the trial is refused. */
+/* Checks that the data that stay in memory leave room for the parts and for the program itself. */
 static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
 {
     const double needed = tri_check_bound(&f->source, tri_check_least_bytes(&f->source, input));
@@ -120,7 +120,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     options.base = f->base;
     options.renumbered = options.renumbered || f->for_solvers;
     if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
-        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
+        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* it is not known which edges inside are segments */
     if (f->source.n_triangles >= WORTH_THREADS) {
         options.executor = executor;
         options.n_threads = threads;
@@ -131,7 +131,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
 }
 
-/* --- what the report says, in lines or in JSON */
+/* --- the report as lines or JSON */
 
 static void print_items(const struct tri_check_report *r, bool quiet)
 {
@@ -170,7 +170,7 @@ static void print_summary(const struct settings *s, const struct judged_files *f
     }
 }
 
-/* Points that no triangle uses, which make a solver's matrix singular. 0 without triangles. */
+/* Returns the number of unused points, which make the matrix of a solver singular; 0 without triangles. */
 static int64_t unused_points(const struct judged_files *f, const struct tri_check_report *r)
 {
     return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;
@@ -200,7 +200,7 @@ static void print_json_string(const char *text)
     putchar('"');
 }
 
-/* JSON has no infinities. */
+/* JSON has no infinity. */
 static void print_json_real(const char *key, double value)
 {
     printf(isfinite(value) ? ", \"%s\": %.17g" : ", \"%s\": null", key, value);
@@ -277,7 +277,7 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-/* A whole number from 0 on. */
+/* Reads a whole number >= 0. */
 static bool take_count(const char *text, int64_t *value)
 {
     const char *end = text + strlen(text);
@@ -289,7 +289,7 @@ static bool take_real(const char *text, double *value)
     return words_take_real(text, "", NULL, 0, DBL_MAX, value);
 }
 
-/* Applies an option without value; false: it is none. */
+/* Applies an option without value. Returns false if there is no such option. */
 static bool apply_flag(struct settings *s, int option)
 {
     switch (option) {
@@ -313,7 +313,7 @@ static bool apply_flag(struct settings *s, int option)
     return true;
 }
 
-/* Applies one option; false: not an option, or no value for it. */
+/* Applies one option. Returns false if the option or its value is invalid. */
 static bool apply(void *settings, int option)
 {
     struct settings *s = settings;
@@ -330,7 +330,7 @@ static bool apply(void *settings, int option)
     }
 }
 
-/* 0: go on; < 0: done, with success; > 0: exit code. */
+/* Returns 0 to go on, < 0 if the program is done, > 0: the exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,

@@ -1,15 +1,15 @@
-/* Files that all ranks write together, each the rows that it owns: a sink on each rank, and on rank 0 the files, opened
- * there and committed there. They are byte for byte those of one process. Nothing of them moves between ranks.
+/* Files that all ranks write together. Each rank has a sink and writes the rows that it owns. Rank 0 opens and commits
+ * the files. They have the same bytes as those of one process. No rows move between ranks.
  *
- * WHO WRITES WHAT WHERE. Before the first tile all know how many vertices, triangles and segments each rank owns.
- *   HDF5  Rank 0 lays the file out, and tells all where each array lies (triangle/hdf5/rows.h); a row's place follows
- *         from its number. At the end rank 0 adds what describes the arrays.
- *   text  Lines have different lengths: each rank keeps its own in a file of its scratch folder, until all have told
- *         how many bytes they have; then it copies them behind those of the ranks before it. The first line, whose
- *         numbers are known, and what follows the last rows are rank 0's.
- * What a rank has to write it writes through a descriptor of its own, by the temporary name that rank 0 has given the
- * file. Where not all ranks see that file (triangle/text/output.h), none of them writes: then, as for formats that need
- * the whole mesh, tiles go to rank 0 (sched/ranks/relay.h). */
+ * PLACES. Before the first tile all ranks know how many vertices, triangles and segments each rank owns.
+ *   HDF5  Rank 0 lays out the file, and sends the place of each array to all (triangle/hdf5/rows.h). The place of a row
+ *         follows from its number. At the end rank 0 adds the description of the arrays.
+ *   text  Lines have different lengths. Each rank keeps its lines in a file of its scratch folder until all ranks have
+ *         exchanged their numbers of bytes. Then it copies them after those of the ranks before it. Rank 0 writes the
+ *         first line, whose numbers are known, and the lines after the last row.
+ * Each rank opens the file by the temporary name that rank 0 has chosen, and writes through its own descriptor. If not
+ * all ranks see that file (triangle/text/output.h), tiles go to rank 0 (sched/ranks/relay.h), and only rank 0 writes.
+ * The same holds for formats that need the whole mesh. */
 #ifndef DRIVERS_MESH_JOINT_FILES_H
 #define DRIVERS_MESH_JOINT_FILES_H
 

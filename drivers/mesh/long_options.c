@@ -1,4 +1,4 @@
-/* One table of names; a value is read by the option that asks for it. */
+/* One table lists the names. Each option reads its own value. */
 #include "drivers/mesh/long_options.h"
 
 #include <float.h>
@@ -75,8 +75,8 @@ enum id {
 static const struct kind {
     const char *name;
     enum id id;
-    const char *wanted; /* what a value must be, for errors; NULL: there is none */
-    size_t at;          /* of a flag or a name: where it goes */
+    const char *wanted; /* requirement for a value, for errors; NULL: the option has no value */
+    size_t at;          /* for a flag or a name: offset of the member */
 } kinds[] = {
     {"threads", THREADS, "not a whole number from 1 to 1024", 0},
     {"max-area", MAX_AREA, "not a number > 0", 0},
@@ -112,9 +112,9 @@ static const struct kind *find_kind(const char *name, size_t length)
     return NULL;
 }
 
-/* --- values; false: the text is none, and nothing has changed */
+/* --- values; functions return false, and change nothing, if the text is invalid */
 
-/* A whole number from 1 to most. */
+/* Reads a whole number from 1 to most. */
 static bool take_whole(const char *text, int most, int *value)
 {
     int64_t number;
@@ -162,7 +162,7 @@ int long_options_threads(const struct long_options *options)
 
 /* --- output */
 
-/* One more file of some kind. */
+/* Adds a file of another format. */
 static enum tri_status add_file(const char **names, int *n, const char *value, struct tri_error *error)
 {
     if (*n == LONG_OPTIONS_MOST_EXPORTS)
@@ -172,7 +172,7 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
     return TRI_OK;
 }
 
-/* Is its last part a name that suffixes can go behind? */
+/* Returns true if the last part is a name to which suffixes can be appended. */
 static bool is_base(const char *value)
 {
     const char *last = value + tri_path_folder_length(value);

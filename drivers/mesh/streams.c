@@ -30,7 +30,7 @@ static enum tri_status open_stream(struct stream *s, const char *name, const str
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-/* One of Triangle's files, if it is wanted. */
+/* Opens one of Triangle's files, if requested. */
 static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix)
 {
     if (!mesh_files_has(run, suffix))
