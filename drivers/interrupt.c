@@ -11,7 +11,8 @@
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
  * INVARIANT: while the state is not HELD, all temporary files are listed in `temporaries`. A handler never waits
- * (docs/theory.md, the end by a signal). It calls and reads only what C and triangle/base/system.h allow in a handler. */
+ * (docs/theory.md, the end by a signal). It calls and reads only what C and triangle/base/system.h allow in a
+ * handler. */
 #include "drivers/interrupt.h"
 
 #include <limits.h>

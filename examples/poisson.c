@@ -224,7 +224,7 @@ static PetscErrorCode run(double max_area, PetscBool *right)
     PetscCall(solve(dm, &distance, &n_unknowns));
     PetscCall(DMDestroy(&dm));
     PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &n_ranks));
-    *right = distance < 3 * max_area ? PETSC_TRUE : PETSC_FALSE; /* the error is proportional to the squared edge length */
+    *right = distance < 3 * max_area ? PETSC_TRUE : PETSC_FALSE; /* error ~ squared edge length */
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%d ranks, %" PetscInt_FMT " unknowns, %.3e from the solution: %s\n",
                           (int)n_ranks, n_unknowns, (double)distance, *right ? "good" : "BAD"));
     PetscFunctionReturn(0);
