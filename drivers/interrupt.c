@@ -213,7 +213,7 @@ static void release(void)
         end_now();
 }
 
-/* Publishes the names that a handler must remove, while the state is HELD. */
+/* Publishes the names of temporary files for the handlers, while the state is HELD. */
 static void publish(const struct tri_output_set *set)
 {
     for (int i = 0; i < TRI_MAX_OUTPUTS; i++)

@@ -122,7 +122,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
     return status;
 }
 
-/* Segments of the input that are no edges of the mesh, and whose ends are points, as the last tile. */
+/* Hands out, as the last tile, input segments whose ends are points but which are no edges of the mesh. */
 static enum tri_status take_loose(struct streams *streams, struct tri_error *error)
 {
     const struct run *run = streams->run;

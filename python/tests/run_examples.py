@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def examples(text):
-    """(number of the first line, code) of each block that says it is Python."""
+    """Returns (number of the first line, code) of each block marked as Python."""
     for block in re.finditer(r"^```python\n(.*?)^```$", text, re.M | re.S):
         yield text.count("\n", 0, block.start(1)) + 1, block.group(1)
 
