@@ -1,10 +1,10 @@
-# The executables, from drivers/, and the examples. They link the static libraries, whose inside they know.
+# The executables, from drivers/, and the examples. They link the static libraries and use their internal functions.
 if(WIN32)
     enable_language(RC)
 endif()
 
-# HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at
-# least 1.10.5, which writes chunks directly and tells where they lie; and zlib, which it needs itself.
+# HDF5, which ptriangle writes, and trianglecheck and meshplot read. It is optional. Required are the serial C library,
+# at least 1.10.5, which writes chunks directly and returns their place, and zlib, which HDF5 needs itself.
 find_package(ZLIB)
 include(CheckCSourceCompiles)
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
@@ -34,9 +34,9 @@ else()
     add_library(libtrihdf5 ALIAS libtrinohdf5)
 endif()
 
-# MPI and HDF5 are loaded when they are needed (drivers/start.h), where a module can be, and lies at the same place
-# seen from the program in this folder and where it is installed. Not with sanitizers: LeakSanitizer stumbles at the end
-# over the threads' storage of what has been loaded.
+# MPI and HDF5 are loaded only if they are needed (drivers/start.h). This requires modules, and the same relative path
+# from program to module in the build folder and after installation. It is disabled with sanitizers, because
+# LeakSanitizer fails on thread-local storage of loaded modules.
 option(PTRIANGLE_MODULES "Programs load MPI and HDF5 when they are needed, by modules, where these can be loaded" ON)
 file(RELATIVE_PATH PTRIANGLE_MODULE_DIR /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR}/ptriangle)
 set(PTRIANGLE_USE_MODULES OFF)
@@ -71,8 +71,7 @@ function(ptriangle_program name)
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_EXECUTABLES ${name})
 endfunction()
 
-# A program that may need MPI or HDF5: the objects <name>_parts; the executable; and, where modules are used,
-# <name>_module.
+# A program that may need MPI or HDF5: the objects <name>_parts, the executable, and <name>_module if modules are used.
 # Sources are added to the parts, libraries by ptriangle_link_parts.
 function(ptriangle_program_of_parts name)
     ptriangle_program(${name} SOURCES drivers/start.c $<TARGET_OBJECTS:${name}_parts>)
@@ -115,7 +114,7 @@ set_target_properties(judged PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_link_libraries(judged PUBLIC libtritext libtriangle)
 ptriangle_flags(judged STRICT)
 
-# The judge, on all cores.
+# trianglecheck, on all cores.
 ptriangle_program_of_parts(trianglecheck judged libtricheck)
 target_sources(trianglecheck_parts PRIVATE ${PTRIANGLE_JUDGE_SOURCES})
 ptriangle_link_parts(trianglecheck ptriangle_threads)
@@ -126,7 +125,7 @@ foreach(name IN LISTS PTRIANGLE_EXAMPLES)
     ptriangle_flags(${name} STRICT)
 endforeach()
 
-# PETSc of the same MPI, which its headers look for themselves.
+# PETSc for the same MPI; its headers include those of MPI.
 find_package(PkgConfig QUIET)
 if(TARGET libptriangle-mpi AND PKG_CONFIG_FOUND)
     pkg_search_module(PETSC QUIET IMPORTED_TARGET PETSc petsc)
@@ -145,7 +144,7 @@ if(PTRIANGLE_PETSC)
     endforeach()
 endif()
 
-# The report of a parallel run is written with jansson; without, everything else is built.
+# jansson writes the report of a parallel run. It is optional.
 find_path(JANSSON_INCLUDE jansson.h)
 find_library(JANSSON_LIBRARY jansson)
 if(NOT (JANSSON_INCLUDE AND JANSSON_LIBRARY))
@@ -182,7 +181,7 @@ foreach(name IN LISTS PTRIANGLE_RUN_PROGRAMS)
     endif()
 endforeach()
 
-# meshplot draws with cairo; without, everything else is built.
+# meshplot draws with cairo. It is optional.
 find_path(CAIRO_INCLUDE cairo.h PATH_SUFFIXES cairo)
 find_library(CAIRO_LIBRARY cairo)
 if(CAIRO_INCLUDE AND CAIRO_LIBRARY)

@@ -1,6 +1,6 @@
-# What the Python package (python/) carries: one shared library, with everything in one, and the programs. All have the
-# C++ runtime inside, so that a wheel needs neither a compiler nor packages of the system; but for meshplot, which needs
-# libcairo. The target python_package builds all.
+# The binaries of the Python package (python/): one shared library with all functions, and the programs. All contain the
+# C++ runtime, so a wheel needs neither a compiler nor system packages, except that meshplot needs libcairo. The target
+# python_package builds everything.
 set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
 list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
 list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
@@ -22,7 +22,7 @@ else()
     check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
     check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: exports.map names MPI's, too
     target_link_options(libptriangle_python PRIVATE
-        # the path as a word of its own: in LINKER: a comma would end it
+        # a separate argument, because in LINKER: a comma would end the path
         "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
         $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
         $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)

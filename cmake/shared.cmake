@@ -1,8 +1,8 @@
-# Shared libraries for clients. Each consists of objects of its own and lets nothing out but the functions that
-# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what
-# it needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
+# Shared libraries for clients. Each has its own objects and exports only the functions in cmake/exports.map. So
+# libptriangle contains libtriangle, whose internal functions it uses, and libtritext contains the parts that it needs.
+# A client links libtriangle or libptriangle, and libtritext if it reads or writes files.
 
-# On Windows there is one, with everything inside, its import library, and the list of its functions for other linkers.
+# On Windows there is one DLL with all functions, its import library, and the list of its functions for other linkers.
 if(WIN32)
     set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
     if(TARGET libptriangle)
@@ -38,7 +38,7 @@ function(ptriangle_shared name)
         LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
     target_link_options(${target} PRIVATE
-        # the path as a word of its own: in LINKER: a comma would end it
+        # a separate argument, because in LINKER: a comma would end the path
         "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
         LINKER:-Bsymbolic-functions LINKER:-z,defs)
     set_target_properties(lib${name} PROPERTIES EXCLUDE_FROM_ALL ON)
