@@ -63,7 +63,7 @@ struct par_carrier {
     const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the fraction share[p] to
                                 share[p + 1] of the odd columns; NULL: equal parts */
     bool ended;              /* the ranks have agreed on an error; later calls send nothing */
-    bool lost;               /* the network failed on this rank: others may still wait for it, so the caller must end them */
+    bool lost;               /* the network failed on this rank; others may still wait, so the caller must end them */
     enum tri_status status;  /* the agreed error, or TRI_OK */
     struct par_traffic traffic[PAR_MOVES];
     double seconds_waiting;  /* spent in agreements, waiting for other ranks */
@@ -99,8 +99,8 @@ enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error);
 
-/* Collective: an agreement, then returns TRI_BAD_INPUT with the message `words` on all ranks unless `number` is the same
- * on all of them. */
+/* Collective: an agreement, then returns TRI_BAD_INPUT with the message `words` on all ranks unless `number` is the
+ * same on all of them. */
 enum tri_status par_expect_same(struct par_carrier *carrier, uint64_t number, const char *words, enum tri_status status,
                                 struct tri_error *error);
 

@@ -68,7 +68,7 @@ static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error
     return status;
 }
 
-/* Ranks > 0: takes part in steps until it is this rank's turn, then sends all buffered tiles. Each step is collective. */
+/* Ranks > 0: takes part in steps until it is this rank's turn, then sends all buffered tiles. Steps are collective. */
 static enum tri_status send_all(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
