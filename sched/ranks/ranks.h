@@ -134,8 +134,8 @@ bool par_messages_tell(const struct par_ranks *ranks, struct par_talk *talk, str
 bool par_messages_send(struct par_ranks *ranks, const struct par_talk *talk, struct par_message *message);
 void par_messages_free(const struct par_ranks *ranks, struct par_message *message);
 
-/* Applies a message to the mesh and adds its contents to the talk. is_borrowed: some of them may be in the mesh already,
- * because several ranks lend the same straddlers. */
+/* Applies a message to the mesh and adds its contents to the talk. is_borrowed: some of them may be in the mesh
+ * already, because several ranks lend the same straddlers. */
 enum tri_status par_paste(struct par_ranks *ranks, struct par_talk *talk, const struct par_message *message,
                           bool is_borrowed, struct tri_error *error);
 
