@@ -79,7 +79,7 @@ enum tri_status par_ranks_hand_out(struct par_run *run, enum tri_status status, 
 /* Frees run->ranks. True: it existed, and the mesh must not be used any more. */
 bool par_ranks_end(struct par_run *run);
 
-/* Gets this rank's counters since par_ranks_begin; adds the counters of other ranks to its report. */
+/* Gets this rank's counters since par_ranks_begin; adds such counters to this rank's report. */
 void par_count_done(const struct par_ranks *ranks, int64_t done[PAR_DONE]);
 void par_add_done(struct par_ranks *ranks, const int64_t done[PAR_DONE]);
 
@@ -148,7 +148,8 @@ bool par_index_straddlers(struct par_ranks *ranks);
 /* Merges a message's entries into the worklist. False: no memory. */
 bool par_merge_entries(struct par_run *run, const struct par_message *message, const struct par_talk *talk);
 
-/* Removes a triangle, or a subsegment without triangles. Links to it become TRI_BEYOND. */
+/* Removes a triangle, whose neighbours' links become TRI_BEYOND, or a subsegment without triangles. False: no
+ * memory. */
 bool par_remove_triangle(struct par_run *run, tri_triangle_id t);
 bool par_remove_sub(struct par_run *run, tri_sub_id s);
 

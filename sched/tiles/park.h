@@ -35,8 +35,8 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
 /* Returns the largest use of disk so far in bytes; 0: the mesh never left memory. */
 int64_t par_park_bytes(const struct par_park *park);
 
-/* Removes the files and the arrays in them. Afterwards the mesh may only be freed. mesh NULL: it was freed already. park
- * NULL: does nothing. */
+/* Removes the files and the arrays in them. Afterwards the mesh may only be freed. mesh NULL: it was freed already.
+ * park NULL: does nothing. */
 void par_park_close(struct par_park *park, struct tri_mesh *mesh);
 
 #endif

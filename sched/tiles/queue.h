@@ -25,11 +25,11 @@ struct par_queue {
     struct tri_error error;
 };
 
-/* Starts the second thread. *queue must not move in memory afterwards. False: no memory. */
+/* Initialises a queue. *queue must not move in memory afterwards. False: no memory. */
 bool par_queue_begin(struct par_queue *queue, const struct tri_sink *to, int64_t most_bytes);
 
-/* Returns the queue's sink, valid as long as the queue. It returns TRI_NO_MEMORY or the status of `to`. A second call of
- * `begin` is passed on as well. */
+/* Returns the queue's sink, valid as long as the queue. Its functions return TRI_NO_MEMORY or the status of `to`. Its
+ * `begin` starts the second thread; a second call of `begin` is passed on as well. */
 struct tri_sink par_queue_sink(struct par_queue *queue);
 
 /* Ends the thread. Queued tiles are dropped. */
