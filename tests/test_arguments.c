@@ -74,7 +74,7 @@ static void test_words(void **state)
     arguments_free(&a);
 }
 
-/* A second file is an error, which says how numbers are written. */
+/* A second file is an error. The message says how numbers are written. */
 static void test_words_too_many(void **state)
 {
     (void)state;
