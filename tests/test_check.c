@@ -991,10 +991,9 @@ static void markers_at_forks(void **state)
     (void)state;
     begin_lens(true);
     expect_good();
-    trial.markers[1] = 5, trial.markers[2] = 5; /* the long one is over one vertex */
+    trial.markers[1] = 5, trial.markers[2] = 5; /* on one way */
     expect_good();
-    trial.markers[1] = 3, trial.markers[2] = 0, trial.markers[3] = 5, trial.markers[4] = 5; /* the long one is over the
-                                                                                             * other */
+    trial.markers[1] = 3, trial.markers[2] = 0, trial.markers[3] = 5, trial.markers[4] = 5; /* on the other way */
     expect_good();
     trial.markers[3] = 6; /* the marker of no input segment */
     expect(TRI_CHECK_MARKERS, 1, -1);

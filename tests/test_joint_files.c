@@ -1,5 +1,5 @@
-/* Files that ranks write together, which here are threads: byte for byte those of one process; nobody writes where one
- * does not see them; and a write that fails on one rank fails on all. */
+/* Files written jointly by ranks, which are threads here. They have the same bytes as those of one process. If a rank
+ * does not see the same file, no rank writes. A failed write on one rank fails on all ranks. */
 #include "fake_ranks.h"
 #include "full.h"
 #include "support.h"
@@ -17,14 +17,14 @@ static const struct trial trials[] = {
     {"section.poly", 28, 20000, 400, false, true, 0},
     {"square_random1000.poly", 20, 20000, 700, false, false, 0},
     {"letter.poly", 30, 20000, 500, false, false, 1},
-    {"section.poly", 35, 10000, 500, true, true, 0}, /* rank 0 owns all */
+    {"section.poly", 35, 10000, 500, true, true, 0}, /* rank 0 owns all tiles */
 };
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 6, FILES = 5 };
 
 static const char *const names[FILES] = {"x.node", "x.ele", "x.poly", "x.h5", "x.xdmf"};
 
-/* What happens to a rank. */
+/* Faults of one rank. */
 enum mishap { NONE, SEES_ANOTHER_FILE, CANNOT_WRITE };
 
 /* --- the files of rank 0 */
@@ -70,7 +70,7 @@ struct member {
     struct par_options options;
     struct par_carrier carrier;
     struct tri_mesh mesh;
-    struct opened opened; /* of rank 0 */
+    struct opened opened; /* copied from rank 0 */
     enum mishap mishap;
     bool together;
     enum tri_status status;
@@ -82,7 +82,7 @@ static struct tri_text_options text_options(const struct member *m)
     return (struct tri_text_options){.base = 1, .markers = true, .figure = &m->start->pslg};
 }
 
-/* What a rank has that is on a machine of its own, where a file of that name is another one. */
+/* Simulates a rank on another machine, where the same name is another file. */
 static bool spread_of_another(void *self, void *bytes, size_t n)
 {
     struct par_carrier carrier = fake_carrier(((struct fake_rank *)self)->world, ((struct fake_rank *)self)->self);
@@ -103,7 +103,7 @@ static void refine_to(struct member *m, const struct tri_sink *sink)
     par_report_free(&report);
 }
 
-/* From now on it may only be read. */
+/* Makes the file read-only. */
 static void lose_permission(struct joint_files *joint)
 {
     const int file = open(joint->ticket[2].temporary, O_RDONLY);
@@ -150,7 +150,7 @@ static struct par_options small_blocks(const struct trial *trial)
     return options;
 }
 
-/* unlucky: to whom something happens. */
+/* unlucky: the rank with the fault. */
 static void run_ranks(struct member *member, const struct trial *trial, const struct start *start, int n_ranks,
                       int unlucky, enum mishap mishap)
 {
