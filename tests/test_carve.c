@@ -478,8 +478,7 @@ static void test_boxes(void **state)
     support_add_segment(&pslg, 0, 4); /* a segment that leads across to the hole and into it */
     support_add_segment(&pslg, 0, 8);
     assert_true(area_left(&pslg, false) == 53);
-    assert_true(area_left(&pslg, true) == 53 + 4); /* the hull is a ring, so the pocket at the neighbour's corner
-                                                    * stays */
+    assert_true(area_left(&pslg, true) == 53 + 4); /* the hull is a ring: the pocket at the corner stays */
     add_box(&pslg, 2, 2, 1, 1); /* the island again: a ring given twice does not count */
     assert_true(area_left(&pslg, false) == 52);
     tri_pslg_free(&pslg);

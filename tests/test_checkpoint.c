@@ -452,13 +452,11 @@ static const struct way ways[] = {
     {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0},
     {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED, 0}, /* two schedules */
     {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED, 0}, /* swept at first */
-    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* a bound beyond the
-                                                                                              * schedule */
-    {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 400}, /* blocks have to
-                                                                                                   * wait */
+    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* no schedule for this bound */
+    {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 400}, /* blocks wait */
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
     {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
-    {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* blocks have to wait */
+    {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* blocks wait */
     {{"section.poly", 25, -9000, 500, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
     {{"letter.poly", 25, -9000, 300, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0},
 };
@@ -549,8 +547,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
         open_it(&c, rounds > 0);
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
-        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* the coarse mesh is made again, which is
-                                                                       * reported */
+        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* making it again is reported */
         r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)

@@ -23,7 +23,8 @@ static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg 
         assert_int_equal(count[k], 0);
 }
 
-/* n segments from the middle of a square, with angles between 1e-5 and 1 degrees. */
+/* n segments from the middle of a square. Each is turned from the previous one by an angle with a tangent between 1e-5
+ * and 1. */
 static struct tri_pslg needles(int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};

@@ -110,7 +110,7 @@ static void *no_extra(void *user, size_t bytes)
     return NULL;
 }
 
-/* There may be too few group numbers, not only too little memory. */
+/* Storage may fail for other reasons than memory, such as too many open files. The message gives the reason. */
 static void test_no_room_to_group(void **state)
 {
     (void)state;

@@ -140,8 +140,8 @@ static double length_of(const struct tri_point *xy, const int32_t *order, int32_
     return length;
 }
 
-/* A coarser curve has fewer cells. It depends on the order of the ids less than on places, and is nearly as short.
- * Dense corners have a curve of their own. */
+/* The coarse order does not depend on the order of the ids, and its curve is nearly as short although it has fewer
+ * cells. Dense corners have a curve of their own. */
 static void test_coarse_order(void **state)
 {
     (void)state;

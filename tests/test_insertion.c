@@ -103,8 +103,7 @@ static int32_t insert_stretch(struct trial *t, struct tri_range stretch, int32_t
             if (done == TRI_NOT_OWNED)
                 assert_memory_equal(&t->tri[i], &before[i], sizeof before[i]);
             else if (memcmp(t->tri[i].v, before[i].v, sizeof before[i].v) != 0)
-                assert_true(tri_inserter_owns(&inserter, &t->tri[i])); /* and the stretch owned it before, or it was
-                                                                        * free */
+                assert_true(tri_inserter_owns(&inserter, &t->tri[i])); /* and it was owned before, or free */
         }
     }
     free(before);

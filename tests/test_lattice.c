@@ -121,8 +121,7 @@ static void test_corners_too_near(void **state)
     const struct tri_point large[3] = {lattice_point(edge, 0, 0), lattice_point(edge, 2, 0), lattice_point(edge, 1, 2)};
     struct tri_point p;
     assert_true(chosen(small, bound, &p) == 0); /* its corners are the nearest lattice points */
-    assert_true(chosen(large, bound, &p) > 0);  /* the middle of its longest edge, or another point at the same
-                                                 * distance */
+    assert_true(chosen(large, bound, &p) > 0);  /* the middle of its longest edge, or as far away */
     for (int k = 0; k < 2; k++) {
         const double away = TRI_LATTICE_APART + (k == 0 ? -1e-3 : 1e-3);
         const struct tri_point centre = lattice_point(edge, 3, 5);

@@ -52,8 +52,7 @@ static void judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, cons
     support_judge(mesh, pslg, &check, options->quality.region_areas, NULL);
 }
 
-/* Number of bad triangles with a reason. Segments that meet at a small angle in a fence may keep refinement from
- * improving triangles. */
+/* Number of bad triangles, for any reason. If segments meet at small angles inside a fence, some may stay bad. */
 static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *options,
                          const struct tri_refine_report *report)
 {

@@ -54,7 +54,7 @@ static double distance(struct tri_point a, struct tri_point b, struct tri_point 
     return hypot(p.x - a.x - t * x, p.y - a.y - t * y);
 }
 
-/* Random segments, points on them, and n_equal copies of the last segment. */
+/* Random segments, some of length 0, and n_equal copies of the last one. */
 static void check_items(int32_t n, int32_t n_equal, double length, double growth, bool same, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -91,7 +91,7 @@ static void check_items(int32_t n, int32_t n_equal, double length, double growth
     }
     print_message("  %d items: %.4f exact, else within %.4f, %d numbers in lists\n", near.n, (double)exact / all, worst,
                   near.candidates.n);
-    
+
     tri_near_clear(&near);
 }
 
@@ -378,8 +378,7 @@ static void check_background(int32_t n, double gaps, double gradation, enum supp
         assert_true(h > 0.0099 && h < 0.3001 && (isnan(value[v]) || h < value[v] * (1 + 1e-6)));
     }
     print_message("  %d triangles: %g\n", n_triangles, worst);
-    assert_true(worst < 0.01 || kind == SUPPORT_NEAR_LINE); /* if triangles are nearly flat, any edge may be the
-                                                             * nearest */
+    assert_true(worst < 0.01 || kind == SUPPORT_NEAR_LINE); /* nearly flat: any edge may be nearest */
     tri_lengths_free(lengths);
     free(at);
     free(value);

@@ -18,8 +18,7 @@ static inline void tri_heap_swap(int32_t *a, int32_t *b)
 
 static inline void tri_heap_sort(int32_t *item, int32_t n, tri_before *before, const void *context)
 {
-    for (int32_t heap = n, root = n / 2; heap > 1;) { /* builds the heap, then removes its greatest item again and
-                                                       * again */
+    for (int32_t heap = n, root = n / 2; heap > 1;) { /* builds the heap, then removes its maximum each time */
         if (root > 0)
             root--;
         else

@@ -177,8 +177,7 @@ int tri_file_reserve(tri_file file, uint64_t from, uint64_t size);
 /* Maps the first `size` bytes of the file, to read and write; NULL and errno on failure. */
 void *tri_file_map(tri_file file, size_t size);
 void tri_file_unmap(void *at, size_t size);
-void tri_file_release_pages(void *at, size_t size); /* lets the system remove the pages from memory; the bytes stay in
-                                                     * the file */
+void tri_file_release_pages(void *at, size_t size); /* the pages may leave memory; the bytes stay in the file */
 
 /* An array in a scratch file that is mapped into memory, so that it may be larger than memory. */
 struct tri_mapped_file {
@@ -261,8 +260,7 @@ struct tri_monitor *tri_monitor_new(void); /* NULL: no memory */
 void tri_monitor_free(struct tri_monitor *monitor); /* accepts NULL */
 void tri_monitor_enter(struct tri_monitor *monitor);
 void tri_monitor_leave(struct tri_monitor *monitor);
-void tri_monitor_wait(struct tri_monitor *monitor);   /* between enter and leave: unlocks, waits for tri_monitor_wake,
-                                                       * locks again */
+void tri_monitor_wait(struct tri_monitor *monitor);   /* in the lock: unlocks, waits to be woken, locks again */
 void tri_monitor_wake(struct tri_monitor *monitor);   /* wakes all waiting threads */
 
 /* --- processes and hosts */

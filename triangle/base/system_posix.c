@@ -45,8 +45,7 @@ tri_file tri_file_open(const char *path, enum tri_opening opening)
 
 bool tri_file_close(tri_file file)
 {
-    return file == TRI_NO_FILE || close((int)file) == 0 || errno == EINTR; /* EINTR: the file has been closed
-                                                                            * nevertheless */
+    return file == TRI_NO_FILE || close((int)file) == 0 || errno == EINTR; /* after EINTR it is closed, too */
 }
 
 /* Closes a file that must not be used and sets errno to `why`. */
@@ -254,8 +253,7 @@ tri_file tri_scratch_file(const char *folder)
     if (file >= 0)
         return file;
 #endif
-    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* used if the system or file system has no
-                                                                       * nameless files */
+    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* works on any file system */
     const tri_file made = path ? make_nameless(path) : TRI_NO_FILE;
     const int fault = errno;
     free(path);
@@ -364,8 +362,7 @@ tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_open
         return TRI_NO_FILE;
     if (fstat(file, &at) != 0)
         return refuse(file, errno);
-    const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* another name may have been linked by another
-                                                                          * user */
+    const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* another user may have made a link */
     return S_ISREG(at.st_mode) && at.st_uid == geteuid() && alone ? file : refuse(file, EPERM);
 }
 

@@ -159,8 +159,7 @@ void tri_memory_share_heap(void)
 
 double tri_memory_of_stacks(int threads)
 {
-    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* the first is the default of glibc on most
-                                                                          * processors */
+    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* 2 MB is the default of glibc */
     const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
     return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : unlimited);
 }
