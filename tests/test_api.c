@@ -103,7 +103,7 @@ static double area_of(struct tri_reals xy, const int32_t *v)
     return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
 }
 
-static void test_a_mesh_keeps_what_was_asked(void **state)
+static void test_a_mesh_satisfies_its_settings(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -155,7 +155,7 @@ static void test_neighbors_and_edges(void **state)
     tri_mesh_delete(mesh);
 }
 
-static void test_points_alone(void **state)
+static void test_points_without_segments(void **state)
 {
     (void)state;
     struct tri_figure figure = tri_no_figure();
@@ -223,7 +223,7 @@ static void test_a_mesh_as_figure(void **state)
 }
 
 /* Coordinates far beyond the range of the predicates. Regions with area bounds must also work in refinement. */
-static void test_any_unit(void **state)
+static void test_coordinates_of_any_magnitude(void **state)
 {
     (void)state;
     double large[10][2], there[2] = {ldexp(1.5, 700), ldexp(1.5, 700)};
@@ -291,7 +291,7 @@ static void test_placement(void **state)
     }
 }
 
-static void test_placement_in_a_mesh_that_is_given(void **state)
+static void test_placement_in_a_given_mesh(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -349,7 +349,7 @@ static double same_everywhere(void *user, const double at[2])
     return *(const double *)user;
 }
 
-static void test_edge_lengths_without_meaning(void **state)
+static void test_invalid_edge_lengths_are_refused(void **state)
 {
     (void)state;
     double odd[] = {0, -0.01, NAN, INFINITY, -INFINITY};
@@ -447,7 +447,7 @@ static void test_lengths_that_vary_wildly(void **state)
 }
 
 /* The mesh is the same whether one thread or several evaluate the size. */
-static void test_one_mesh_for_one_size(void **state)
+static void test_threads_do_not_change_a_mesh_with_sizes(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -476,7 +476,7 @@ static double length_to_two(void *user, const double at[2])
 
 static void keep_note(void *user, const char *notes) { snprintf(user, 600, "%s", notes); }
 
-static void test_place_of_an_odd_length(void **state)
+static void test_error_names_the_place_of_an_invalid_length(void **state)
 {
     (void)state;
     char note[600] = "";
@@ -587,7 +587,7 @@ static void test_too_large_leaves_no_mesh(void **state)
     assert_null(mesh);
 }
 
-static void test_input_that_is_not_finite(void **state)
+static void test_input_that_is_not_finite_is_refused(void **state)
 {
     (void)state;
     const double odd[] = {NAN, INFINITY, -INFINITY};
@@ -673,7 +673,7 @@ static struct tri_figure scattered(int n)
 
 /* Triangles that violate bounds of the judgement that were not bounds of a refinement count as deferred. Bounds of the
  * last refinement have other reasons. */
-static void test_bounds_that_were_not_asked_for_are_deferred(void **state)
+static void test_bounds_not_in_the_settings_are_deferred(void **state)
 {
     (void)state;
     const struct tri_figure figure = scattered(500);
@@ -809,7 +809,7 @@ static void assert_refused(const struct tri_figure *figure, const struct tri_set
     assert_true(!mesh && error.status == TRI_BAD_INPUT && error.text[0]);
 }
 
-static void test_figures_without_meaning(void **state)
+static void test_invalid_figures_are_refused(void **state)
 {
     (void)state;
     struct tri_figure figures[10];
@@ -830,7 +830,7 @@ static void test_figures_without_meaning(void **state)
     assert_refused(NULL, NULL);
 }
 
-static void test_settings_without_meaning(void **state)
+static void test_invalid_settings_are_refused(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -1035,33 +1035,33 @@ static void test_version(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_mesh_keeps_what_was_asked),
+        cmocka_unit_test(test_a_mesh_satisfies_its_settings),
         cmocka_unit_test(test_neighbors_and_edges),
-        cmocka_unit_test(test_points_alone),
+        cmocka_unit_test(test_points_without_segments),
         cmocka_unit_test(test_strides_and_attributes),
         cmocka_unit_test(test_a_mesh_as_figure),
-        cmocka_unit_test(test_any_unit),
+        cmocka_unit_test(test_coordinates_of_any_magnitude),
         cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_placement),
-        cmocka_unit_test(test_placement_in_a_mesh_that_is_given),
+        cmocka_unit_test(test_placement_in_a_given_mesh),
         cmocka_unit_test(test_edge_length),
-        cmocka_unit_test(test_edge_lengths_without_meaning),
+        cmocka_unit_test(test_invalid_edge_lengths_are_refused),
         cmocka_unit_test(test_lengths_that_are_too_small),
         cmocka_unit_test(test_lengths_that_vary_wildly),
-        cmocka_unit_test(test_one_mesh_for_one_size),
-        cmocka_unit_test(test_place_of_an_odd_length),
+        cmocka_unit_test(test_threads_do_not_change_a_mesh_with_sizes),
+        cmocka_unit_test(test_error_names_the_place_of_an_invalid_length),
         cmocka_unit_test(test_notes_of_an_empty_mesh),
         cmocka_unit_test(test_notes_of_skipped_segments),
         cmocka_unit_test(test_note_of_a_lowered_angle),
         cmocka_unit_test(test_too_large_leaves_no_mesh),
-        cmocka_unit_test(test_input_that_is_not_finite),
+        cmocka_unit_test(test_input_that_is_not_finite_is_refused),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_bounds_that_were_not_asked_for_are_deferred),
+        cmocka_unit_test(test_bounds_not_in_the_settings_are_deferred),
         cmocka_unit_test(test_progress),
         cmocka_unit_test(test_progress_of_angles),
-        cmocka_unit_test(test_figures_without_meaning),
-        cmocka_unit_test(test_settings_without_meaning),
+        cmocka_unit_test(test_invalid_figures_are_refused),
+        cmocka_unit_test(test_invalid_settings_are_refused),
         cmocka_unit_test(test_headers_of_other_versions),
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_threads),

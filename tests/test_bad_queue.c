@@ -116,7 +116,7 @@ static void test_sizes_beyond_the_window(void **state)
 }
 
 /* The window keeps recent entries. When it overflows, the older half waits until all other entries are served. */
-static void test_older_half_is_spilt(void **state)
+static void test_a_full_window_moves_its_older_half(void **state)
 {
     (void)state;
     struct tri_bad_queue queue = {0};
@@ -133,7 +133,7 @@ static void test_older_half_is_spilt(void **state)
 
 /* An entry for size whose triangle has changed when its batch is filtered is dropped. Triangles that are not bad are
  * not queued. The order of the other entries stays. */
-static void test_only_what_is_up_to_date(void **state)
+static void test_outdated_entries_are_dropped(void **state)
 {
     (void)state;
     enum { N = 1000 };
@@ -174,8 +174,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_equals_naive_twin, set_up),
         cmocka_unit_test_setup(test_sizes_beyond_the_window, set_up),
-        cmocka_unit_test_setup(test_older_half_is_spilt, set_up),
-        cmocka_unit_test_setup(test_only_what_is_up_to_date, set_up),
+        cmocka_unit_test_setup(test_a_full_window_moves_its_older_half, set_up),
+        cmocka_unit_test_setup(test_outdated_entries_are_dropped, set_up),
         cmocka_unit_test_setup(test_worklist_is_reused, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

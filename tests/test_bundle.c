@@ -44,7 +44,7 @@ static void go_to_and_fro(double slope)
     assert_short_work(&pslg, N);
 }
 
-static void test_paths_to_and_fro_are_short_work(void **state)
+static void test_paths_to_and_fro_take_little_work(void **state)
 {
     (void)state;
     go_to_and_fro(1 / 3.0);
@@ -52,7 +52,7 @@ static void test_paths_to_and_fro_are_short_work(void **state)
 }
 
 /* Segments from one end to all other points, the shortest first. */
-static void test_rays_along_a_line_are_short_work(void **state)
+static void test_rays_along_a_line_take_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -64,7 +64,7 @@ static void test_rays_along_a_line_are_short_work(void **state)
 
 /* One segment whose far end lies one ulp off the line of all other points. The point nearest to the segment is always
  * the first. */
-static void test_a_side_an_ulp_off_is_short_work(void **state)
+static void test_a_side_an_ulp_off_takes_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -80,9 +80,9 @@ static void test_a_side_an_ulp_off_is_short_work(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_paths_to_and_fro_are_short_work),
-        cmocka_unit_test(test_rays_along_a_line_are_short_work),
-        cmocka_unit_test(test_a_side_an_ulp_off_is_short_work),
+        cmocka_unit_test(test_paths_to_and_fro_take_little_work),
+        cmocka_unit_test(test_rays_along_a_line_take_little_work),
+        cmocka_unit_test(test_a_side_an_ulp_off_takes_little_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,7 +54,7 @@ static void shuffle(struct par_ids *list)
     }
 }
 
-static void test_the_order_it_comes_in_does_not_count(void **state)
+static void test_initial_order_does_not_matter(void **state)
 {
     (void)state;
     struct world w, other;
@@ -74,7 +74,7 @@ static void test_the_order_it_comes_in_does_not_count(void **state)
 }
 
 /* A rank that has some of the tiles finds their triangles with the same keys as a rank that has all tiles. */
-static void test_parts_make_the_whole(void **state)
+static void test_parts_get_the_keys_of_the_whole(void **state)
 {
     (void)state;
     struct world w;
@@ -122,8 +122,8 @@ static void test_equal_centres(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_order_it_comes_in_does_not_count),
-        cmocka_unit_test(test_parts_make_the_whole),
+        cmocka_unit_test(test_initial_order_does_not_matter),
+        cmocka_unit_test(test_parts_get_the_keys_of_the_whole),
         cmocka_unit_test(test_equal_centres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -205,7 +205,7 @@ static void test_encroached_subsegments_are_walls(void **state)
     tri_cavity_free(&cavity);
 }
 
-static void test_split_keeps_everything(void **state)
+static void test_split_keeps_links_markers_and_parents(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
@@ -249,7 +249,7 @@ static void test_split_keeps_everything(void **state)
 }
 
 /* If halving does not round, a split mesh is exactly constrained Delaunay. */
-static void test_split_is_delaunay_where_nothing_rounds(void **state)
+static void test_split_is_delaunay_without_rounding(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
@@ -286,7 +286,7 @@ static bool owned(const struct tri_mesh *mesh, const struct tri_fence *f, int32_
     return true;
 }
 
-static void test_fence_stops_exactly_what_it_does_not_own(void **state)
+static void test_fence_stops_exactly_searches_that_leave_it(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
@@ -358,9 +358,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_search_equals_flood_and_fill_is_delaunay),
         cmocka_unit_test(test_encroached_subsegments_are_walls),
-        cmocka_unit_test(test_split_keeps_everything),
-        cmocka_unit_test(test_split_is_delaunay_where_nothing_rounds),
-        cmocka_unit_test(test_fence_stops_exactly_what_it_does_not_own),
+        cmocka_unit_test(test_split_keeps_links_markers_and_parents),
+        cmocka_unit_test(test_split_is_delaunay_without_rounding),
+        cmocka_unit_test(test_fence_stops_exactly_searches_that_leave_it),
         cmocka_unit_test(test_a_vertex_is_refused),
         cmocka_unit_test(test_a_point_out_of_range_is_outside),
     };

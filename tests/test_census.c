@@ -31,7 +31,7 @@ static void assert_finds_among(const struct tri_mesh *mesh)
 
 /* Bad triangles are found independently of each other: any division into ranges finds the same, as the criterion
  * defines them. */
-static void test_find_work(void **state)
+static void test_bad_triangles_are_found(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults(), asked = support_quality(30, 0.01);
@@ -83,7 +83,7 @@ static void test_count_bad(void **state)
 }
 
 /* The reasons are those in the report of the run. */
-static void test_excuses(void **state)
+static void test_reasons_match_the_report(void **state)
 {
     (void)state;
     struct tri_options options = support_quality(30, 0.005);
@@ -156,7 +156,7 @@ static void test_encroached(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_find_work),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_excuses),
+        cmocka_unit_test(test_bad_triangles_are_found),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_reasons_match_the_report),
         cmocka_unit_test(test_encroached), cmocka_unit_test(test_settle_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -76,7 +76,7 @@ static void test_sides_of_a_square(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_markers_part_a_line(void **state)
+static void test_a_new_marker_ends_a_chain(void **state)
 {
     (void)state;
     const int32_t parts[4] = {8, 1, 1, 1};
@@ -93,7 +93,7 @@ static void test_markers_part_a_line(void **state)
 }
 
 /* A chain ends at a vertex with a third subsegment, even if it would continue straight. */
-static void test_forks_part_a_line(void **state)
+static void test_forks_end_a_chain(void **state)
 {
     (void)state;
     const int32_t parts[4] = {8, 8, 1, 1};
@@ -171,8 +171,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sides_of_a_square),
-        cmocka_unit_test(test_markers_part_a_line),
-        cmocka_unit_test(test_forks_part_a_line),
+        cmocka_unit_test(test_a_new_marker_ends_a_chain),
+        cmocka_unit_test(test_forks_end_a_chain),
         cmocka_unit_test(test_curves_stay_in_pieces),
         cmocka_unit_test(test_corners_without_angle),
     };

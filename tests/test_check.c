@@ -1095,7 +1095,7 @@ static void begin_grazed(double depth)
     trial.input.segments[2 * last + 1] = 5;
 }
 
-static void what_is_missing_beside_the_boundary(void **state)
+static void missing_segment_near_the_boundary(void **state)
 {
     (void)state;
     begin_grazed(0x1p-50);
@@ -1195,7 +1195,7 @@ static void broken_angles(void **state)
 }
 
 /* Equilateral triangles, rotated by any angle, satisfy the bound regardless of rounding. */
-static void bounds_are_met_but_for_rounding(void **state)
+static void rounding_does_not_violate_bounds(void **state)
 {
     (void)state;
     for (int i = 0; i < 100; i++) {
@@ -1466,12 +1466,12 @@ int main(void)
         cmocka_unit_test(halves_beside_each_other),
         cmocka_unit_test(bent_segments),
         cmocka_unit_test(marker_beyond_the_end),
-        cmocka_unit_test(what_is_missing_beside_the_boundary),
+        cmocka_unit_test(missing_segment_near_the_boundary),
         cmocka_unit_test(broken_input_vertices),
         cmocka_unit_test(broken_lost_vertex),
         cmocka_unit_test(duplicates_stand_for_each_other),
         cmocka_unit_test(broken_angles),
-        cmocka_unit_test(bounds_are_met_but_for_rounding),
+        cmocka_unit_test(rounding_does_not_violate_bounds),
         cmocka_unit_test(small_input_angles_explain),
         cmocka_unit_test(broken_areas),
         cmocka_unit_test(broken_hull),

@@ -177,7 +177,7 @@ static void test_stopped_at_any_time(void **state)
 }
 
 /* The sink may fail at any tile. Finished work is kept. */
-static void test_nobody_takes_tiles(void **state)
+static void test_a_failing_sink_loses_no_finished_work(void **state)
 {
     (void)state;
     int64_t tiles;
@@ -316,7 +316,7 @@ static void test_files_of_others_stay(void **state)
 }
 
 /* A user who can write to the folder may add links. No file behind a link is written, removed or read. */
-static void test_links_lead_nowhere(void **state)
+static void test_links_are_not_followed(void **state)
 {
     (void)state;
     static const char *const names[] = {"manifest-new", "state-0", "state-1", "piece-0-0"};
@@ -452,7 +452,7 @@ static const struct way ways[] = {
     {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0},
     {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED, 0}, /* two schedules */
     {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED, 0}, /* swept at first */
-    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* no schedule for this bound */
+    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* no schedule at 35 */
     {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 400}, /* blocks wait */
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
     {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
@@ -562,7 +562,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
     assert_true(with_state >= (way->max_steiner < 0 ? 4 : 0));
 }
 
-static void test_whole_meshes_go_on(void **state)
+static void test_whole_meshes_resume(void **state)
 {
     (void)state;
     for (int i = 0; i < N_WAYS; i += every(2)) {
@@ -574,7 +574,7 @@ static void test_whole_meshes_go_on(void **state)
 }
 
 /* Stops again and again during phases, and during or after the sequential call of a run without schedule. */
-static void test_calls_go_on(void **state)
+static void test_sequential_calls_resume(void **state)
 {
     (void)state;
     for (int i = 0; i < N_WAYS; i++) {
@@ -629,7 +629,7 @@ static enum tri_status stop_short_of_memory(const struct way *way, const struct 
 }
 
 /* Each of the last allocations fails in turn, including those for stopping. The run must report it. */
-static void test_memory_is_short_for_a_halt(void **state)
+static void test_a_stop_without_memory_is_reported(void **state)
 {
     (void)state;
     static const struct way way = {{"letter.poly", 30, 4000, 200, false, false, 0},
@@ -674,7 +674,7 @@ static void test_a_finished_mesh_is_kept(void **state)
 }
 
 /* The state of a sweep cannot resume a mesh that must stay whole. */
-static void test_a_sweep_is_not_taken_for_a_whole(void **state)
+static void test_a_sweep_does_not_resume_as_a_whole_mesh(void **state)
 {
     (void)state;
     struct way way = {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0};
@@ -826,18 +826,18 @@ int main(void)
         cmocka_unit_test(test_a_limit_ends_the_run_with_a_state),
         cmocka_unit_test(test_a_failed_state_leaves_nothing),
         cmocka_unit_test(test_stopped_at_any_time),
-        cmocka_unit_test(test_nobody_takes_tiles),
+        cmocka_unit_test(test_a_failing_sink_loses_no_finished_work),
         cmocka_unit_test(test_other_runs_are_refused),
         cmocka_unit_test(test_files_of_others_are_refused),
         cmocka_unit_test(test_files_of_others_stay),
-        cmocka_unit_test(test_links_lead_nowhere),
+        cmocka_unit_test(test_links_are_not_followed),
         cmocka_unit_test(test_folders_of_others_are_refused),
         cmocka_unit_test(test_damage_is_found),
-        cmocka_unit_test(test_whole_meshes_go_on),
-        cmocka_unit_test(test_calls_go_on),
-        cmocka_unit_test(test_memory_is_short_for_a_halt),
+        cmocka_unit_test(test_whole_meshes_resume),
+        cmocka_unit_test(test_sequential_calls_resume),
+        cmocka_unit_test(test_a_stop_without_memory_is_reported),
         cmocka_unit_test(test_a_finished_mesh_is_kept),
-        cmocka_unit_test(test_a_sweep_is_not_taken_for_a_whole),
+        cmocka_unit_test(test_a_sweep_does_not_resume_as_a_whole_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,7 +62,7 @@ static void test_order_of_segments_does_not_matter(void **state)
 
 /* n long parallels under a finely sampled curve, in the order of their heights, as in geological strata. Naive
  * insertion of each would cross all edges that the previous one has left on its far side. */
-static void test_parallels_in_order_are_short_work(void **state)
+static void test_parallels_in_order_take_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -290,7 +290,7 @@ static const struct {
      {2, 4, 3, 5, 4, 2, 0, 1, -1}},
 };
 
-static void test_once_broken(void **state)
+static void test_earlier_failures(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof once_broken / sizeof *once_broken; i++) {
@@ -337,7 +337,7 @@ static bool is_run_through(const struct tri_mesh *mesh, int32_t v)
 
 /* Two vertices are on different sides of a segment, each within half a resolution. The nearer one is used, and the
  * other is then too far away, regardless of their order along the segment and of their sides. */
-static void test_nearest_beside_is_taken(void **state)
+static void test_the_nearer_of_two_vertices_is_used(void **state)
 {
     (void)state;
     for (int turn = 0; turn < 4; turn++) {
@@ -488,7 +488,7 @@ int main(void)
         cmocka_unit_test(test_tangles_are_naively_constrained_delaunay),
         cmocka_unit_test(test_large_tangles_pass_the_judge),
         cmocka_unit_test(test_order_of_segments_does_not_matter),
-        cmocka_unit_test(test_parallels_in_order_are_short_work),
+        cmocka_unit_test(test_parallels_in_order_take_little_work),
         cmocka_unit_test(test_crossing_makes_a_vertex),
         cmocka_unit_test(test_vertices_on_a_segment_split_it),
         cmocka_unit_test(test_overlap_keeps_the_first_marker),
@@ -496,8 +496,8 @@ int main(void)
         cmocka_unit_test(test_segments_are_moved_to_the_lowest_copy),
         cmocka_unit_test(test_many_spokes_and_long_gaps),
         cmocka_unit_test(test_crossings_below_resolution),
-        cmocka_unit_test(test_once_broken),
-        cmocka_unit_test(test_nearest_beside_is_taken),
+        cmocka_unit_test(test_earlier_failures),
+        cmocka_unit_test(test_the_nearer_of_two_vertices_is_used),
         cmocka_unit_test(test_a_chain_does_not_drift),
         cmocka_unit_test(test_crossing_at_a_vertex_nearby),
         cmocka_unit_test(test_no_triangles_no_segments),

@@ -131,7 +131,7 @@ static void test_hull(void **state)
 
 /* Numbers, first corners and the order of tasks do not influence the result, including fans so large that they are
  * sorted by another method. */
-static void test_nothing_of_the_past_is_left(void **state)
+static void test_order_does_not_depend_on_numbers(void **state)
 {
     (void)state;
     for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -147,7 +147,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_hull),
-        cmocka_unit_test(test_nothing_of_the_past_is_left),
+        cmocka_unit_test(test_order_does_not_depend_on_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

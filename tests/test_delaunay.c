@@ -187,7 +187,7 @@ static void test_one_point_beside_a_line(void **state)
 }
 
 /* Blocks influence only the speed: leaves of all sizes and blocks in reverse order make the same mesh. */
-static void test_leaves_leave_no_trace(void **state)
+static void test_leaf_size_does_not_matter(void **state)
 {
     (void)state;
     static const int32_t sizes[] = {30, 300, 3000};
@@ -271,7 +271,7 @@ int main(void)
         cmocka_unit_test(test_signed_zeros_are_one_point),
         cmocka_unit_test(test_collinear_points_give_nothing),
         cmocka_unit_test(test_one_point_beside_a_line),
-        cmocka_unit_test(test_leaves_leave_no_trace),
+        cmocka_unit_test(test_leaf_size_does_not_matter),
         cmocka_unit_test(test_fan_equals_naive_twin),
         cmocka_unit_test(test_large_sets_pass_the_judge),
         cmocka_unit_test(test_all_point_files),

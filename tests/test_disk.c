@@ -48,7 +48,7 @@ static struct tri_pslg needles(int32_t n, uint64_t seed)
     return pslg;
 }
 
-static void test_needles_part(void **state)
+static void test_needles_become_conforming(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++)
@@ -65,7 +65,7 @@ static void test_needles_part(void **state)
 
 /* n segments side by side across a square. The number of new points depends on their 2 n ends, not on length /
  * width. */
-static void test_bundles_part(void **state)
+static void test_bundles_become_conforming(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
@@ -157,7 +157,7 @@ static void test_boundaries_come_back_to_their_lines(void **state)
 
 /* The loop leaves no subsegment that can be split encroached, and no split makes a part shorter than half the shortest
  * edge. */
-static void test_nothing_stays_that_can_be_split(void **state)
+static void test_no_splittable_subsegment_stays_encroached(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 60; seed++) {
@@ -185,7 +185,7 @@ static void test_nothing_stays_that_can_be_split(void **state)
 }
 
 /* Circles that are not empty because of -YY are counted under that reason. */
-static void test_what_stays_is_counted(void **state)
+static void test_protected_circles_are_counted(void **state)
 {
     (void)state;
     int64_t count[TRI_EXCUSES];
@@ -271,7 +271,7 @@ static void count_by_place(const struct tri_pslg *pslg, int64_t total[TRI_EXCUSE
 
 /* In bundles of lines and between lines drawn twice, remaining circles are at small angles and between segments if they
  * would need too many parts. Those elsewhere are not resolved by the coordinates. */
-static void test_what_would_take_too_many_parts_is_counted_by_place(void **state)
+static void test_circles_with_too_many_parts_are_counted_by_place(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -290,7 +290,7 @@ static void test_what_would_take_too_many_parts_is_counted_by_place(void **state
 
 /* Segments a few units in the last place apart: the reason for circles that are not empty is the coordinates, not the
  * cost of filling the space. */
-static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state)
+static void test_unresolved_circles_are_counted_as_such(void **state)
 {
     (void)state;
     int64_t count[TRI_EXCUSES];
@@ -339,7 +339,7 @@ static void test_circles_across_doubled_lines_end(void **state)
 }
 
 /* Above 36 degrees, refinement for circles may not end, so the mesh equals that for 36 degrees. */
-static void test_a_larger_bound_is_worked_for_as_36(void **state)
+static void test_a_larger_bound_is_treated_as_36(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -352,7 +352,7 @@ static void test_a_larger_bound_is_worked_for_as_36(void **state)
 }
 
 /* A vertex on the circle is not inside it. */
-static void test_the_circle_is_not_inside(void **state)
+static void test_a_vertex_on_the_circle_is_not_inside(void **state)
 {
     (void)state;
     static const struct {
@@ -371,18 +371,18 @@ static void test_the_circle_is_not_inside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_circle_is_not_inside),
-        cmocka_unit_test(test_needles_part),
-        cmocka_unit_test(test_bundles_part),
+        cmocka_unit_test(test_a_vertex_on_the_circle_is_not_inside),
+        cmocka_unit_test(test_needles_become_conforming),
+        cmocka_unit_test(test_bundles_become_conforming),
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_finer_coordinates_resolve_more),
         cmocka_unit_test(test_boundaries_come_back_to_their_lines),
-        cmocka_unit_test(test_nothing_stays_that_can_be_split),
-        cmocka_unit_test(test_what_stays_is_counted),
-        cmocka_unit_test(test_what_would_take_too_many_parts_is_counted_by_place),
-        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_counted_as_that),
+        cmocka_unit_test(test_no_splittable_subsegment_stays_encroached),
+        cmocka_unit_test(test_protected_circles_are_counted),
+        cmocka_unit_test(test_circles_with_too_many_parts_are_counted_by_place),
+        cmocka_unit_test(test_unresolved_circles_are_counted_as_such),
         cmocka_unit_test(test_circles_across_doubled_lines_end),
-        cmocka_unit_test(test_a_larger_bound_is_worked_for_as_36),
+        cmocka_unit_test(test_a_larger_bound_is_treated_as_36),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,7 +46,7 @@ static double sure_work(const struct tri_mesh *mesh, const struct tri_quality *q
 }
 
 /* The sure part of an estimate excludes what satisfied bounds might still require. */
-static void test_bounds_that_are_met(void **state)
+static void test_satisfied_bounds_are_not_in_the_sure_part(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
@@ -193,7 +193,7 @@ static void test_samples(void **state)
 }
 
 /* The result is the same to the last bit, regardless of which thread does which share. */
-static void test_any_threads_say_the_same(void **state)
+static void test_threads_do_not_change_estimates(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(40000);
@@ -214,7 +214,7 @@ static void test_any_threads_say_the_same(void **state)
 
 /* Bounds that require more triangles than a mesh can hold are rejected before any work, unless new points are
  * limited. */
-static void test_check(void **state)
+static void test_impossible_bounds_are_refused(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults();
@@ -234,7 +234,7 @@ static void test_check(void **state)
 }
 
 /* One of two triangles of area 1/2 satisfies its bound. */
-static void test_bounds_that_are_met_ask_for_nothing(void **state)
+static void test_satisfied_bounds_need_no_triangles(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults();
@@ -262,15 +262,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_bounds_that_are_met),
+        cmocka_unit_test(test_satisfied_bounds_are_not_in_the_sure_part),
         cmocka_unit_test(test_size_test_is_probed),
         cmocka_unit_test(test_integral),
         cmocka_unit_test(test_size_function),
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_any_threads_say_the_same),
-        cmocka_unit_test(test_check),
-        cmocka_unit_test(test_bounds_that_are_met_ask_for_nothing),
+        cmocka_unit_test(test_threads_do_not_change_estimates),
+        cmocka_unit_test(test_impossible_bounds_are_refused),
+        cmocka_unit_test(test_satisfied_bounds_need_no_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,7 +22,7 @@ static void test_features_of_an_input(void **state)
 }
 
 /* A vertex less than an ulp from the hull, and two vertices an ulp apart. */
-static void test_what_coordinates_do_not_resolve_is_no_feature(void **state)
+static void test_unresolved_distances_are_no_features(void **state)
 {
     (void)state;
     static const double at[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {4, 0x1p-52}, {4, 3}, {4, 3 + 0x1p-51}};
@@ -74,7 +74,7 @@ static void check_sizes(const struct tri_mesh *mesh)
         }
 }
 
-static void test_no_vertex_forgets_its_sources(void **state)
+static void test_sizes_match_the_theorem(void **state)
 {
     (void)state;
     static const double angles[] = {20, 33, 34, 36, 45, 60};
@@ -93,9 +93,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_features_of_an_input),
-        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_no_feature),
+        cmocka_unit_test(test_unresolved_distances_are_no_features),
         cmocka_unit_test(test_sizes_are_inherited_and_grow),
-        cmocka_unit_test(test_no_vertex_forgets_its_sources),
+        cmocka_unit_test(test_sizes_match_the_theorem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

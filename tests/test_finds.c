@@ -45,7 +45,7 @@ static int32_t list_row(int32_t row, int32_t list[IDS])
     return n;
 }
 
-static void test_deal(void **state)
+static void test_rows_equal_naive_lists(void **state)
 {
     (void)state;
     struct par_finds finds;
@@ -84,7 +84,7 @@ static void test_runs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_deal),
+        cmocka_unit_test(test_rows_equal_naive_lists),
         cmocka_unit_test(test_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

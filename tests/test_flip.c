@@ -74,7 +74,7 @@ static void test_corners_are_kept(void **state)
 
 /* Four points on a circle, so both diagonals are Delaunay. A mesh that is read keeps its diagonal. A touched edge gets
  * the diagonal that ties by coordinates select. */
-static void test_ties_stay_where_asked(void **state)
+static void test_ties_keep_the_diagonal_that_was_read(void **state)
 {
     (void)state;
     int changed = 0;
@@ -105,7 +105,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fans_become_delaunay),
         cmocka_unit_test(test_corners_are_kept),
-        cmocka_unit_test(test_ties_stay_where_asked),
+        cmocka_unit_test(test_ties_keep_the_diagonal_that_was_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

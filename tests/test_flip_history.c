@@ -29,7 +29,7 @@ static void set_corners(struct tri_mesh *mesh, tri_triangle_id t, int32_t a, int
     memcpy(mesh->tri[t].v, (int32_t[]){a, b, c}, sizeof mesh->tri[t].v);
 }
 
-static void test_regions_stay_on_their_ground(void **state)
+static void test_regions_keep_their_area(void **state)
 {
     (void)state;
     struct tri_mesh mesh = sliver();
@@ -70,7 +70,7 @@ static void test_history_is_cut(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_regions_stay_on_their_ground),
+        cmocka_unit_test(test_regions_keep_their_area),
         cmocka_unit_test(test_history_is_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

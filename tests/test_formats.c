@@ -111,7 +111,7 @@ static void *no_extra(void *user, size_t bytes)
 }
 
 /* Storage may fail for other reasons than memory, such as too many open files. The message gives the reason. */
-static void test_no_room_to_group(void **state)
+static void test_storage_failures_are_reported(void **state)
 {
     (void)state;
     struct array_grid arrays = ell();
@@ -525,7 +525,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_boundary),
         cmocka_unit_test(test_groups),
-        cmocka_unit_test(test_no_room_to_group),
+        cmocka_unit_test(test_storage_failures_are_reported),
         cmocka_unit_test(test_too_many_groups_are_one),
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_sizes_of_binary_files),

@@ -64,7 +64,7 @@ static struct tri_mesh square_of(const struct tri_size_field *field, int way, st
     return mesh;
 }
 
-static void test_edges_are_as_long_as_asked(void **state)
+static void test_edges_have_the_given_lengths(void **state)
 {
     (void)state;
     for (int way = 0; way < 3; way++) {
@@ -140,7 +140,7 @@ static struct found look_at_blocks(struct trial trial)
 
 /* Except at seams, the mesh is as good as that of one call: coarse vertices have been removed, and no triangle of their
  * stars was forgotten. */
-static void test_blocks_do_as_well(void **state)
+static void test_blocks_are_as_good_as_one_call(void **state)
 {
     (void)state;
     const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
@@ -151,7 +151,7 @@ static void test_blocks_do_as_well(void **state)
 }
 
 /* A mesh refined again without lengths stores none. */
-static void test_lengths_go_when_nobody_asks_for_them(void **state)
+static void test_refining_without_lengths_removes_them(void **state)
 {
     (void)state;
     const struct tri_size_field field = {.kind = TRI_SIZE_NUMBER, .length = 0.3};
@@ -172,10 +172,10 @@ static void test_lengths_go_when_nobody_asks_for_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edges_are_as_long_as_asked),
+        cmocka_unit_test(test_edges_have_the_given_lengths),
         cmocka_unit_test(test_sides_are_divided_by_the_integral),
-        cmocka_unit_test(test_blocks_do_as_well),
-        cmocka_unit_test(test_lengths_go_when_nobody_asks_for_them),
+        cmocka_unit_test(test_blocks_are_as_good_as_one_call),
+        cmocka_unit_test(test_refining_without_lengths_removes_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

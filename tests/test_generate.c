@@ -108,7 +108,7 @@ static void test_nothing_leaks_on_success(void **state)
 #endif
 
 /* Users rely on the left and right side of a segment. If segments overlap, the direction of the first counts. */
-static void test_pieces_run_their_segments_way(void **state)
+static void test_pieces_have_the_direction_of_their_segment(void **state)
 {
     (void)state;
     int32_t pieces = 0;
@@ -365,7 +365,7 @@ int main(void)
         cmocka_unit_test(test_allocation_fails_in_a_large_refinement),
         cmocka_unit_test(test_nothing_leaks_on_success),
 #endif
-        cmocka_unit_test(test_pieces_run_their_segments_way),
+        cmocka_unit_test(test_pieces_have_the_direction_of_their_segment),
         cmocka_unit_test(test_bad_input_is_refused),
         cmocka_unit_test(test_attributes_are_interpolated),
         cmocka_unit_test(test_markers_of_new_vertices),

@@ -117,7 +117,7 @@ static double rounding_beside(int pairs)
 }
 
 /* 32 resolutions of the largest coordinate, or 256 if more than four vertices have a nearer neighbour than that. */
-static void test_what_is_rounding(void **state)
+static void test_distances_below_rounding_are_no_features(void **state)
 {
     (void)state;
     assert_true(rounding_beside(0) == 0x1p-47);
@@ -131,7 +131,7 @@ int main(void)
         cmocka_unit_test(test_turns_before_is_the_order_of_angles),
         cmocka_unit_test(test_parents_at_each_vertex),
         cmocka_unit_test(test_acute_vertices),
-        cmocka_unit_test(test_what_is_rounding),
+        cmocka_unit_test(test_distances_below_rounding_are_no_features),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

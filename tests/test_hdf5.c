@@ -138,7 +138,7 @@ static int remove_files(void **state)
     return 0;
 }
 
-static void test_what_is_written_is_read(void **state)
+static void test_data_read_equals_data_written(void **state)
 {
     (void)state;
     const struct lattice *all[] = {&SMALL, &WHOLE, &PLAIN, &LARGE};
@@ -344,7 +344,7 @@ static void test_rows_as_bytes(void **state)
 }
 
 /* As many points as fit in one chunk, one less, and one more. The same for chunks of segments. */
-static void test_around_a_chunk(void **state)
+static void test_sizes_around_a_chunk(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -375,7 +375,7 @@ static herr_t has_no_time(hid_t object, const char *name, const H5O_info_t *info
     return info->atime == 0 && info->mtime == 0 && info->ctime == 0 && info->btime == 0 ? 0 : -1;
 }
 
-static void test_no_times(void **state)
+static void test_objects_have_no_time_stamps(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -474,7 +474,7 @@ static void refuse(const char *path, enum tri_status wanted, const char *words)
     assert_non_null(strstr(error.text, words));
 }
 
-static void test_no_such_mesh(void **state)
+static void test_files_without_a_mesh_are_refused(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -579,7 +579,7 @@ static void make_floats(hid_t file)
     make_dataset(file, "points", H5Pcreate(H5P_DATASET_CREATE), H5T_IEEE_F32LE, small_rows(), 2);
 }
 
-static void test_not_in_this_file(void **state)
+static void test_unsupported_layouts_are_refused(void **state)
 {
     (void)state;
     replace_points(make_external, "/points is stored in another file");
@@ -595,7 +595,7 @@ static void test_not_in_this_file(void **state)
 }
 
 /* A small file may claim to hold a large amount of data. */
-static void test_more_than_can_be(void **state)
+static void test_impossible_row_counts_are_refused(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -612,22 +612,22 @@ static void test_more_than_can_be(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
+        cmocka_unit_test_teardown(test_data_read_equals_data_written, remove_files),
         cmocka_unit_test_teardown(test_wide_numbers, remove_files),
         cmocka_unit_test_teardown(test_ends_of_cells, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
         cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_parts_make_the_same_bytes, remove_files),
         cmocka_unit_test(test_rows_as_bytes),
-        cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
-        cmocka_unit_test_teardown(test_no_times, remove_files),
+        cmocka_unit_test_teardown(test_sizes_around_a_chunk, remove_files),
+        cmocka_unit_test_teardown(test_objects_have_no_time_stamps, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),
         cmocka_unit_test_teardown(test_no_memory, remove_files),
         cmocka_unit_test_teardown(test_stop, remove_files),
-        cmocka_unit_test_teardown(test_no_such_mesh, remove_files),
-        cmocka_unit_test_teardown(test_not_in_this_file, remove_files),
-        cmocka_unit_test_teardown(test_more_than_can_be, remove_files),
+        cmocka_unit_test_teardown(test_files_without_a_mesh_are_refused, remove_files),
+        cmocka_unit_test_teardown(test_unsupported_layouts_are_refused, remove_files),
+        cmocka_unit_test_teardown(test_impossible_row_counts_are_refused, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

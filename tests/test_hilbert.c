@@ -91,7 +91,7 @@ static void test_dense_cells_are_sorted(void **state)
 /* The order depends on the points, not on their ids: any permutation of the ids gives the same order. Squares within
  * squares, each a million times smaller, fill a cell with smaller cells. Every third point has a near neighbour,
  * usually in its cell. */
-static void test_any_order_comes_out_the_same(void **state)
+static void test_initial_order_does_not_matter(void **state)
 {
     (void)state;
     enum { N = 3000 };
@@ -195,7 +195,7 @@ int main(void)
         cmocka_unit_test(test_order_of_a_grid_is_a_path),
         cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
         cmocka_unit_test(test_dense_cells_are_sorted),
-        cmocka_unit_test(test_any_order_comes_out_the_same),
+        cmocka_unit_test(test_initial_order_does_not_matter),
         cmocka_unit_test(test_coarse_order),
         cmocka_unit_test(test_degenerate_boxes),
     };

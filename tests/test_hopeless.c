@@ -57,7 +57,7 @@ static double cost_over_integral(double width, double spread)
     return cost / (spread > 0 ? log1p(spread / width) / spread : 1 / width);
 }
 
-static void test_filling_costs_what_the_width_takes_all_along(void **state)
+static void test_filling_cost_matches_the_integral(void **state)
 {
     (void)state;
     const double WIDTHS[] = {1e-9, 1e-6, 1e-3, 0.1}, SPREADS[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -122,7 +122,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thin_rectangles_are_filled_while_that_is_cheap),
-        cmocka_unit_test(test_filling_costs_what_the_width_takes_all_along),
+        cmocka_unit_test(test_filling_cost_matches_the_integral),
         cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),
         cmocka_unit_test(test_spokes_of_a_hub_are_in_order),
     };

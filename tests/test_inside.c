@@ -77,7 +77,7 @@ static int is_too_long(void *user, const double a[2], const double b[2], const d
 
 /* A triangle rejected only because of a protected long side must not get centroids down to the resolution (16,755
  * triangles). Rejected triangles cover almost no area. */
-static void test_walls_that_are_refused_end_it(void **state)
+static void test_protected_walls_get_few_centroids(void **state)
 {
     (void)state;
     struct tri_pslg pslg = load("letter.poly");
@@ -155,7 +155,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas_are_kept_beside_slivers),
         cmocka_unit_test(test_a_size_test_is_kept_at_small_angles),
-        cmocka_unit_test(test_walls_that_are_refused_end_it),
+        cmocka_unit_test(test_protected_walls_get_few_centroids),
         cmocka_unit_test(test_centroids_are_inside),
         cmocka_unit_test(test_long_walls),
     };

@@ -1,5 +1,5 @@
-/* Files written jointly by ranks, which are threads here. They have the same bytes as those of one process. If a rank
- * does not see the same file, no rank writes. A failed write on one rank fails on all ranks. */
+/* Files written jointly by ranks, which are threads here. They have the same bytes as those of one process. If one rank
+ * does not see the files, no rank writes them directly. A failed write on one rank fails on all ranks. */
 #include "fake_ranks.h"
 #include "full.h"
 #include "support.h"
@@ -225,7 +225,7 @@ static void take_files(char *bytes[FILES], size_t n[FILES])
     }
 }
 
-static void test_the_bytes_of_one_process(void **state)
+static void test_bytes_equal_those_of_one_process(void **state)
 {
     (void)state;
     struct member member[MOST_RANKS];
@@ -252,7 +252,7 @@ static void test_the_bytes_of_one_process(void **state)
         }
 }
 
-static void test_one_sees_another_file(void **state)
+static void test_ranks_that_see_different_files_do_not_write_them(void **state)
 {
     (void)state;
     struct member member[4];
@@ -265,7 +265,7 @@ static void test_one_sees_another_file(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-static void test_one_cannot_write(void **state)
+static void test_a_failed_write_fails_on_all_ranks(void **state)
 {
     (void)state;
     struct member member[3];
@@ -285,9 +285,9 @@ static void test_one_cannot_write(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_the_bytes_of_one_process, remove_files),
-        cmocka_unit_test_teardown(test_one_sees_another_file, remove_files),
-        cmocka_unit_test_teardown(test_one_cannot_write, remove_files),
+        cmocka_unit_test_teardown(test_bytes_equal_those_of_one_process, remove_files),
+        cmocka_unit_test_teardown(test_ranks_that_see_different_files_do_not_write_them, remove_files),
+        cmocka_unit_test_teardown(test_a_failed_write_fails_on_all_ranks, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -306,7 +306,7 @@ struct host {
     struct tri_part part; /* receives the list of new triangles */
     int32_t grants; /* this many requests succeed */
     enum tri_status refusal; /* status of the later requests */
-    int32_t vertices, triangles, subs; /* room in the mesh's arrays; the mesh is told of less */
+    int32_t vertices, triangles, subs; /* room in the mesh's arrays; the limits in the mesh are lower */
 };
 
 /* Gives the mesh room for exactly this number of points, of which one may be on a subsegment. */
@@ -751,7 +751,7 @@ static void note_left(void *user, tri_triangle_id triangle)
 }
 
 /* Every triangle that is still bad has been reported to the caller, who refines it later. */
-static void test_what_is_left_is_told(void **state)
+static void test_remaining_bad_triangles_are_reported(void **state)
 {
     (void)state;
     static const struct tri_fence fences[] = {{1, 1, 5, 6}, {-1, -1, 4, 9}, {2.5, -1, 9, 3.25}, {-1, -1, 9, 9}};
@@ -911,7 +911,7 @@ int main(void)
         cmocka_unit_test(test_fence_protects_the_outside),
         cmocka_unit_test(test_disjoint_fences_commute),
         cmocka_unit_test(test_quarters_commute),
-        cmocka_unit_test(test_what_is_left_is_told),
+        cmocka_unit_test(test_remaining_bad_triangles_are_reported),
         cmocka_unit_test(test_vertex_in_a_cell),
         cmocka_unit_test(test_worklists),
         cmocka_unit_test(test_limits_and_gates),

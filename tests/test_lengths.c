@@ -95,7 +95,7 @@ static void check_items(int32_t n, int32_t n_equal, double length, double growth
     tri_near_clear(&near);
 }
 
-static void test_near_items_are_as_all_of_them_say(void **state)
+static void test_near_items_equal_naive_twin(void **state)
 {
     (void)state;
     check_items(1, 1, 0.01, 0.2, true, 1);
@@ -272,7 +272,7 @@ static void check_raster(int64_t w, int64_t h, double gaps, double gradation, ui
     tri_mesh_free(&mesh);
 }
 
-static void test_rasters_are_as_all_nodes_say(void **state)
+static void test_rasters_equal_naive_twin(void **state)
 {
     (void)state;
     check_raster(1, 1, 0, 0.2, 1);
@@ -389,7 +389,7 @@ static void check_background(int32_t n, double gaps, double gradation, enum supp
     tri_mesh_free(&mesh);
 }
 
-static void test_meshes_are_as_all_triangles_say(void **state)
+static void test_meshes_equal_naive_twin(void **state)
 {
     (void)state;
     check_background(3, 0, 0.2, SUPPORT_RANDOM, 1);
@@ -496,7 +496,7 @@ static double limited_function(const struct asked *a, double x, double y)
 
 static bool is_asked_thrice(void *user) { return ((struct asked *)user)->calls >= 3; }
 
-static void test_functions_are_kept(void **state)
+static void test_sampled_functions_are_accurate(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 10, 1);
@@ -594,7 +594,7 @@ static void test_lengths_grow_from_regions(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_circles_have_so_many(void **state)
+static void test_circles_have_the_given_number_of_edges(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_pslg(68, 68, 0, 0);
@@ -659,7 +659,7 @@ static void in_funnel(double s, double t, double out[3])
     out[2] = 2 * from * tan(10 * 3.141592653589793 / 180);
 }
 
-static void test_channels_have_so_many_across(void **state)
+static void test_channels_have_the_given_number_of_edges_across(void **state)
 {
     (void)state;
     static const double corners[2][4][2] = {{{0, 0}, {20, 0}, {20, 1}, {0, 1}},
@@ -688,7 +688,7 @@ static void test_channels_have_so_many_across(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* --- numbers that identify fields */
+/* --- hashes that identify fields */
 
 static void ask_constant(void *user, int64_t n, const double (*at)[2], double *length)
 {
@@ -697,7 +697,7 @@ static void ask_constant(void *user, int64_t n, const double (*at)[2], double *l
         length[i] = *(const double *)user;
 }
 
-static void test_other_fields_have_other_numbers(void **state)
+static void test_different_fields_have_different_hashes(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 10, 1);
@@ -741,7 +741,7 @@ static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, c
     assert_string_equal(error.text, text);
 }
 
-static void test_what_is_no_field_is_refused(void **state)
+static void test_invalid_fields_are_refused(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(1, 10, 1);
@@ -788,7 +788,7 @@ static void test_what_is_no_field_is_refused(void **state)
 
 /* --- through the public header */
 
-static void test_settings_take_fields(void **state)
+static void test_settings_accept_fields(void **state)
 {
     (void)state;
     const double xy[] = {0, 0, 1, 0, 1, 1, 0, 1}, values[] = {0.1, 0.2};
@@ -819,14 +819,14 @@ static void test_settings_take_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
+        cmocka_unit_test(test_near_items_equal_naive_twin), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_tasks_make_the_same_lists),
-        cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
-        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_loose_points_and_triangles),
-        cmocka_unit_test(test_functions_are_kept),
-        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
-        cmocka_unit_test(test_channels_have_so_many_across),
-        cmocka_unit_test(test_other_fields_have_other_numbers),
-        cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
+        cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_equal_naive_twin),
+        cmocka_unit_test(test_meshes_equal_naive_twin), cmocka_unit_test(test_loose_points_and_triangles),
+        cmocka_unit_test(test_sampled_functions_are_accurate),
+        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_the_given_number_of_edges),
+        cmocka_unit_test(test_channels_have_the_given_number_of_edges_across),
+        cmocka_unit_test(test_different_fields_have_different_hashes),
+        cmocka_unit_test(test_invalid_fields_are_refused), cmocka_unit_test(test_settings_accept_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
