@@ -10,17 +10,17 @@
 struct fake_world {
     int n_ranks;
     pthread_barrier_t barrier;
-    const int64_t **numbers;       /* [n_ranks] the numbers that each rank currently shows to the others ... */
-    int32_t *width;                /* [n_ranks] ... and their count; 0: one for each rank */
-    const struct par_bytes **out;
-    const void *spread;
-    struct fake_rank *rank;
-    int64_t *of_each;              /* [n_ranks][n_ranks * PAR_ROOM] */
+    const int64_t **numbers;      /* [n_ranks] the numbers that each rank currently shows to the others ... */
+    int32_t *width;               /* [n_ranks] ... and their count; 0: one for each rank */
+    const struct par_bytes **out; /* [n_ranks] messages of each rank */
+    const void *spread;           /* bytes that rank 0 sends to all */
+    struct fake_rank *rank;       /* [n_ranks] */
+    int64_t *of_each;             /* [n_ranks][n_ranks * PAR_ROOM] */
 };
 
 struct fake_rank {
     struct fake_world *world;
-    int self;
+    int self; /* number of this rank */
 };
 
 /* Fails the test if there is no memory. */

@@ -15,7 +15,7 @@ struct msh_entity {
 };
 
 struct msh_node {
-    int64_t tag;
+    int64_t tag; /* number in the file */
     double at[3];
     const struct msh_entity *entity;
 };
@@ -29,10 +29,10 @@ struct msh_element {
 struct msh_file {
     int64_t n_parts; /* number of parts of the mesh; 0: not partitioned */
     int n_entities;
-    struct msh_entity *entity;
+    struct msh_entity *entity; /* [n_entities] */
     int64_t n_nodes, n_elements;
-    struct msh_node *node;
-    struct msh_element *element;
+    struct msh_node *node;       /* [n_nodes] */
+    struct msh_element *element; /* [n_elements] */
 };
 
 /* The caller frees the result. */

@@ -125,7 +125,7 @@ double support_estimate(const struct tri_mesh *mesh, const struct tri_quality *q
 /* Triangles as vertex ids. They are sorted, and each starts with its lowest id. */
 struct support_set {
     int32_t n;
-    int32_t (*v)[3];
+    int32_t (*v)[3]; /* [n] */
 };
 
 struct support_set support_triangles(const struct tri_mesh *mesh);
@@ -136,7 +136,7 @@ void support_set_free(struct support_set *set);
 /* Triangles as the coordinates of their corners: six numbers each, sorted, lowest corner first. */
 struct support_places {
     int32_t n;
-    double (*at)[6];
+    double (*at)[6]; /* [n] */
 };
 
 struct support_places support_places(const struct tri_mesh *mesh);

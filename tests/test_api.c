@@ -616,8 +616,8 @@ static void test_input_that_is_not_finite_is_refused(void **state)
 }
 
 struct fence_test {
-    bool open;
-    int64_t asked;
+    bool open;     /* the gate accepts points with x < 1; false: none */
+    int64_t asked; /* number of calls */
 };
 
 static bool is_left(void *user, const double at[2])
@@ -727,9 +727,9 @@ static void test_stop(void **state)
 /* --- refusals */
 
 struct told {
-    double done;
-    int64_t triangles;
-    int times;
+    double done;       /* last reported fraction */
+    int64_t triangles; /* last reported number */
+    int times;         /* number of reports */
 };
 
 static void hear(void *user, double done, int64_t triangles)
@@ -767,7 +767,7 @@ static void test_progress(void **state)
 
 /* The reported progress. */
 struct heard {
-    double done[10000], triangles[10000];
+    double done[10000], triangles[10000]; /* [n] reported fractions and numbers of triangles */
     int n;
 };
 
@@ -936,8 +936,8 @@ static void test_threads(void **state)
 }
 
 struct taken {
-    int64_t n_points, n_triangles;
-    const struct tri_mesh *mesh; /* the mesh to compare with */
+    int64_t n_points, n_triangles; /* numbers handed out so far */
+    const struct tri_mesh *mesh;   /* the mesh to compare with */
 };
 
 static enum tri_status begin_again(void *user, const struct tri_stream *stream, struct tri_error *error)

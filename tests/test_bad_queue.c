@@ -37,7 +37,7 @@ static int32_t pop(struct tri_bad_queue *queue)
 }
 
 struct waiting {
-    int32_t t;
+    int32_t t;  /* triangle */
     int bucket; /* TRI_BUCKETS: the entry is for size */
 };
 

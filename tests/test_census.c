@@ -156,8 +156,9 @@ static void test_encroached(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_triangles_are_found),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_reasons_match_the_report),
-        cmocka_unit_test(test_encroached), cmocka_unit_test(test_settle_counts),
+        cmocka_unit_test(test_bad_triangles_are_found), cmocka_unit_test(test_count_bad),
+        cmocka_unit_test(test_reasons_match_the_report), cmocka_unit_test(test_encroached),
+        cmocka_unit_test(test_settle_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

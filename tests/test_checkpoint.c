@@ -23,7 +23,7 @@ static const char DIRECTORY[] = "state";
 
 /* A hash over everything that is handed out, and the tile at which to fail. */
 struct taker {
-    uint64_t hash;
+    uint64_t hash;      /* of the bytes handed out so far */
     int64_t n, fail_at; /* number of tiles; the tile to reject, -1: none */
     int32_t n_attributes;
 };
@@ -70,11 +70,11 @@ static struct tri_pslg figure(int32_t points)
 
 struct run {
     struct taker taker;
-    const struct tri_stop *stop;
-    struct par_checkpoint *checkpoint;
+    const struct tri_stop *stop;       /* NULL: never stops */
+    struct par_checkpoint *checkpoint; /* NULL: none */
     int threads;
     double max_area;
-    bool lattice;
+    bool lattice; /* points are placed on a lattice */
     struct tri_error error;
     int64_t given_up;
 };
@@ -135,7 +135,7 @@ static void remove_all(void)
 /* Requests a stop after this many tiles. */
 struct patience {
     const struct taker *taker;
-    int64_t tiles;
+    int64_t tiles; /* number of tiles after which to stop */
 };
 
 static bool is_over(void *user)
@@ -441,7 +441,7 @@ static void test_damage_is_found(void **state)
 /* How a trial is refined. */
 struct way {
     struct trial trial;
-    bool has_sink, by_block;
+    bool has_sink, by_block; /* the mesh goes to a sink; as in par_options */
     int64_t memory, max_steiner;
     enum par_way expected; /* of a run without interruption */
     int32_t tight_room;    /* as in par_options */
@@ -467,14 +467,14 @@ enum { N_WAYS = sizeof ways / sizeof *ways };
 struct whole_run {
     const struct way *way;
     struct par_checkpoint *checkpoint;
-    int64_t memory;
+    int64_t memory; /* bound in bytes; 0: none */
     int threads;
-    atomic_int told, asked; /* reported phases; calls of is_asked, by all threads */
+    atomic_int told, asked;    /* reported phases; calls of is_asked, by all threads */
     int most_told, most_asked; /* limits of both; most_asked 0: no limit */
     struct taker taker;
-    uint64_t hash;
+    uint64_t hash;     /* of the whole mesh */
     int64_t triangles; /* used if there is no sink */
-    enum par_way was;
+    enum par_way was;  /* how the mesh was made */
     struct tri_error error;
 };
 

@@ -5,7 +5,7 @@
 /* A triangulation with ghost triangles of all vertices of a mesh, whose numbers have gaps. */
 struct loose {
     struct tri_triangle *tri;
-    int32_t n, n_live;
+    int32_t n, n_live; /* entries of tri; those that are triangles */
 };
 
 static struct loose insert_all(const struct tri_mesh *mesh)

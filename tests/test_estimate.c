@@ -152,9 +152,9 @@ static void test_shares(void **state)
 }
 
 struct samples {
-    double work, most;
-    int32_t n, room; /* number of samples, and how many are accepted */
-    bool inside;
+    double work, most; /* sum and maximum over the samples */
+    int32_t n, room;   /* number of samples, and how many are accepted */
+    bool inside;       /* all samples are in the unit square */
 };
 
 static bool take(void *user, struct tri_point q, double work)

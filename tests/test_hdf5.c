@@ -225,7 +225,7 @@ struct parts {
     struct tri_h5_writer *writer;
     struct tri_sink whole;
     struct tri_h5_part *part[PARTS];
-    int turn;
+    int turn; /* the part that writes next */
     double bounds[4];
 };
 

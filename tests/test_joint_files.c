@@ -72,7 +72,7 @@ struct member {
     struct tri_mesh mesh;
     struct opened opened; /* copied from rank 0 */
     enum mishap mishap;
-    bool together;
+    bool together; /* the ranks write jointly */
     enum tri_status status;
     struct tri_error error;
 };

@@ -455,9 +455,9 @@ static void test_loose_points_and_triangles(void **state)
 /* --- functions */
 
 struct asked {
-    int which;
-    int calls;
-    int64_t places;
+    int which;        /* which function, 0 .. 3 */
+    int calls;        /* number of calls */
+    int64_t places;   /* number of points in all calls */
     double at[20][3]; /* points and lengths from which other lengths grow */
 };
 

@@ -13,7 +13,7 @@ struct taken {
     struct long_options options;
     struct tri_switches switches;
     struct tri_error error;
-    int at;
+    int at; /* number of the word that follows */
 };
 
 /* Parses one option, which is word 1. second NULL: there is no other word. */

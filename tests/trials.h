@@ -7,7 +7,7 @@
 /* An input and its bounds. target > 0: about this many triangles, from which the area bound is computed. 0: no bound.
  * Below 0: edge lengths for about -target triangles, three times as long on the right. */
 struct trial {
-    const char *file;
+    const char *file; /* name of an input in the data folder */
     double angle, target, block;
     bool conforming, regions;
     int protect;

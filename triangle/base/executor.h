@@ -12,7 +12,7 @@ struct tri_executor {
     /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads. Returns when
      * all tasks have returned; their writes are then visible to the caller. Tasks do not fail and do not call run. */
     void (*run)(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context);
-    void *self;
+    void *self; /* first argument of run */
 };
 
 static inline void tri_execute(const struct tri_executor *executor, size_t n_tasks,

@@ -49,8 +49,8 @@ static inline bool tri_grow(void *array, int32_t *capacity, int32_t need, size_t
 
 /* One of several arrays that grow together: the address of its pointer, and the size of an item. */
 struct tri_growing {
-    void *array;
-    size_t item;
+    void *array; /* address of the pointer to the items */
+    size_t item; /* bytes of an item */
 };
 
 /* Grows n arrays that are filled side by side. Each gets room for `over` additional items. Returns false if there is no

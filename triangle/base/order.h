@@ -19,7 +19,7 @@ struct tri_order {
     int64_t *first; /* [n + 1] index in `link` of an item's first link, which is that of level 0 */
     struct {
         int32_t below, above;
-    } *link;
+    } *link; /* neighbours in each ring; indices start at first */
 };
 
 /* Makes an empty order for the items 0 .. n - 1. Fails only with TRI_NO_MEMORY. */

@@ -19,10 +19,10 @@ enum {
 
 /* Items from[0 .. n), and the array that the next pass writes to. */
 struct run {
-    uint64_t *from, *to;
+    uint64_t *from, *to; /* items, and the array for the next pass */
     int32_t n;
     int low, high; /* the bits to sort by, low .. high - 1; all items agree in higher bits */
-    bool home;
+    bool home;     /* from is the array for the result */
 };
 
 static void insert_all(const struct run *run)
@@ -72,8 +72,8 @@ static void sort_run(struct run run)
 /* A pass over many items, divided into shares. */
 struct wide_pass {
     const struct run *run;
-    int shift;
-    uint64_t mask;
+    int shift;                   /* number of bits below the digit */
+    uint64_t mask;               /* bits of the digit after shifting */
     int32_t at[SHARES][BUCKETS]; /* where the next item of each share and bucket goes */
 };
 
@@ -117,8 +117,8 @@ static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS],
 /* A run whose items have been moved into buckets. */
 struct bucketed {
     const struct run *run;
-    int shift;
-    int32_t end[BUCKETS];
+    int shift;            /* number of bits below the digit, by which buckets are not sorted yet */
+    int32_t end[BUCKETS]; /* where each bucket ends */
 };
 
 static struct run bucket_run(const struct bucketed *b, size_t bucket)

@@ -32,7 +32,7 @@ struct tri_stop {
     /* Returns true if the work should stop. Called often and from several threads at once, so it should only read a
      * flag. Once it has returned true, it must keep returning true. */
     bool (*is_asked)(void *user);
-    void *user;
+    void *user; /* argument of is_asked */
 };
 
 /* NULL: never stops */
