@@ -1,6 +1,5 @@
 /* Passes by the highest digits, in parallel, group the items into buckets that fit the cache. Each bucket is then
- * sorted from the lowest digit to the highest. Items move between two arrays. `home` is true if they are in the array
- * that must hold the result. */
+ * sorted from the lowest digit to the highest. Items move between two arrays, of which one must hold the result. */
 #include "triangle/base/radix.h"
 
 #include <assert.h>

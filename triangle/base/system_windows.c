@@ -100,7 +100,7 @@ static tri_file refuse(tri_file file, int why)
 
 static const DWORD given[] = {STD_INPUT_HANDLE, STD_OUTPUT_HANDLE, STD_ERROR_HANDLE};
 
-/* Returns the standard stream that has this name on Linux, or TRI_NO_FILE for other names. */
+/* Returns stdin, stdout or stderr if this is its name on Linux, otherwise TRI_NO_FILE. */
 static tri_file standard(const char *path)
 {
     static const char *const names[] = {"in", "out", "err"};
