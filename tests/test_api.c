@@ -380,7 +380,7 @@ static void test_invalid_edge_lengths_are_refused(void **state)
 struct lengths {
     double length;
     double slope;   /* lengths decrease by this much per unit of x */
-    double octaves; /* lengths vary by this many octaves between neighbouring places */
+    double octaves; /* lengths vary by this many octaves, at random by place */
     atomic_llong asked;
     long long most; /* number of calls after which `stop` returns true */
 };
@@ -486,8 +486,7 @@ static void test_error_names_the_place_of_an_invalid_length(void **state)
     settings.edge_length = length_to_two;
     settings.note = keep_note;
     settings.note_user = note;
-    for (int way = 0; way < 3; way++) { /* sequential; parallel with callbacks on one thread; parallel with callbacks on
-                                         * several */
+    for (int way = 0; way < 3; way++) { /* sequential; parallel, callbacks on one thread or on all */
         double x = 0, y = 0, length = 0;
         settings.callbacks_in_parallel = way == 2;
         enum tri_status status = way == 0 ? tri_mesh_new(&mesh, &figure, &settings, NULL)
@@ -671,9 +670,9 @@ static struct tri_figure scattered(int n)
     return figure;
 }
 
-/* Triangles that violate bounds of the judgement that were not bounds of a refinement count as deferred. Bounds of the
- * last refinement have other reasons. */
-static void test_bounds_not_in_the_settings_are_deferred(void **state)
+/* Bad triangles count as deferred if no refinement had these bounds. With the bounds of the last refinement they have
+ * other reasons. */
+static void test_bounds_of_no_refinement_are_deferred(void **state)
 {
     (void)state;
     const struct tri_figure figure = scattered(500);
@@ -1057,7 +1056,7 @@ int main(void)
         cmocka_unit_test(test_input_that_is_not_finite_is_refused),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_bounds_not_in_the_settings_are_deferred),
+        cmocka_unit_test(test_bounds_of_no_refinement_are_deferred),
         cmocka_unit_test(test_progress),
         cmocka_unit_test(test_progress_of_angles),
         cmocka_unit_test(test_invalid_figures_are_refused),
