@@ -169,8 +169,8 @@ static bool take(void *user, struct tri_point q, double work)
     return true;
 }
 
-/* Samples contain all work except less than the last sample. A smaller grain makes more samples. Sampling ends when the
- * callback rejects a sample. */
+/* The samples add up to the whole work, except for a rest that is too small for a sample. A smaller grain makes more
+ * samples. Sampling ends when the callback rejects a sample. */
 static void test_samples(void **state)
 {
     (void)state;
