@@ -5,8 +5,8 @@
  * It is made if it lowers the sum of their excesses; then the corners move to better places.
  *
  * INVARIANT. The flip and the moves are undone unless the energy of the corners' stars (star.h) has decreased, no
- * triangle in them violates the angle bound, and the smallest q has not decreased or is good. All triangles stay counter-clockwise (exactly). Fixed
- * vertices stay; no subsegment and no border of regions is crossed. */
+ * triangle in them violates the angle bound, and the smallest q has not decreased or is good. All triangles stay
+ * counter-clockwise (exactly). Fixed vertices stay; no subsegment and no border of regions is crossed. */
 #include "triangle/refine/degrees.h"
 
 #include <assert.h>
