@@ -1,5 +1,5 @@
 /* Triangle's files, and meshes in the formats of other programs, read into figures and written from them; in the
- * library tritext. */
+ * library ptriangle-files. */
 #ifndef PTRIANGLE_FILES_H
 #define PTRIANGLE_FILES_H
 
