@@ -119,7 +119,7 @@ function(ptriangle_exports target)
         set(list ${CMAKE_CURRENT_BINARY_DIR}/exports.txt)
         ptriangle_write_exports(${list} "" _)
         check_linker_flag(C "SHELL:-Xlinker -exported_symbols_list -Xlinker \"${list}\"" PTRIANGLE_HAVE_EXPORT_LIST)
-        if(PTRIANGLE_HAVE_EXPORT_LIST) # zig has none
+        if(PTRIANGLE_HAVE_EXPORT_LIST) # zig ignores it
             target_link_options(${target} PRIVATE "SHELL:-Xlinker -exported_symbols_list -Xlinker \"${list}\"")
         endif()
     else()

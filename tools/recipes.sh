@@ -49,7 +49,7 @@ for recipe; do
 import sys
 from rattler_build import Stage0Recipe, VariantConfig
 for variant in Stage0Recipe.from_file(sys.argv[1]).render(VariantConfig({"python": ["3.13"], "c_stdlib": ["sysroot"]})):
-    recipe = variant.recipe().to_dict() if callable(getattr(variant, "recipe")) else variant.recipe.to_dict()
+    recipe = variant.recipe.to_dict()
     print(recipe["package"], recipe["requirements"]["run"])
 END
         ;;

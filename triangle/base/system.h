@@ -243,6 +243,12 @@ void tri_monitor_leave(struct tri_monitor *monitor);
 void tri_monitor_wait(struct tri_monitor *monitor);   /* inside: leaves, waits until somebody wakes all, and enters */
 void tri_monitor_wake(struct tri_monitor *monitor);   /* all that wait */
 
+/* --- functions of the program */
+
+#ifdef __APPLE__
+void (*tri_find_function(const char *name))(void); /* by its name; NULL: the program has none */
+#endif
+
 /* --- processes and hosts */
 
 long tri_process(void); /* the number of this one */
