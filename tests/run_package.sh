@@ -117,7 +117,7 @@ built=$(find sub -name '*.a' -exec basename {} +)
 [ "$built" = libtriangle.a ] || fail "the subproject builds" $built
 (cd sub && "${cmake%cmake}ctest" -N | grep -q 'Total Tests: 0') || fail "the subproject has tests"
 ! grep -rq -e -Werror sub/*/ptriangle-build/CMakeFiles/*/flags.make || fail "the subproject has warnings as errors"
-! grep -q '^MPI_C\|^OpenMP_C_FLAGS:.*NOTFOUND' sub/CMakeCache.txt || fail "the subproject looks for MPI"
+! grep -q '^MPI_C' sub/CMakeCache.txt || fail "the subproject looks for MPI"
 "$cmake" --install sub --prefix "$work/sub_installed" >install.log
 [ "$(find sub_installed -type f | wc -l)" -eq 1 ] || fail "the subproject installs files of its own"
 echo "package: as it should be"
