@@ -62,6 +62,7 @@ foreach(file IN ITEMS share/ptriangle/ptriangleConfig.cmake share/ptriangle/usag
         message(FATAL_ERROR "no ${file}")
     endif()
 endforeach()
-if(EXISTS ${CURRENT_PACKAGES_DIR}/lib/cmake OR EXISTS ${CURRENT_PACKAGES_DIR}/bin)
+file(GLOB_RECURSE misplaced ${CURRENT_PACKAGES_DIR}/lib/cmake/* ${CURRENT_PACKAGES_DIR}/bin/*)
+if(misplaced)
     message(FATAL_ERROR "files at places that vcpkg does not allow")
 endif()
