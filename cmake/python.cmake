@@ -15,7 +15,8 @@ if(WIN32)
     target_sources(libptriangle_python PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/python.def)
     set_target_properties(libptriangle_python PROPERTIES PREFIX lib)
 else()
-    set_target_properties(libptriangle_python PROPERTIES INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF)
+    set_target_properties(libptriangle_python PROPERTIES INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
+        INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON) # on macOS, no folder of this machine
     ptriangle_exports(libptriangle_python)
 endif()
 target_link_libraries(libptriangle_python PRIVATE m ptriangle_threads)
