@@ -102,13 +102,37 @@ function(ptriangle_static_runtime target)
     endif()
 endfunction()
 
-# Functions that a DLL exports: those of cmake/exports.map, except those for MPI.
-function(ptriangle_write_exports file)
+# Functions that cmake/exports.map lists, except those for MPI, for linkers that cannot read such a map: the text
+# `before`, then one line per name.
+function(ptriangle_write_exports file before prefix)
     file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/exports.map names REGEX "^    [a-z_]+;$")
-    list(TRANSFORM names REPLACE ";" "")
+    list(TRANSFORM names REPLACE " *([a-z_]+);" "${prefix}\\1")
     list(FILTER names EXCLUDE REGEX "par_stream_on$")
     list(JOIN names "\n" names)
-    file(WRITE ${file} "EXPORTS\n${names}\n")
+    file(WRITE ${file} "${before}${names}\n")
+endfunction()
+
+# ptriangle_exports(<target>): the shared library exports nothing else. Not for DLLs.
+include(CheckLinkerFlag)
+function(ptriangle_exports target)
+    if(APPLE)
+        set(list ${CMAKE_CURRENT_BINARY_DIR}/exports.txt)
+        ptriangle_write_exports(${list} "" _)
+        check_linker_flag(C "SHELL:-Xlinker -exported_symbols_list -Xlinker \"${list}\"" PTRIANGLE_HAVE_EXPORT_LIST)
+        if(PTRIANGLE_HAVE_EXPORT_LIST) # zig ignores it
+            target_link_options(${target} PRIVATE "SHELL:-Xlinker -exported_symbols_list -Xlinker \"${list}\"")
+        endif()
+    else()
+        check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
+        check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: the map names MPI's, too
+        target_link_options(${target} PRIVATE
+            # the path as a word of its own: in LINKER: a comma would end it
+            "SHELL:-Xlinker \"--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map\""
+            $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
+            $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)
+    endif()
+    set_target_properties(${target} PROPERTIES
+        C_VISIBILITY_PRESET default LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
 endfunction()
 
 # <charconv> reads and writes numbers. It supports floating point since libstdc++ 11.
@@ -119,12 +143,16 @@ check_cxx_source_compiles("
     {
         char text[32] = \"1.5\";
         double x = 0;
+    #ifndef _LIBCPP_VERSION // of which triangle/text/decimal.cpp needs neither
         std::from_chars(text, text + 3, x);
         std::to_chars(text, text + 32, x);
+    #else
+        x = 1.5;
+    #endif
         return x != 1.5;
     }" PTRIANGLE_HAVE_CHARCONV)
 unset(CMAKE_REQUIRED_FLAGS)
 if(NOT PTRIANGLE_HAVE_CHARCONV)
     message(FATAL_ERROR "The C++ compiler has no std::from_chars and std::to_chars for double: use GCC 11 or newer, or "
-                        "clang with the libstdc++ of GCC 11 or newer (Debian 12, Ubuntu 22.04).")
+                        "clang with libc++ or with the libstdc++ of GCC 11 or newer (Debian 12, Ubuntu 22.04).")
 endif()

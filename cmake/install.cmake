@@ -6,10 +6,20 @@ include(CMakePackageConfigHelpers)
 set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)
 
 get_property(libraries GLOBAL PROPERTY PTRIANGLE_LIBRARIES)
+set(mpi_library ${libraries})
+list(FILTER mpi_library INCLUDE REGEX "^libptriangle-mpi")
+list(FILTER libraries EXCLUDE REGEX "^libptriangle-mpi")
 get_property(executables GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
 install(TARGETS ${libraries} EXPORT ptriangleTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
+if(TARGET libptriangle-mpi) # may be installed apart from the others
+    install(TARGETS ${mpi_library} EXPORT ptriangleMpiTargets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
+    install(EXPORT ptriangleMpiTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR}
+            COMPONENT development)
+endif()
 if(executables)
     install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endif()
@@ -51,7 +61,7 @@ endif()
 # there are only static libraries; otherwise pkg-config --static prints it, for static libraries installed beside.
 set(PTRIANGLE_PC_LIBRARY ${PTRIANGLE_PREFIX}triangle)
 set(PTRIANGLE_PC_NEEDS -lm)
-set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltricheck -ltritext")
+set(PTRIANGLE_PC_PARALLEL "-lptriangle -lptriangle-check -lptriangle-files")
 list(TRANSFORM PTRIANGLE_THREADS_RUNTIME REPLACE "^([^/].*)" "-l\\1" OUTPUT_VARIABLE runtime)
 list(JOIN runtime " " runtime)
 set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_PC_LIBRARY} ${runtime} -l${PTRIANGLE_CXX_RUNTIME} -lm")

@@ -1,7 +1,7 @@
 #!/bin/sh
 # What the libraries bring into the program of a client: names of their own alone, no way to print or to end it, and two
 # forms of triangulate() of which the linker takes one whole.
-# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libtritext.a libtricheck.a
+# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libptriangle-files.a libptriangle-check.a
 set -u
 nm=$1
 failed=0

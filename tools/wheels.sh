@@ -1,26 +1,30 @@
 #!/bin/sh
-# Python wheels for the systems that a Linux machine can build for: one wheel for each system serves all versions of
-# Python from 3.9 on. For Linux the compiler is zig of PyPI, which carries the C libraries; for Windows mingw-w64
-# (tools/setup.sh windows). The wheels for macOS are made by .github/workflows/wheels.yml on machines of Apple.
+# Python wheels. One wheel for each system serves all versions of Python from 3.9 on. For Linux and macOS the compiler is
+# zig of PyPI, which carries their C libraries; for Windows mingw-w64 (tools/setup.sh windows).
 # Usage: tools/wheels.sh [FOLDER] [SYSTEM...]   FOLDER: build/wheels without. Systems: manylinux_x86_64 manylinux_aarch64
-#        musllinux_x86_64 musllinux_aarch64 win_amd64; all without. The wheels lie in FOLDER/dist afterwards.
+#        musllinux_x86_64 musllinux_aarch64 macos_x86_64 macos_arm64 win_amd64; all without. The wheels lie in
+#        FOLDER/dist afterwards.
 # The first build for a system compiles its C and C++ libraries, some minutes of a core; then one minute each.
 set -eu
 cd "$(dirname "$0")/.."
 root=$PWD
 work=$root/build/wheels
 case ${1:-} in
-'' | manylinux* | musllinux* | win*) ;;
+'' | manylinux* | musllinux* | macos* | win*) ;;
 *) work=$1; shift ;;
 esac
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
-[ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
+systems="manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 macos_x86_64 macos_arm64 win_amd64"
+# shellcheck disable=SC2086 # words
+[ $# -gt 0 ] || set -- $systems
 
 triple() { # what zig calls the system, with the oldest C library that the wheel needs
     case $1 in
     manylinux_*) echo "${1#manylinux_}-linux-gnu.2.17" ;;
     musllinux_*) echo "${1#musllinux_}-linux-musl" ;;
+    macos_arm64) echo aarch64-macos.11.0 ;;
+    macos_x86_64) echo x86_64-macos.11.0 ;;
     win_amd64) ;;
     *) echo "wheels: no system $1" >&2; return 2 ;;
     esac
@@ -30,6 +34,7 @@ tag() { # of the wheel's platform, in words of PEP 600 and 656
     case $1 in
     manylinux_*) echo "manylinux_2_17_${1#manylinux_}" ;;
     musllinux_*) echo "musllinux_1_1_${1#musllinux_}" ;;
+    macos_*) echo "macosx_11_0_${1#macos_}" ;;
     win_*) echo "$1" ;;
     esac
 }
@@ -43,8 +48,10 @@ toolchain() { # toolchain SYSTEM FOLDER: the compiler as CMake wants it
         printf '#!/bin/sh\nexec "%s" -m ziglang %s %s "$@"\n' "$python" "$driver" "$target" >"$2/$driver"
         chmod +x "$2/$driver"
     done
+    kernel=Linux
+    case $1 in macos_*) kernel=Darwin ;; esac
     cat >"$2/toolchain.cmake" <<END
-set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_NAME $kernel)
 set(CMAKE_SYSTEM_PROCESSOR ${1#*_})
 set(CMAKE_C_COMPILER "$2/cc")
 set(CMAKE_CXX_COMPILER "$2/c++")
@@ -56,6 +63,8 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_EXE_LINKER_FLAGS_INIT -s)
 set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
 END
+    # No file is installed whose paths must be changed.
+    [ $kernel = Linux ] || echo "set(CMAKE_INSTALL_NAME_TOOL true)" >>"$2/toolchain.cmake"
 }
 
 python=$work/venv/bin/python

@@ -1,5 +1,5 @@
 /* Reads figures from files of Triangle and of other programs, and writes them. These functions are in the library
- * tritext. */
+ * ptriangle-files. */
 #ifndef PTRIANGLE_FILES_H
 #define PTRIANGLE_FILES_H
 

@@ -330,7 +330,7 @@ enum tri_reason { /* why a triangle violates the bounds */
 int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_settings *settings, int64_t *by_reason,
                            int n_reasons);
 
-/* Returns the version of the library, such as "0.1.0". */
+/* Returns the version of the library, such as "0.2.0". */
 const char *tri_version(void);
 
 #ifdef __cplusplus

@@ -263,6 +263,12 @@ void tri_monitor_leave(struct tri_monitor *monitor);
 void tri_monitor_wait(struct tri_monitor *monitor);   /* in the lock: unlocks, waits to be woken, locks again */
 void tri_monitor_wake(struct tri_monitor *monitor);   /* wakes all waiting threads */
 
+/* --- functions of the program */
+
+#ifdef __APPLE__
+void (*tri_find_function(const char *name))(void); /* by its name; NULL: the program has none */
+#endif
+
 /* --- processes and hosts */
 
 long tri_process(void); /* id of this process */

@@ -23,6 +23,19 @@
 #ifdef __linux__
 #include <sys/vfs.h>
 #endif
+#ifdef __APPLE__
+#include <dlfcn.h>
+#include <mach/mach.h>
+
+/* Darwin reserves space behind the end of a file. Returns 0, or an errno, as POSIX does. */
+static int posix_fallocate(int file, off_t place, off_t n)
+{
+    fstore_t space = {.fst_flags = F_ALLOCATEALL, .fst_posmode = F_PEOFPOSMODE, .fst_length = n};
+    if (fcntl(file, F_PREALLOCATE, &space) != 0 && errno != ENOTSUP)
+        return errno;
+    return ftruncate(file, place + n) == 0 ? 0 : errno;
+}
+#endif
 
 #ifndef O_DIRECT
 #define O_DIRECT 0 /* not available on this system */
@@ -126,6 +139,10 @@ bool tri_file_cut(tri_file file, uint64_t size) { return ftruncate((int)file, (o
 bool tri_file_sync(tri_file file)
 {
     int result;
+#ifdef F_FULLFSYNC /* Darwin: its fsync() leaves data in the cache of the disk */
+    if (fcntl((int)file, F_FULLFSYNC) == 0)
+        return true;
+#endif
     do
         result = fsync((int)file);
     while (result != 0 && errno == EINTR);
@@ -437,6 +454,18 @@ void tri_file_release_pages(void *at, size_t size) { madvise(at, size, MADV_DONT
 
 /* --- memory */
 
+#ifdef __APPLE__
+double tri_memory_used(double *of_files)
+{
+    mach_task_basic_info_data_t task;
+    mach_msg_type_number_t n = MACH_TASK_BASIC_INFO_COUNT;
+    if (of_files)
+        *of_files = 0;
+    return task_info(mach_task_self(), MACH_TASK_BASIC_INFO, (task_info_t)&task, &n) == KERN_SUCCESS
+               ? (double)task.resident_size
+               : 0;
+}
+#else
 double tri_memory_used(double *of_files)
 {
     char text[128];
@@ -451,6 +480,7 @@ double tri_memory_used(double *of_files)
         *of_files = known ? (double)files * page : 0;
     return known ? (double)all * page : 0;
 }
+#endif
 
 void tri_memory_trim(void)
 {
@@ -478,6 +508,16 @@ bool tri_pause(double seconds)
     time.tv_nsec = (long)(1e9 * (seconds - (double)time.tv_sec));
     return nanosleep(&time, NULL) == 0;
 }
+
+#ifdef __APPLE__
+void (*tri_find_function(const char *name))(void)
+{
+    void *const found = dlsym(RTLD_DEFAULT, name);
+    void (*function)(void);
+    memcpy(&function, &found, sizeof function);
+    return function;
+}
+#endif
 
 /* --- processes and hosts */
 

@@ -18,6 +18,12 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#include <mach/mach.h>
+#include <sys/sysctl.h>
+#include <sys/time.h>
+#endif
 
 /* --- memory and disk */
 
@@ -46,6 +52,20 @@ static double find_number(const char *path, const char *word)
     return value;
 }
 
+#ifdef __APPLE__
+static double of_machine(enum extent extent)
+{
+    uint64_t total;
+    size_t bytes = sizeof total;
+    if (extent == ALL)
+        return sysctlbyname("hw.memsize", &total, &bytes, NULL, 0) == 0 ? (double)total : HUGE_VAL;
+    vm_statistics64_data_t pages;
+    mach_msg_type_number_t n = HOST_VM_INFO64_COUNT;
+    if (host_statistics64(mach_host_self(), HOST_VM_INFO64, (host_info64_t)&pages, &n) != KERN_SUCCESS)
+        return HUGE_VAL;
+    return ((double)pages.free_count + pages.inactive_count + pages.purgeable_count) * (double)sysconf(_SC_PAGESIZE);
+}
+#else
 static double of_machine(enum extent extent)
 {
     static const char file[] = "/proc/meminfo";
@@ -56,6 +76,7 @@ static double of_machine(enum extent extent)
     double available = find_number(file, "MemAvailable:"), swap = find_number(file, "SwapFree:");
     return available < 0 ? HUGE_VAL : 1024 * (available + fmax(swap, 0));
 }
+#endif
 
 static double of_limit(int resource, double used)
 {
@@ -203,6 +224,16 @@ char **tri_arguments(int argc, char **argv)
 
 const char *tri_word_quote(void) { return "'"; }
 
+#ifdef __APPLE__
+bool tri_own_path(char path[TRI_PATH])
+{
+    uint32_t room = TRI_PATH;
+    const bool whole = _NSGetExecutablePath(path, &room) == 0;
+    if (!whole)
+        path[0] = '\0';
+    return whole;
+}
+#else
 bool tri_own_path(char path[TRI_PATH])
 {
     const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);
@@ -210,6 +241,7 @@ bool tri_own_path(char path[TRI_PATH])
     path[whole ? n : 0] = '\0';
     return whole;
 }
+#endif
 
 /* --- the terminal */
 
@@ -242,7 +274,11 @@ void tri_say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text))
 /* --- interrupts */
 
 static struct tri_interrupts handlers; /* set before the first signal can arrive */
+#ifdef __APPLE__
+static volatile double alarm_time; /* when the alarm is due, by tri_seconds(); 0: none is set */
+#else
 static timer_t timer;
+#endif
 
 static const struct kind {
     int number;
@@ -264,18 +300,34 @@ const char *tri_interrupt_name(int number)
     return NULL;
 }
 
+#ifdef __APPLE__ /* no timer_create(); an alarm of another process is known by coming too early */
+static bool make_timer(void) { return true; }
+static bool is_alarm(const siginfo_t *info) { return (void)info, alarm_time > 0 && tri_seconds() > alarm_time - 1; }
+
+void tri_alarm(double seconds)
+{
+    struct itimerval once = {.it_value.tv_sec = (time_t)seconds};
+    once.it_value.tv_usec = (int)fmax(1e6 * (seconds - (double)once.it_value.tv_sec), 1);
+    alarm_time = seconds > 0 ? tri_seconds() + seconds : 0;
+    setitimer(ITIMER_REAL, &once, NULL);
+}
+#else
+static bool make_timer(void) { return timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; } /* sends SIGALRM */
+static bool is_alarm(const siginfo_t *info) { return info->si_code == SI_TIMER; }
+
 void tri_alarm(double seconds)
 {
     struct itimerspec once = {.it_value.tv_sec = (time_t)seconds};
     once.it_value.tv_nsec = (long)(1e9 * (seconds - (double)once.it_value.tv_sec));
     timer_settime(timer, 0, &once, NULL);
 }
+#endif
 
 static void handle_end(int number, siginfo_t *info, void *context)
 {
     const int reason = errno;
     (void)context;
-    if (number == SIGALRM && info->si_code == SI_TIMER)
+    if (number == SIGALRM && is_alarm(info))
         handlers.time_is_up();
     else
         handlers.asked(number);
@@ -310,7 +362,7 @@ bool tri_interrupts_catch(const struct tri_interrupts *to)
 {
     sigset_t alarm;
     handlers = *to;
-    const bool has_timer = timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; /* sends SIGALRM */
+    const bool has_timer = make_timer();
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
     for (int i = 0; i < N_ENDS; i++)
