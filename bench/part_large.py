@@ -84,7 +84,8 @@ def _lacks(settings, run):
 
 def _stream_program(settings):
     program = os.path.join(settings.work, "stream")
-    libraries = [os.path.join(settings.programs, f"lib{name}.a") for name in ("ptriangle", "tritext", "triangle")]
+    libraries = [os.path.join(settings.programs, f"lib{name}.a")
+                 for name in ("ptriangle", "ptriangle-files", "triangle")]
     subprocess.run([os.environ.get("CC", "cc"), "-O2", "-I", os.path.join(settings.root, "include"),
                     os.path.join(settings.root, "bench", "stream_memory.c"), "-o", program,
                     *libraries, "-fopenmp", "-lm",

@@ -1,6 +1,5 @@
-# Manual pages and completions for bash, made by cmake/help.awk of what the programs print for --help: what a program
-# says of itself is written in one place. Left out where there is no awk, or the programs are for a machine that cannot
-# be run.
+# Manual pages and completions for bash. cmake/help.awk makes them from the output of --help, so each option is
+# described in one place. They are left out if there is no awk, or if the programs are for another machine.
 find_program(PTRIANGLE_AWK awk)
 get_property(programs GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
 if(NOT PTRIANGLE_AWK OR (CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR))

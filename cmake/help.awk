@@ -1,5 +1,5 @@
-# Makes the manual page of a program, or its completion for bash, of what it prints for --help. That text consists of
-# paragraphs, one empty line apart:
+# Makes the manual page of a program, or its completion for bash, from the output of --help. That text consists of
+# paragraphs, separated by one empty line:
 #   the first       usage: PROGRAM ...
 #   lists           entries "  TAG  MEANING", two blanks or more before the meaning, which goes on in lines indented by more
 #                   than eight; a line at the margin right before the first entry is their title

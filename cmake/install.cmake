@@ -1,15 +1,25 @@
-# cmake --install: executables, libraries, public headers, CMake package, pkg-config files. Nothing installed
-# names a folder of the machine that built it: the tree may be moved. Components: programs, runtime (shared libraries)
+# cmake --install: executables, libraries, public headers, CMake package, pkg-config files. Installed files contain no
+# paths of the build machine, so the tree may be moved. Components: programs, runtime (shared libraries)
 # and development.
 
 include(CMakePackageConfigHelpers)
 set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)
 
 get_property(libraries GLOBAL PROPERTY PTRIANGLE_LIBRARIES)
+set(mpi_library ${libraries})
+list(FILTER mpi_library INCLUDE REGEX "^libptriangle-mpi")
+list(FILTER libraries EXCLUDE REGEX "^libptriangle-mpi")
 get_property(executables GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
 install(TARGETS ${libraries} EXPORT ptriangleTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
+if(TARGET libptriangle-mpi) # may be installed apart from the others
+    install(TARGETS ${mpi_library} EXPORT ptriangleMpiTargets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
+    install(EXPORT ptriangleMpiTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR}
+            COMPONENT development)
+endif()
 if(executables)
     install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endif()
@@ -47,11 +57,11 @@ set(PTRIANGLE_PC_SINGLE "")
 if(PTRIANGLE_SINGLE)
     set(PTRIANGLE_PC_SINGLE " -DSINGLE")
 endif()
-# A shared library knows what it needs; of a static one the client's linker must be told: at once, or, where there are
-# shared ones, when it asks (pkg-config --static), in case static ones were installed beside.
+# A shared library lists its own dependencies. For a static one the linker of the client needs the list. It is public if
+# there are only static libraries; otherwise pkg-config --static prints it, for static libraries installed beside.
 set(PTRIANGLE_PC_LIBRARY ${PTRIANGLE_PREFIX}triangle)
 set(PTRIANGLE_PC_NEEDS -lm)
-set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltricheck -ltritext")
+set(PTRIANGLE_PC_PARALLEL "-lptriangle -lptriangle-check -lptriangle-files")
 list(TRANSFORM PTRIANGLE_THREADS_RUNTIME REPLACE "^([^/].*)" "-l\\1" OUTPUT_VARIABLE runtime)
 list(JOIN runtime " " runtime)
 set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_PC_LIBRARY} ${runtime} -l${PTRIANGLE_CXX_RUNTIME} -lm")
@@ -64,7 +74,7 @@ configure_file(cmake/ptriangle.pc.in ptriangle.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${PTRIANGLE_PREFIX}triangle.pc ${CMAKE_CURRENT_BINARY_DIR}/ptriangle.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
-# A C compiler of the MPI adds what its libraries need.
+# The C compiler wrapper of the MPI adds the libraries that it needs.
 if(TARGET libptriangle-mpi)
     configure_file(cmake/ptriangle-mpi.pc.in ptriangle-mpi.pc @ONLY)
     install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ptriangle-mpi.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig

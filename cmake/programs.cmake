@@ -1,10 +1,10 @@
-# The executables, from drivers/, and the examples. They link the static libraries, whose inside they know.
+# The executables, from drivers/, and the examples. They link the static libraries and use their internal functions.
 if(WIN32)
     enable_language(RC)
 endif()
 
-# HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at
-# least 1.10.5, which writes chunks directly and tells where they lie; and zlib, which it needs itself.
+# HDF5, which ptriangle writes, and trianglecheck and meshplot read. It is optional. Required are the serial C library,
+# at least 1.10.5, which writes chunks directly and returns their place, and zlib, which HDF5 needs itself.
 find_package(ZLIB)
 include(CheckCSourceCompiles)
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
@@ -20,7 +20,7 @@ endif()
 function(ptriangle_hdf5_library name)
     add_library(lib${name} STATIC ${ARGN})
     set_target_properties(lib${name} PROPERTIES OUTPUT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-    target_link_libraries(lib${name} PUBLIC libtritext libtriangle)
+    target_link_libraries(lib${name} PUBLIC libptriangle-files libtriangle)
     ptriangle_flags(lib${name} STRICT)
 endfunction()
 ptriangle_hdf5_library(trinohdf5 ${PTRIANGLE_NO_HDF5_SOURCES})
@@ -34,9 +34,9 @@ else()
     add_library(libtrihdf5 ALIAS libtrinohdf5)
 endif()
 
-# MPI and HDF5 are loaded when they are needed (drivers/start.h), where a module can be, and lies at the same place
-# seen from the program in this folder and where it is installed. Not with sanitizers: LeakSanitizer stumbles at the end
-# over the threads' storage of what has been loaded.
+# MPI and HDF5 are loaded only if they are needed (drivers/start.h). This requires modules, and the same relative path
+# from program to module in the build folder and after installation. It is disabled with sanitizers, because
+# LeakSanitizer fails on thread-local storage of loaded modules.
 option(PTRIANGLE_MODULES "Programs load MPI and HDF5 when they are needed, by modules, where these can be loaded" ON)
 file(RELATIVE_PATH PTRIANGLE_MODULE_DIR /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR}/ptriangle)
 set(PTRIANGLE_USE_MODULES OFF)
@@ -71,8 +71,7 @@ function(ptriangle_program name)
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_EXECUTABLES ${name})
 endfunction()
 
-# A program that may need MPI or HDF5: the objects <name>_parts; the executable; and, where modules are used,
-# <name>_module.
+# A program that may need MPI or HDF5: the objects <name>_parts, the executable, and <name>_module if modules are used.
 # Sources are added to the parts, libraries by ptriangle_link_parts.
 function(ptriangle_program_of_parts name)
     ptriangle_program(${name} SOURCES drivers/start.c $<TARGET_OBJECTS:${name}_parts>)
@@ -108,15 +107,15 @@ function(ptriangle_link_parts name)
 endfunction()
 
 foreach(name IN LISTS PTRIANGLE_SEQUENTIAL_PROGRAMS)
-    ptriangle_program(${name} SOURCES ${PTRIANGLE_MAIN_${name}} LIBS libtricheck libtritext libtriangle)
+    ptriangle_program(${name} SOURCES ${PTRIANGLE_MAIN_${name}} LIBS libptriangle-check libptriangle-files libtriangle)
 endforeach()
 add_library(judged OBJECT ${PTRIANGLE_JUDGED_SOURCES})
 set_target_properties(judged PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_link_libraries(judged PUBLIC libtritext libtriangle)
+target_link_libraries(judged PUBLIC libptriangle-files libtriangle)
 ptriangle_flags(judged STRICT)
 
-# The judge, on all cores.
-ptriangle_program_of_parts(trianglecheck judged libtricheck)
+# trianglecheck, on all cores.
+ptriangle_program_of_parts(trianglecheck judged libptriangle-check)
 target_sources(trianglecheck_parts PRIVATE ${PTRIANGLE_JUDGE_SOURCES})
 ptriangle_link_parts(trianglecheck ptriangle_threads)
 foreach(name IN LISTS PTRIANGLE_EXAMPLES)
@@ -126,7 +125,7 @@ foreach(name IN LISTS PTRIANGLE_EXAMPLES)
     ptriangle_flags(${name} STRICT)
 endforeach()
 
-# PETSc of the same MPI, which its headers look for themselves.
+# PETSc for the same MPI; its headers include those of MPI.
 find_package(PkgConfig QUIET)
 if(TARGET libptriangle-mpi AND PKG_CONFIG_FOUND)
     pkg_search_module(PETSC QUIET IMPORTED_TARGET PETSc petsc)
@@ -145,14 +144,14 @@ if(PTRIANGLE_PETSC)
     endforeach()
 endif()
 
-# The report of a parallel run is written with jansson; without, everything else is built.
+# jansson writes the report of a parallel run. It is optional.
 find_path(JANSSON_INCLUDE jansson.h)
 find_library(JANSSON_LIBRARY jansson)
 if(NOT (JANSSON_INCLUDE AND JANSSON_LIBRARY))
     message(STATUS "no jansson (Debian: libjansson-dev): ptriangle is built without --report")
 endif()
 foreach(name IN LISTS PTRIANGLE_PARALLEL_PROGRAMS)
-    ptriangle_program_of_parts(${name} libptriangle libtricheck libtritext libtriangle ptriangle_threads)
+    ptriangle_program_of_parts(${name} libptriangle libptriangle-check libptriangle-files libtriangle ptriangle_threads)
     target_sources(${name}_parts PRIVATE ${PTRIANGLE_PARALLEL_SOURCES})
     target_compile_definitions(${name}_parts PRIVATE $<$<BOOL:${PTRIANGLE_TESTS}>:PTRIANGLE_TESTS>)
     if(JANSSON_INCLUDE AND JANSSON_LIBRARY)
@@ -182,11 +181,11 @@ foreach(name IN LISTS PTRIANGLE_RUN_PROGRAMS)
     endif()
 endforeach()
 
-# meshplot draws with cairo; without, everything else is built.
+# meshplot draws with cairo. It is optional.
 find_path(CAIRO_INCLUDE cairo.h PATH_SUFFIXES cairo)
 find_library(CAIRO_LIBRARY cairo)
 if(CAIRO_INCLUDE AND CAIRO_LIBRARY)
-    ptriangle_program_of_parts(meshplot judged libtricheck ${CAIRO_LIBRARY})
+    ptriangle_program_of_parts(meshplot judged libptriangle-check ${CAIRO_LIBRARY})
     target_sources(meshplot_parts PRIVATE ${PTRIANGLE_PLOT_SOURCES})
     target_compile_definitions(meshplot_parts PRIVATE $<$<BOOL:${PTRIANGLE_TESTS}>:PTRIANGLE_TESTS>)
     target_include_directories(meshplot_parts SYSTEM PRIVATE ${CAIRO_INCLUDE})

@@ -1,6 +1,6 @@
-# What the Python package (python/) carries: one shared library, with everything in one, and the programs. All have the
-# C++ runtime inside, so that a wheel needs neither a compiler nor packages of the system; but for meshplot, which needs
-# libcairo. The target python_package builds all.
+# The binaries of the Python package (python/): one shared library with all functions, and the programs. All contain the
+# C++ runtime, so a wheel needs neither a compiler nor system packages, except that meshplot needs libcairo. The target
+# python_package builds everything.
 set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
 list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
 list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
@@ -11,21 +11,13 @@ ptriangle_static_runtime(libptriangle_python)
 target_compile_options(libptriangle_python PRIVATE
     -fno-semantic-interposition $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
 if(WIN32)
-    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/python.def)
+    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/python.def "EXPORTS\n" "    ")
     target_sources(libptriangle_python PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/python.def)
     set_target_properties(libptriangle_python PROPERTIES PREFIX lib)
 else()
-    set_target_properties(libptriangle_python PROPERTIES
-        C_VISIBILITY_PRESET default INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
-        LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
-    include(CheckLinkerFlag)
-    check_linker_flag(C LINKER:-Bsymbolic-functions PTRIANGLE_HAVE_BSYMBOLIC) # zig has none
-    check_linker_flag(C LINKER:--undefined-version PTRIANGLE_HAVE_UNDEFINED_VERSION) # lld: exports.map names MPI's, too
-    target_link_options(libptriangle_python PRIVATE
-        # the path as a word of its own: in LINKER: a comma would end it
-        "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
-        $<$<BOOL:${PTRIANGLE_HAVE_BSYMBOLIC}>:LINKER:-Bsymbolic-functions>
-        $<$<BOOL:${PTRIANGLE_HAVE_UNDEFINED_VERSION}>:LINKER:--undefined-version> LINKER:-z,defs)
+    set_target_properties(libptriangle_python PROPERTIES INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
+        INSTALL_NAME_DIR @rpath BUILD_WITH_INSTALL_NAME_DIR ON) # on macOS, no folder of this machine
+    ptriangle_exports(libptriangle_python)
 endif()
 target_link_libraries(libptriangle_python PRIVATE m ptriangle_threads)
 install(TARGETS libptriangle_python

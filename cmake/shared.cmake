@@ -1,8 +1,8 @@
-# Shared libraries for clients. Each consists of objects of its own and lets nothing out but the functions that
-# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what
-# it needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
+# Shared libraries for clients. Each has its own objects and exports only the functions in cmake/exports.map. So
+# libptriangle contains libtriangle, whose internal functions it uses, and libptriangle-files contains the parts that it
+# needs. A client links libtriangle or libptriangle, and libptriangle-files if it reads or writes files.
 
-# On Windows there is one, with everything inside, its import library, and the list of its functions for other linkers.
+# On Windows there is one DLL with all functions, its import library, and the list of its functions for other linkers.
 if(WIN32)
     set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
     if(TARGET libptriangle)
@@ -15,7 +15,7 @@ if(WIN32)
     ptriangle_library_settings(libptriangle_shared ptriangle)
     ptriangle_dropin(libptriangle_shared)
     ptriangle_static_runtime(libptriangle_shared)
-    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/ptriangle.def)
+    ptriangle_write_exports(${CMAKE_CURRENT_BINARY_DIR}/ptriangle.def "EXPORTS\n" "    ")
     set_target_properties(libptriangle_shared PROPERTIES PREFIX "")
     target_compile_options(libptriangle_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
     if(TARGET libptriangle)
@@ -32,15 +32,10 @@ function(ptriangle_shared name)
     add_library(ptriangle::${name} ALIAS ${target})
     ptriangle_library_settings(${target} ${name})
     set_target_properties(${target} PROPERTIES
-        C_VISIBILITY_PRESET default
         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-        INSTALL_RPATH $ORIGIN
-        LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+        INSTALL_RPATH $<IF:$<BOOL:${APPLE}>,@loader_path,$ORIGIN>)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
-    target_link_options(${target} PRIVATE
-        # the path as a word of its own: in LINKER: a comma would end it
-        "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
-        LINKER:-Bsymbolic-functions LINKER:-z,defs)
+    ptriangle_exports(${target})
     set_target_properties(lib${name} PROPERTIES EXCLUDE_FROM_ALL ON)
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_LIBRARIES ${target})
 endfunction()
@@ -50,19 +45,19 @@ set_target_properties(libtriangle_shared PROPERTIES OUTPUT_NAME ${PTRIANGLE_PREF
 ptriangle_dropin(libtriangle_shared)
 target_link_libraries(libtriangle_shared PRIVATE m)
 
-ptriangle_shared(tricheck ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_CHECK_NEEDS})
-target_link_libraries(libtricheck_shared PRIVATE m)
+ptriangle_shared(ptriangle-check ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_CHECK_NEEDS})
+target_link_libraries(libptriangle-check_shared PRIVATE m)
 
-ptriangle_shared(tritext ${PTRIANGLE_TEXT_SOURCES} ${PTRIANGLE_TEXT_NEEDS})
-target_compile_options(libtritext_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
-ptriangle_static_runtime(libtritext_shared)
+ptriangle_shared(ptriangle-files ${PTRIANGLE_TEXT_SOURCES} ${PTRIANGLE_TEXT_NEEDS})
+target_compile_options(libptriangle-files_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+ptriangle_static_runtime(libptriangle-files_shared)
 
 set(mesher ${PTRIANGLE_MESHER_SOURCES})
 list(REMOVE_ITEM mesher triangle/dropin/triangulate.c) # its triangulate() is the other one
 ptriangle_shared(ptriangle ${mesher} ${PTRIANGLE_SCHED_SOURCES})
 ptriangle_dropin(libptriangle_shared)
 target_link_libraries(libptriangle_shared PRIVATE m $<BUILD_INTERFACE:ptriangle_threads>)
-if(OpenMP_C_FOUND) # whose runtime has threads that live on for a while: it must not be unloaded
+if(OpenMP_C_FOUND AND NOT APPLE) # whose runtime has threads that live on for a while: it must not be unloaded
     target_link_options(libptriangle_shared PRIVATE LINKER:-z,nodelete)
 endif()
 if(TARGET libptriangle-mpi)

@@ -1,7 +1,7 @@
-# What is built from what: explicit lists, in the order in which data flows. No globs: a stray file is found by the test
-# `house_rules`, which also reads this file on its own.
+# Explicit lists of sources, in the order in which data flows. There are no globs: the test `house_rules`, which also
+# reads this file, finds files that are in no list.
 
-# The door to the system (triangle/base/system.h): what libraries use of it, and what programs use beside that.
+# The interface to the system (triangle/base/system.h): the parts for libraries, and further parts for programs.
 set(PTRIANGLE_SYSTEM_SOURCES triangle/base/system.c triangle/base/system_posix.c)
 set(PTRIANGLE_SYSTEM_PROCESS_SOURCES triangle/base/system_posix_process.c)
 if(WIN32)
@@ -78,7 +78,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/aloud.c
     triangle/dropin/triangulate.c)
 
-# Folder triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
+# Folder triangle/check/, the checker of meshes, and its public interface. Of the mesher it uses only the predicates.
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/survey.c
@@ -124,7 +124,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/size_file.c
     triangle/api/files.c)
 
-# Folder triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
+# Folder triangle/, HDF5 files, for the programs only. Without the HDF5 library the second list replaces the first.
 set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/rows.c
@@ -135,14 +135,14 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/h5_read.c)
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c)
 
-# What text and judge need of the mesher: all that their shared libraries have of it.
+# Sources of the mesher that text and checker need. Their shared libraries contain no others.
 set(PTRIANGLE_TEXT_NEEDS triangle/base/status.c ${PTRIANGLE_SYSTEM_SOURCES} triangle/mesh/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS triangle/base/status.c triangle/base/order.c ${PTRIANGLE_SYSTEM_SOURCES}
     triangle/mesh/pslg.c triangle/api/figure.c
     triangle/geometry/predicates.c)
 
-# Folder sched/, the parallel schedule. It is compiled with OpenMP, if there is one, as are the programs ptriangle and
-# trianglecheck, and nothing else.
+# Folder sched/, the parallel schedule. It is compiled with OpenMP if available, like the programs ptriangle and
+# trianglecheck. No other code is.
 set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/threads.c
     sched/schedule/team.c
@@ -180,12 +180,11 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/schedule/par_triangulate.c
     sched/schedule/library.c)
 
-# The ranks of an MPI, where there is one: a library of its own.
+# The ranks of an MPI: a separate library, built if there is an MPI.
 set(PTRIANGLE_MPI_SOURCES sched/ranks/mpi.c)
 set(PTRIANGLE_MPI_HEADER include/ptriangle/mpi.h)
 
-# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for
-# it.
+# Headers that are installed below include/ptriangle/. triangle.h is installed where clients of Triangle expect it.
 set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/tri.h
     include/ptriangle/par.h
@@ -210,7 +209,7 @@ set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
-# meshplot, built where cairo is found.
+# meshplot, built if cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
     drivers/plot/plot_part.c
@@ -219,7 +218,7 @@ set(PTRIANGLE_PLOT_SOURCES
     drivers/plot/plot_field.c
     drivers/plot/plot_draw.c)
 
-# The command line of Triangle, for the mesh generators among the programs.
+# The command line of Triangle, for triangle and ptriangle.
 set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/arguments.c
     drivers/mesh/console.c
@@ -234,7 +233,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh/stages.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 
-# What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
+# Further sources of ptriangle. Without jansson the last file replaces the one that writes the report.
 set(PTRIANGLE_PARALLEL_SOURCES
     drivers/mesh/joint_files.c
     drivers/mesh/launch.c
@@ -247,6 +246,6 @@ set(PTRIANGLE_PARALLEL_SOURCES
 set(PTRIANGLE_REPORT_SOURCE drivers/mesh/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/mesh/report_none.c)
 
-# As one of several tasks it is a rank of an MPI, or refuses.
+# As one of several tasks it is a rank of an MPI. Without MPI it reports an error.
 set(PTRIANGLE_LAUNCH_SOURCE drivers/mesh/launch_mpi.c)
 set(PTRIANGLE_NO_LAUNCH_SOURCE drivers/mesh/launch_alone.c)

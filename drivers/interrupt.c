@@ -1,17 +1,17 @@
 /* Handlers and the program share one word, the state, and the names of the temporary files. The state says who has
- * asked for the end, whether the time to end in is over (LATE), whether the program is changing the set of files, or
- * telling of its end (HELD), whether it must end as soon as it no longer is (DUE), and whether somebody ends it
- * (ENDING). Every transition is one compare-and-exchange of the word:
+ * requested the end, whether the grace period is over (LATE), and whether the program is changing the set of files or
+ * reporting its end (HELD). It also says whether the program must end after that (DUE), and whether a thread is ending
+ * it (ENDING). Every transition is one compare-and-exchange of the word:
  *
- *     nobody has asked    -- first request -->          asked; the grace begins
+ *     no request          -- first request -->          asked; the grace begins
  *     asked               -- grace is over -->          LATE; patience begins, if there is any
  *     LATE, HELD          -- a request or the clock --> DUE; the handler returns
  *     LATE, not HELD      -- a request or the clock --> ENDING, by the handler
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
- * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`. A handler never waits
- * (docs/theory.md, the end by a signal), and calls and reads only what C and triangle/base/system.h allow in a
+ * INVARIANT: while the state is not HELD, all temporary files are listed in `temporaries`. A handler never waits
+ * (docs/theory.md, the end by a signal). It calls and reads only what C and triangle/base/system.h allow in a
  * handler. */
 #include "drivers/interrupt.h"
 
@@ -32,26 +32,26 @@ enum {
     ENDING = 2,
     LATE = 4,      /* a further request ends the program at once */
     DUE = 8,
-    GOING_ON = 16, /* what is left is to be done, though somebody has asked */
-    TOLD = 32,     /* the program has said why it ends */
+    GOING_ON = 16, /* the remaining work is done in spite of a request */
+    TOLD = 32,     /* the program has reported why it ends */
     DONE = 64,     /* all files have their names: the program ends by itself, with success */
-    WHO = 256      /* who has asked, times this */
+    WHO = 256      /* factor of the request in the state */
 };
-enum { NOBODY = 0, TIME_UP = 255 }; /* who, else the number of a signal */
+enum { NOBODY = 0, TIME_UP = 255 }; /* values of the request; all others are numbers of signals */
 
 static atomic_uint state;
 static _Atomic(const char *) stage, reached_what;
 static atomic_long reached;
-static atomic_long kept; /* triangles in a checkpoint */
-static _Atomic(const char *) go_on; /* the command for that; NULL: there is no checkpoint */
+static atomic_long kept; /* number of triangles in a checkpoint */
+static _Atomic(const char *) go_on; /* command that resumes the run; NULL: there is no checkpoint */
 static _Atomic(const char *) temporaries[TRI_MAX_OUTPUTS];
-static const char *name; /* these are set before the first handler can run */
-static double patience; /* beyond the grace */
+static const char *name; /* set before the first handler can run */
+static double patience; /* seconds after the grace period until the handler ends the program */
 static bool has_alarm;
 
-/* --- what a handler does */
+/* --- in handlers */
 
-/* Sets bits, unless one of `against` is set. Returns the state before. */
+/* Sets bits, unless one of `against` is set. Returns the previous state. */
 static unsigned set_unless(unsigned bits, unsigned against)
 {
     unsigned before = atomic_load(&state);
@@ -62,7 +62,7 @@ static unsigned set_unless(unsigned bits, unsigned against)
 
 static unsigned who_asked(void) { return atomic_load(&state) / WHO; }
 
-/* From now on this thread alone ends the program. */
+/* Makes this thread the only one that ends the program. */
 static bool take_for_good(void) { return !(set_unless(ENDING, HELD | ENDING) & (HELD | ENDING)); }
 
 static void remove_temporaries(void)
@@ -136,7 +136,7 @@ static void tell_end(void)
     interrupt_tell_kept();
 }
 
-/* After the change to ENDING. */
+/* Removes the files and ends the program, after the change to ENDING. */
 static void end_now(void)
 {
     remove_temporaries();
@@ -145,7 +145,7 @@ static void end_now(void)
     _Exit(interrupt_code());
 }
 
-/* Ends the program, or has it end itself. */
+/* Ends the program, or lets the main thread end it. */
 static void end_when_free(void)
 {
     unsigned before = atomic_load(&state), after;
@@ -164,7 +164,7 @@ static void arm(double seconds)
         set_unless(LATE, 0); /* a second signal ends the program in any case */
 }
 
-/* The first to ask gives the program its time to end. */
+/* Records the first request and starts the grace period. */
 static void ask(unsigned who)
 {
     unsigned before = set_unless(who * WHO, ~0u / WHO * WHO);
@@ -174,7 +174,7 @@ static void ask(unsigned who)
         end_when_free();
 }
 
-/* Our own timer: the limit, or the end of the grace, or of patience. */
+/* Handles our timer: the end of the limit, of the grace period, or of the patience. */
 static void time_is_up(void)
 {
     if (who_asked() == NOBODY)
@@ -193,7 +193,7 @@ static void remove_at_crash(void)
         remove_temporaries();
 }
 
-/* --- what the program does */
+/* --- in the program */
 
 static void hold(void)
 {
@@ -213,7 +213,7 @@ static void release(void)
         end_now();
 }
 
-/* What a handler would have to remove, while the state is HELD. */
+/* Publishes the names of temporary files for the handlers, while the state is HELD. */
 static void publish(const struct tri_output_set *set)
 {
     for (int i = 0; i < TRI_MAX_OUTPUTS; i++)
@@ -226,7 +226,7 @@ bool interrupt_start(const char *program, double seconds, double patient)
     name = program;
     patience = fmax(patient - GRACE, 0);
     has_alarm = tri_interrupts_catch(&handlers);
-    if (atexit(remove_at_crash) != 0 || (seconds > 0 && !has_alarm)) /* some library calls exit: OpenMP's, for one */
+    if (atexit(remove_at_crash) != 0 || (seconds > 0 && !has_alarm)) /* some libraries call exit, such as OpenMP */
         return false;
     if (seconds > 0)
         arm(seconds);
@@ -246,7 +246,7 @@ void interrupt_pass_on(int (*function)(void *user, int who), void *user)
     may_pass_on = function != NULL;
 }
 
-/* Asking costs a look into the network. */
+/* Passes requests between the tasks. It uses the network, so it does so at most every 5 ms. */
 static void ask_others(void)
 {
     static const double PAUSE = 0.005;
@@ -256,7 +256,7 @@ static void ask_others(void)
         return;
     next = now + PAUSE;
     const int who = pass_on(pass_on_user, (int)who_asked());
-    if (who != NOBODY && who_asked() == NOBODY) /* else it is the same request, come back: no second one */
+    if (who != NOBODY && who_asked() == NOBODY) /* otherwise it is our own request, which has come back */
         ask((unsigned)who);
 }
 

@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L /* stat, dlopen: the one file that loads a module */
+#define _POSIX_C_SOURCE 200809L /* stat, dlopen: this is the only file that loads a module */
 #include "drivers/start.h"
 
 #ifndef PTRIANGLE_MODULE
@@ -11,7 +11,7 @@ int main(int argc, char **given)
     return program_main(argc, argv);
 }
 
-#else /* its path from the folder of the executable, as PTRIANGLE_MODULE_FOLDER */
+#else /* path of the module, relative to the folder of the executable (PTRIANGLE_MODULE_FOLDER) */
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -33,8 +33,8 @@ static bool needs_module(int argc, char **argv)
     return needed;
 }
 
-/* A name as seen from the folder of the executable, by whatever links that was found; false: the system does not tell
- * where it is. */
+/* Makes the path of a file relative to the folder of the executable, after links to the executable are resolved.
+ * Returns false if the system does not provide the location. */
 static bool place_of(char path[TRI_PATH], const char *name)
 {
     if (!tri_own_path(path) || strlen(path) + strlen(name) + 1 > TRI_PATH)
@@ -56,9 +56,10 @@ static int complain_of_version(const char *path, const char *version)
     return program_trouble;
 }
 
-/* A user may link another's program into a folder of their own, with a module of their own beside it. Another user who
- * starts the program there must not run that module. Does the file or folder belong to the administrator, to the
- * program's owner or to this user? path receives its path. False: errno says why; EPERM: it does not. */
+/* Returns true if the file or folder belongs to the administrator, to the owner of the program or to this user; path
+ * receives its path. Otherwise returns false, and errno says why (EPERM: another owner). The reason: a user may link a
+ * program into a folder of their own, with a module of their own beside it. If another user starts the program there,
+ * it must not run that module. */
 static bool is_trusted(const char *name, char path[TRI_PATH])
 {
     struct stat program, at;
@@ -68,8 +69,8 @@ static bool is_trusted(const char *name, char path[TRI_PATH])
     return at.st_uid == 0 || at.st_uid == program.st_uid || at.st_uid == geteuid();
 }
 
-/* Its symbols are for all, since an MPI loads parts of its own that look for those of others. It stays: what it brings
- * along leaves threads and handlers behind. */
+/* Loads with global symbols, because parts of an MPI look for symbols of others. The module is never unloaded, because
+ * its libraries leave threads and handlers behind. */
 static int run_module(int argc, char **argv)
 {
     char path[TRI_PATH];

@@ -1,11 +1,11 @@
-/* What launchers tell a program. */
+/* Reads the environment variables that launchers set. */
 #include "drivers/start.h"
 
 #include <limits.h>
 #include <stddef.h>
 #include <stdlib.h>
 
-/* A whole number that the variable holds; -1: none, or one that no count of tasks is. */
+/* Returns the whole number in the variable, or -1 if there is none or it cannot be a number of tasks. */
 static int number_of(const char *name)
 {
     const char *text = getenv(name);
@@ -14,7 +14,7 @@ static int number_of(const char *name)
     return end && end != text && *end == '\0' && number >= 0 && number <= INT_MAX ? (int)number : -1;
 }
 
-/* The variables of OpenMPI, of MPICH and its kin, of a step of SLURM. */
+/* The variables of OpenMPI, of MPICH and related libraries, and of a step of SLURM. */
 static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"};
 

@@ -1,5 +1,5 @@
-/* Control characters are escaped when a text is complete. getopt_long hands out the word that is no option where it
- * stands, as the option WORD: it may stand anywhere, whatever POSIXLY_CORRECT says. */
+/* Control characters are escaped in the complete text. getopt_long returns an argument that is no option as the option
+ * WORD, so it may stand anywhere, regardless of POSIXLY_CORRECT. */
 #include "drivers/words.h"
 
 #include <float.h>
@@ -9,9 +9,9 @@
 
 #include "triangle/text/decimal.h"
 
-enum { LENGTH = 1 << 14, WORD = 1, SIGNS = 2 /* that letters begins with */ };
+enum { LENGTH = 1 << 14, WORD = 1, SIGNS = 2 /* number of leading characters of letters that are signs */ };
 
-/* --- printed */
+/* --- printing */
 
 void one_line_put(FILE *stream, const char *text)
 {
@@ -56,7 +56,7 @@ void one_line_error(FILE *stream, const char *before, const struct tri_error *er
     fputc('\n', stream);
 }
 
-/* --- taken */
+/* --- reading */
 
 bool words_take_real(const char *text, const char *letters, const double *factor, double low, double high,
                      double *value)
@@ -84,7 +84,7 @@ bool words_take_size(const char *text, double least, double *bytes, double *shar
     return true;
 }
 
-/* --- of a program that takes a mesh */
+/* --- programs that read one mesh */
 
 static enum words_end misused(const struct program_words *words)
 {
@@ -92,7 +92,8 @@ static enum words_end misused(const struct program_words *words)
     return WORDS_MISUSED;
 }
 
-/* What getopt_long has returned '?' or ':' for; its own messages would print words as they are. */
+/* Reports an error after getopt_long has returned '?' or ':'. The messages of getopt_long would print arguments
+ * unescaped. */
 static void complain(const struct program_words *words, int option, char **argv)
 {
     const bool short_one = optopt > 0 && optopt <= CHAR_MAX;
@@ -103,7 +104,7 @@ static void complain(const struct program_words *words, int option, char **argv)
     fprintf(stderr, " %s\n", option == ':' ? "needs a value" : fault);
 }
 
-/* Help, the version, or one option. */
+/* Handles help, version, or one option. */
 static enum words_end take_option(const struct program_words *words, int option, char **argv, void *settings)
 {
     if (option == words->help_option || option == words->version_option) {
@@ -137,7 +138,7 @@ enum words_end words_take_all(const struct program_words *words, int argc, char 
     }
     if (end != WORDS_TAKEN)
         return end;
-    for (int i = optind; i < argc; i++) /* behind -- */
+    for (int i = optind; i < argc; i++) /* arguments after -- */
         if (n++ == 0)
             *mesh = argv[i];
     return n == 1 ? WORDS_TAKEN : misused(words);

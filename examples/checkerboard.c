@@ -1,11 +1,11 @@
-/* checkerboard: an example of the hook. Refines the cells of a checkerboard, first the black ones, then the white ones,
- * from outside the library: through ptriangle/tri.h, tri_mesh_refine with a gate.
+/* checkerboard: an example of a gate. Refines the cells of a checkerboard, first the black ones, then the white ones,
+ * with tri_mesh_refine of ptriangle/tri.h.
  *
- * A gate is asked for each bad triangle, with the point that would remove it. Where it says no, the triangle stays as
- * it is; the next call finds it again. So a schedule of one's own needs nothing but the public header. What the gate
- * decides is where points go, not which triangles change: a cavity may reach across the border of a cell by a triangle
- * or two, and a segment that a new point would encroach is split wherever it lies. (To confine changes as well, set a
- * fence.)
+ * The gate is called for each bad triangle, with the point that would remove it. If it returns false, the triangle is
+ * deferred, and the next call finds it again. So you can write your own schedule with the public header alone. The gate
+ * decides where points are inserted, not which triangles change. A cavity may reach across the border of a cell by one
+ * or two triangles, and a segment that a new point would encroach is split wherever it lies. To confine changes as
+ * well, set a fence.
  *
  * Usage: checkerboard [CELLS [MAX_AREA]]. Exit code 0: at the end all triangles satisfy the bounds. */
 #include <stdio.h>
@@ -15,7 +15,7 @@
 
 enum colour { BLACK, WHITE };
 
-/* A unit square of cells x cells; the gate lets points into cells of one colour. */
+/* A unit square of cells x cells. The gate allows points in cells of one colour. */
 struct board {
     int cells;
     enum colour open;
@@ -27,14 +27,14 @@ static enum colour colour_at(const struct board *board, const double p[2])
     return (column + row) % 2 ? WHITE : BLACK;
 }
 
-/* The hook: user is the board. */
+/* The gate. user: the board. */
 static bool is_open(void *user, const double p[2])
 {
     const struct board *board = user;
     return colour_at(board, p) == board->open;
 }
 
-/* The unit square and nothing else, as plain arrays. */
+/* The unit square as plain arrays. */
 static enum tri_status make_square(struct tri_mesh **mesh, struct tri_error *error)
 {
     const double points[8] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -45,7 +45,7 @@ static enum tri_status make_square(struct tri_mesh **mesh, struct tri_error *err
     return tri_mesh_new(mesh, &square, NULL, error);
 }
 
-/* Triangles by the colour of the cell that holds their centroid. */
+/* Counts triangles by the colour of the cell that contains their centroid. */
 static void count_colours(const struct tri_mesh *mesh, const struct board *board, long count[2])
 {
     struct tri_reals points = tri_mesh_points(mesh);
@@ -63,7 +63,7 @@ static void count_colours(const struct tri_mesh *mesh, const struct board *board
     }
 }
 
-/* One call of the refinement loop; says what it did. *bad: triangles that still violate the bounds. */
+/* Refines once and prints the result. *bad: number of triangles that still violate the bounds. */
 static enum tri_status refine(const char *what, struct tri_mesh *mesh, const struct tri_settings *settings,
                               const struct board *board, int64_t *bad, struct tri_error *error)
 {
@@ -86,7 +86,7 @@ static enum tri_status play(struct tri_mesh *mesh, struct board *board, double m
 {
     struct tri_settings settings = tri_no_settings();
     settings.min_angle = 30;
-    /* Coarse everywhere first: a triangle larger than a cell belongs to no cell. */
+    /* First makes a coarse mesh everywhere, because a triangle larger than a cell belongs to no cell. */
     settings.max_area = 0.1 / ((double)board->cells * board->cells);
     enum tri_status status = refine("coarse", mesh, &settings, board, bad, error);
     settings.max_area = max_area;
@@ -96,7 +96,7 @@ static enum tri_status play(struct tri_mesh *mesh, struct board *board, double m
     status = status ? status : refine("black cells", mesh, &settings, board, bad, error);
     board->open = WHITE;
     status = status ? status : refine("white cells", mesh, &settings, board, bad, error);
-    settings.gate = NULL; /* what the white cells have made bad in the black ones, if anything */
+    settings.gate = NULL; /* black triangles that became bad while the white cells were refined */
     return status ? status : refine("without gate", mesh, &settings, board, bad, error);
 }
 

@@ -1,12 +1,12 @@
-/* poisson: an example of ptriangle/mpi.h. The ranks of an MPI mesh the unit square, hand their parts to PETSc as they
- * come, without ghosts, and solve
+/* poisson: an example of ptriangle/mpi.h. The ranks of an MPI mesh the unit square, pass their parts to PETSc without
+ * ghosts, and solve
  *
  *     - div grad u = 2 pi^2 sin(pi x) sin(pi y),  u = 0 on the boundary,
  *
  * by linear finite elements.
  *
- * What PETSc wants is what a sink gets: owned points, in the order of their global numbers, and own cells by the global
- * numbers of their corners, which others may own.
+ * PETSc needs exactly the data that a sink receives: owned points in the order of their global numbers, and own cells
+ * with the global numbers of their corners, which other ranks may own.
  *
  * Usage: mpirun -n N poisson [MAX_AREA [PETSC_OPTION...]]. Exit code 0: u is as close to sin(pi x) sin(pi y) as
  * elements of this size come. */
@@ -25,7 +25,7 @@ static const PetscReal PI = 3.14159265358979323846;
 
 /* --- the mesh, from tiles */
 
-/* What a rank keeps. */
+/* The part of the mesh on this rank. */
 struct part {
     PetscInt n_points, n_cells;
     PetscReal (*points)[2];
@@ -132,7 +132,7 @@ static void flux_by_gradient(PetscInt dim, PetscInt n, PetscInt n_aux, const Pet
         g[k * dim + k] = 1;
 }
 
-/* Edges of one cell that no other rank has, too, and their ends. */
+/* Finds the edges that belong to one cell on this rank and to no cell of other ranks, and their ends. */
 static PetscErrorCode mark_boundary(DM dm, DMLabel label)
 {
     PetscSF shared;
@@ -181,7 +181,7 @@ static PetscErrorCode state_problem(DM dm)
     PetscFunctionReturn(0);
 }
 
-/* *distance: of u from the solution, in the norm of L2. */
+/* *distance: distance of u from the solution, in the L2 norm. */
 static PetscErrorCode solve(DM dm, PetscReal *distance, PetscInt *n_unknowns)
 {
     PetscSimplePointFunc functions[1] = {solution};
@@ -202,7 +202,7 @@ static PetscErrorCode solve(DM dm, PetscReal *distance, PetscInt *n_unknowns)
     PetscFunctionReturn(0);
 }
 
-/* --- all together */
+/* --- the program */
 
 static PetscErrorCode run(double max_area, PetscBool *right)
 {
@@ -224,7 +224,7 @@ static PetscErrorCode run(double max_area, PetscBool *right)
     PetscCall(solve(dm, &distance, &n_unknowns));
     PetscCall(DMDestroy(&dm));
     PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &n_ranks));
-    *right = distance < 3 * max_area ? PETSC_TRUE : PETSC_FALSE; /* it goes with the square of the edges */
+    *right = distance < 3 * max_area ? PETSC_TRUE : PETSC_FALSE; /* error ~ squared edge length */
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%d ranks, %" PetscInt_FMT " unknowns, %.3e from the solution: %s\n",
                           (int)n_ranks, n_unknowns, (double)distance, *right ? "good" : "BAD"));
     PetscFunctionReturn(0);

@@ -1,6 +1,6 @@
-/* A client of ptriangle, as a user would write one: takes a mesh tile by tile, as it is made, and keeps nothing of it
- * but sums; so a solver can take a mesh that no memory holds. It needs no file.
- * Usage: stream FILE.poly MIN_ANGLE MAX_AREA MEMORY SCRATCH      memory in MB; what the figure covers is printed */
+/* stream: an example of par_mesh_stream. Receives a mesh tile by tile while it is made, and keeps only sums. In the
+ * same way a solver can use a mesh that is larger than the memory. No mesh file is written. Usage: stream FILE.poly
+ * MIN_ANGLE MAX_AREA MEMORY SCRATCH      MEMORY in MB; prints the area of the mesh */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,15 +8,15 @@
 #include <ptriangle/files.h>
 #include <ptriangle/par.h>
 
-/* Corners of triangles may be points of tiles before: a solver that cannot wait keeps those. Here all places are kept,
- * and no triangles. */
+/* Corners of triangles may be points of earlier tiles, so these must be kept. Here all points are kept, and no
+ * triangles. */
 struct sums {
     double (*points)[2];
     int64_t n_points, capacity, n_triangles, n_tiles;
     double area;
 };
 
-/* What has been taken is void, if there was anything. */
+/* Discards all earlier tiles, if there were any. */
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct sums *s = user;

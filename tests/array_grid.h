@@ -1,4 +1,4 @@
-/* A grid of plain arrays, for tests of the writers. */
+/* A grid made of plain arrays, for tests of the writers. */
 #ifndef TESTS_ARRAY_GRID_H
 #define TESTS_ARRAY_GRID_H
 
@@ -16,10 +16,10 @@ struct array_grid {
     struct tri_grid grid;              /* the caller sets the counts */
 };
 
-/* The grid with its functions, valid as long as *arrays. */
+/* Returns the grid with its functions, valid as long as *arrays. */
 const struct tri_grid *array_grid(struct array_grid *arrays);
 
-/* Points alone, without attributes and markers. */
+/* A grid of points only, without attributes and markers. */
 struct array_grid array_grid_of_points(int32_t base, int64_t n, const double *points);
 
 #endif

@@ -1,4 +1,4 @@
-/* What tests look for in their folder. To be included after cmocka.h. */
+/* Files in the current folder, for tests. Include it after cmocka.h. */
 #ifndef TESTS_FILES_H
 #define TESTS_FILES_H
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Names in the current folder but . and ..; -1: it cannot be read. */
+/* Returns the number of files in the current folder, without . and ..; -1: it cannot be read. */
 static inline int files_here(void)
 {
     int n = 0;
@@ -20,7 +20,7 @@ static inline int files_here(void)
     return n;
 }
 
-/* The n bytes of a file and a 0, malloc'ed. */
+/* Returns the n bytes of a file followed by a 0, allocated with malloc. */
 static inline char *file_bytes(const char *name, size_t *n)
 {
     FILE *file = fopen(name, "rb");

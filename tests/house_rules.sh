@@ -217,8 +217,8 @@ for file in include/*/*.h triangle/*/*.h sched/*/*.h; do
 done
 
 # 6. The top folder contains only the entries listed here. Files left by a run must not be committed.
-known='\.(ci|clang-format|clang-tidy|gitattributes|github|gitignore)|[A-Z]+(\.md)?|CMake(Lists\.txt|Presets\.json)'
-known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|examples|include|python|sched|tests|tools|triangle|web"
+known='\.(ci|clang-format|clang-tidy|gitattributes|github|gitignore)|[A-Z]+(\.md)?|CITATION\.cff|CMake(Lists\.txt|Presets\.json)'
+known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|examples|include|packaging|python|sched|tests|tools|triangle|web"
 if [ -e .git ] && command -v git >/dev/null; then
     strange=$(git ls-files | cut -d / -f 1 | sort -u | grep -vxE "$known")
     [ -z "$strange" ] || breach "unexpected files in the top folder:" $strange

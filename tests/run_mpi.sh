@@ -41,7 +41,7 @@ for mpi in openmpi mpich; do
     run=mpirun.$mpi
     found=$((found + 1))
     "mpicc.$mpi" -std=c11 -g -D_POSIX_C_SOURCE=200809L "$@" -I"$root" -I"$root/include" "$root/tests/client/ranks.c" \
-        "$root/sched/ranks/mpi.c" -o "$work/$mpi" -L"$build" -lptriangle -ltritext -ltriangle -lstdc++ -lm -fopenmp ||
+        "$root/sched/ranks/mpi.c" -o "$work/$mpi" -L"$build" -lptriangle -lptriangle-files -ltriangle -lstdc++ -lm -fopenmp ||
         { failed=1; continue; }
     for n in $counts; do
         try 0 "$n" "$root/data/letter.poly" 30 0.0005

@@ -11,6 +11,7 @@ cmake=$4
 cc=$5
 cxx=$6
 client=$root/tests/client
+version=$(sed -n 's/^project(ptriangle VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
 
 fail() { echo "package: $*" >&2; exit 1; }
 
@@ -59,10 +60,10 @@ ln -s pt-triangle.h prefix/include/triangle.h # the clients include it by this n
 libraries=$(dirname "$(find prefix -name libptriangle.so)")
 mkdir shared_clients
 use "$work/prefix" shared_clients
-for name in pt-triangle tritext tricheck ptriangle ptriangle-mpi; do
+for name in pt-triangle ptriangle-files ptriangle-check ptriangle ptriangle-mpi; do
     [ "$name" != ptriangle-mpi ] || [ -e "$libraries/lib$name.so" ] || continue # skipped without MPI
-    [ -e "$libraries/lib$name.so.0.1.0" ] || fail "no lib$name.so.0.1.0"
-    readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.0\.1\]" || fail "soname of $name"
+    [ -e "$libraries/lib$name.so.$version" ] || fail "no lib$name.so.$version"
+    readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.${version%.*}\]" || fail "soname of $name"
     nm -D --defined-only "$libraries/lib$name.so" | awk '{ print $3 }'
 done | sort -u >exported.txt
 absent=none
@@ -75,7 +76,7 @@ done
 PKG_CONFIG_PATH=$work/$libraries/pkgconfig
 LD_LIBRARY_PATH=$work/$libraries
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
-[ "$(pkg-config --modversion pt-triangle)" = 0.1.0 ] || fail "version of pt-triangle.pc"
+[ "$(pkg-config --modversion pt-triangle)" = "$version" ] || fail "version of pt-triangle.pc"
 for package in pt-triangle ptriangle; do
     eval "set -- $(pkg-config --cflags --libs $package)" # split into words by a shell
     "$cc" -std=c11 "$client/dropin.c" "$@" -o by_hand
@@ -111,8 +112,13 @@ configure own_threads_tests -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_T
 echo "== subproject"
 "$cmake" -S "$client/cxx" -B sub -DSUBPROJECT="$root" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" >sub.log 2>&1 ||
     fail "subproject: $(tail -n 5 sub.log)"
-"$cmake" --build sub --target triangle --parallel 2 >sub.log 2>&1 || fail "subproject: $(errors sub.log)"
+"$cmake" --build sub --parallel 2 >sub.log 2>&1 || fail "subproject: $(errors sub.log)"
 sub/triangle
+built=$(find sub -name '*.a' -exec basename {} +)
+[ "$built" = libtriangle.a ] || fail "the subproject builds" $built
+(cd sub && "${cmake%cmake}ctest" -N | grep -q 'Total Tests: 0') || fail "the subproject has tests"
+! grep -rq -e -Werror sub/*/ptriangle-build/CMakeFiles/*/flags.make || fail "the subproject has warnings as errors"
+! grep -q '^MPI_C' sub/CMakeCache.txt || fail "the subproject looks for MPI"
 "$cmake" --install sub --prefix "$work/sub_installed" >install.log
 [ "$(find sub_installed -type f | wc -l)" -eq 1 ] || fail "the subproject installs files of its own"
 echo "package: passed"

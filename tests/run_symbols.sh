@@ -1,7 +1,7 @@
 #!/bin/sh
 # The names that the libraries add to a client: only names of their own, no function that prints or ends the program,
 # and two forms of triangulate() of which the linker selects one as a whole.
-# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libtritext.a libtricheck.a
+# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libptriangle-files.a libptriangle-check.a
 set -u
 nm=$1
 failed=0

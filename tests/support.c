@@ -1,4 +1,4 @@
-/* See the header. Nothing here is clever: what judges must be simpler than what is judged. */
+/* See the header. The code is deliberately simple, so that it can check more complicated code. */
 #include "support.h"
 
 #include <dirent.h>
@@ -104,7 +104,7 @@ void support_add_heights(struct tri_pslg *pslg, int32_t n, uint64_t seed)
         pslg->attributes[i] = support_unit(&random);
 }
 
-/* How far p lies inside of each edge, negative: outside, as a share of the height over it. */
+/* Computes how far p is inside each edge, as a share of the height over that edge. Negative: outside. */
 static long double weigh(const struct tri_point corner[3], struct tri_point p, long double weight[3])
 {
     long double least = HUGE_VALL, sum = 0;
@@ -121,11 +121,12 @@ static long double weigh(const struct tri_point corner[3], struct tri_point p, l
     return least;
 }
 
-/* On a crack of a mesh that was read there may be several triangles at a vertex that hold other values: any will do. */
+/* A mesh that was read may have several triangles with different values at a vertex on a crack. Any of their values is
+ * accepted. */
 static bool is_on_surface(const struct tri_mesh *before, struct tri_point p, const double *value)
 {
     const int32_t n = before->n_attributes;
-    const long double rounding = 0x1p-46L * tri_larger(fabs(p.x), fabs(p.y)); /* of p beside a segment */
+    const long double rounding = 0x1p-46L * tri_larger(fabs(p.x), fabs(p.y)); /* rounding of p beside a segment */
     for (int32_t t = 0; t < before->n_triangles; t++) {
         const int32_t *v = before->tri[t].v;
         const struct tri_point corner[3] = {before->xy[v[0]], before->xy[v[1]], before->xy[v[2]]};
@@ -241,7 +242,7 @@ bool support_read(const char *name, struct tri_pslg *pslg)
     if (ends_in(name, ".node"))
         return tri_read_node(path, &options, pslg, &base, &error) == TRI_OK;
     enum tri_status status = tri_read_poly(path, NULL, &options, pslg, &base, &in_poly, &error);
-    if (status != TRI_OK) { /* most inputs have no section of regions */
+    if (status != TRI_OK) { /* most inputs have no file of regions */
         options.want_regions = false;
         status = tri_read_poly(path, NULL, &options, pslg, &base, &in_poly, &error);
     }
@@ -294,7 +295,7 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         tri_mesh_place(mesh, v, &c.points[2 * v]);
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
-        assert_true(tri_is_live(&mesh->tri[t])); /* the judge's numbers are triangles */
+        assert_true(tri_is_live(&mesh->tri[t])); /* the checker numbers the triangles of the mesh */
         for (int e = 0; e < 3; e++) {
             int32_t link = mesh->tri[t].n[e];
             if (link < 0) {
@@ -346,7 +347,7 @@ bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     if (with_regions)
         asked.max_areas = copy.max_areas;
     assert_int_equal(check_both_ways(&copy.mesh, pslg, &asked, report, &error), TRI_OK);
-    for (int kind = TRI_N_CHECKS - 1; kind >= 0; kind--) /* the first one is told */
+    for (int kind = TRI_N_CHECKS - 1; kind >= 0; kind--) /* the message names the first kind with a fault */
         if (report->item[kind].state == TRI_CHECK_FAILED)
             snprintf(text, SUPPORT_TEXT, "%s (%lld times): %s", tri_check_name((enum tri_check_kind)kind),
                      (long long)report->item[kind].count, report->item[kind].text);
@@ -529,7 +530,7 @@ static bool meets(struct tri_point p, struct tri_point q, struct tri_point a, st
 {
     int pa = sign(tri_orient2d(p, q, a)), pb = sign(tri_orient2d(p, q, b));
     int ap = sign(tri_orient2d(a, b, p)), aq = sign(tri_orient2d(a, b, q));
-    if (pa == 0 && pb == 0) /* along each other: cut if it lies in the way */
+    if (pa == 0 && pb == 0) /* collinear: blocked if it lies in between */
         return ((a.x - p.x) * (a.x - q.x) + (a.y - p.y) * (a.y - q.y) <= 0) ||
                ((b.x - p.x) * (b.x - q.x) + (b.y - p.y) * (b.y - q.y) <= 0);
     return pa * pb <= 0 && ap * aq <= 0;
@@ -537,7 +538,7 @@ static bool meets(struct tri_point p, struct tri_point q, struct tri_point a, st
 
 static bool same_place(struct tri_point p, struct tri_point q) { return p.x == q.x && p.y == q.y; }
 
-/* A segment that starts at q hides q from p only where it runs towards p. */
+/* A segment that starts at q hides q from p only if it runs towards p. */
 static bool hides(struct tri_point p, struct tri_point q, struct tri_point a, struct tri_point b)
 {
     if (!same_place(a, q) && !same_place(b, q))
@@ -624,7 +625,7 @@ void support_remove_directory(const char *path)
     for (const struct dirent *entry; directory && (entry = readdir(directory));) {
         char name[512];
         snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        unlink(name); /* but for . and .. */
+        unlink(name); /* except . and .. */
     }
     if (directory)
         closedir(directory);

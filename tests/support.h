@@ -1,7 +1,7 @@
-/* What the tests of the mesher share: inputs made from a seed, naive questions to a mesh, and the way to its judge.
+/* Shared code of the mesher's tests: inputs made from a seed, naive queries of a mesh, and calls of the mesh checker.
  *
- * Everything here asserts by cmocka: a broken precondition is a failed test. All PSLGs own their arrays; tri_pslg_free
- * frees them. The same seed gives the same input on every machine. */
+ * All functions assert with cmocka, so a violated precondition fails the test. All PSLGs own their arrays;
+ * tri_pslg_free frees them. The same seed gives the same input on every machine. */
 #ifndef TESTS_SUPPORT_H
 #define TESTS_SUPPORT_H
 
@@ -22,7 +22,7 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/api/generate.h"
 
-/* A generator of random numbers (splitmix64). Start it with any seed. */
+/* A random number generator (splitmix64). It can start with any seed. */
 struct support_random {
     uint64_t state;
 };
@@ -31,35 +31,35 @@ uint64_t support_bits(struct support_random *random);
 double support_unit(struct support_random *random); /* 0 <= x < 1 */
 int32_t support_below(struct support_random *random, int32_t n);
 
-/* A PSLG with room for so many points, segments, holes and regions; the counts start at 0, attributes and markers at
- * NULL. */
+/* Returns a PSLG with room for the given numbers of points, segments, holes and regions. Its counts are 0, and its
+ * attributes and markers are NULL. */
 struct tri_pslg support_pslg(int32_t points, int32_t segments, int32_t holes, int32_t regions);
 int32_t support_add_point(struct tri_pslg *pslg, double x, double y);
 void support_add_segment(struct tri_pslg *pslg, int32_t a, int32_t b);
 
-/* Two attributes for every point that are linear in the plane, so that interpolated ones can be recognised; and is a
- * vertex of the mesh one that has them? */
+/* Gives each point two attributes that are linear in the plane, so that interpolated values can be recognised.
+ * support_has_its_attributes returns true if vertex v has the values for its place. */
 void support_add_attributes(struct tri_pslg *pslg);
 bool support_has_its_attributes(const struct tri_mesh *mesh, int32_t v);
 
-/* In place of those that it has, n random attributes for every point, as rough as can be. */
+/* Replaces the attributes by n independent random values for each point. */
 void support_add_heights(struct tri_pslg *pslg, int32_t n, uint64_t seed);
 
-/* Lie the attributes of all new vertices of a mesh on the surface over the triangles of what it was before? A naive
- * search for each, or, where that would take too long, for some. */
+/* Asserts that the attributes of all new vertices lie on the surface over the triangles of `before`. The search is
+ * naive; in a large mesh only some vertices are tested. */
 void support_assert_on_surface(const struct tri_mesh *before, const struct tri_mesh *mesh);
 
 enum support_kind {
-    SUPPORT_RANDOM,    /* in the unit square */
+    SUPPORT_RANDOM,    /* uniform in the unit square */
     SUPPORT_LATTICE,   /* drawn from a small lattice: duplicates, collinear and cocircular quadruples */
-    SUPPORT_RING,      /* integer points of one circle, then of smaller ones */
-    SUPPORT_LINE,      /* on the line y = 3x exactly, a few beside it */
+    SUPPORT_RING,      /* integer points on a circle, then on smaller circles */
+    SUPPORT_LINE,      /* exactly on the line y = 3x, with a few points beside it */
     SUPPORT_NEAR_LINE, /* rounded to the line y = 0.3 x + 0.1 */
-    SUPPORT_CLUSTER,   /* scales from 1 to 2^-40 */
+    SUPPORT_CLUSTER,   /* scales from 1 down to 2^-40 */
     SUPPORT_KINDS
 };
 
-/* n points, n >= 3. */
+/* Returns n points of this kind, n >= 3. */
 struct tri_pslg support_points(enum support_kind kind, int32_t n, uint64_t seed);
 
 /* A star-shaped polygon of n corners around the origin, with some radial spikes; segments in order, no holes. */
@@ -71,21 +71,21 @@ struct tri_pslg support_tangle(enum support_kind kind, int32_t n, int32_t m, uin
 /* A square of the given side with corners 0 .. 3 counter-clockwise from the origin, and n random points in it. */
 struct tri_pslg support_square(double side, int32_t n, uint64_t seed);
 
-/* Reads a .poly or .node file of PTRIANGLE_DATA_DIR; false where the reader refuses it, or the
- * mesher for its subnormal coordinates. */
+/* Reads a .poly or .node file of PTRIANGLE_DATA_DIR. Returns false if the reader rejects it, or if the mesher would
+ * reject its subnormal coordinates. */
 bool support_read(const char *name, struct tri_pslg *pslg);
 
-/* All input names of data/, data/nasty, data/regress, data/coast that end in .poly or .node, sorted, NULL at the
- * end; for support_read. To be freed by support_free_names. */
+/* Returns the names, for support_read, of all .poly and .node files in this folder of the data, sorted, with NULL at
+ * the end. Free them with support_free_names. */
 char **support_names(const char *folder);
 void support_free_names(char **names);
 
-/* The mesh in the form of the judge, in the caller's coordinates. */
+/* The mesh in the form that tri_check reads, in the caller's coordinates. */
 struct support_copy {
     struct tri_check_mesh mesh;
     double *points;
     int32_t *triangles, *neighbors, *segments, *markers;
-    double *max_areas, *attributes; /* of the regions */
+    double *max_areas, *attributes; /* of each region */
 };
 
 struct support_copy support_copy(const struct tri_mesh *mesh);
@@ -93,38 +93,39 @@ void support_copy_free(struct support_copy *copy);
 
 enum { SUPPORT_TEXT = 600 };
 
-/* Validates the links and lets tri_check judge. False where there is a fault: the text of the judge. */
+/* Validates the links and calls tri_check. Returns false with the checker's message in `text` if there is a fault. */
 bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
                     bool with_regions, struct tri_check_report *report, char text[SUPPORT_TEXT]);
 
-/* The same; a fault fails the test with the text of the judge. NULL report:
- * unwanted. options->max_areas is filled in from the regions where with_regions. */
+/* The same, but a fault fails the test and prints the message. report may be NULL. With with_regions,
+ * options->max_areas is filled in from the regions. */
 void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
                    bool with_regions, struct tri_check_report *report);
 
-/* The same of a mesh before carving, which it marks: the whole hull is kept, holes are ignored. */
+/* The same for a mesh before carving: the whole hull is kept, and holes are ignored. Marks the hull in the mesh. */
 void support_judge_hull(struct tri_mesh *mesh, const struct tri_pslg *pslg);
 
-/* tri_generate that must succeed. */
+/* Calls tri_generate, which must succeed. */
 struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
                                  struct tri_report *report);
 
-/* The Delaunay triangulation of the points, in leaves of this size (0: the usual one); its links are valid. */
+/* Returns the Delaunay triangulation of the points, made with leaves of this size (0: the default). Its links are
+ * validated. */
 struct tri_mesh support_delaunay(const struct tri_pslg *pslg, int32_t leaf_size, const struct tri_executor *executor);
 
-/* A constrained triangulation of the whole hull, nothing carved; its links are valid. */
+/* Returns the constrained triangulation of the whole hull, without carving. Its links are validated. */
 struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report);
 
 /* Options for a quality mesh of a PSLG. */
 struct tri_options support_quality(double min_angle, double max_area);
 
-/* tri_estimate, as one thread makes it. */
+/* Calls tri_estimate on one thread. */
 double support_estimate(const struct tri_mesh *mesh, const struct tri_quality *quality);
 
-/* A set of triangles by their vertex ids: sorted, each rotated so that its least corner comes first. */
+/* Triangles as vertex ids. They are sorted, and each starts with its lowest id. */
 struct support_set {
     int32_t n;
-    int32_t (*v)[3];
+    int32_t (*v)[3]; /* [n] */
 };
 
 struct support_set support_triangles(const struct tri_mesh *mesh);
@@ -132,10 +133,10 @@ void support_sort(struct support_set *set);
 bool support_same(const struct support_set *a, const struct support_set *b);
 void support_set_free(struct support_set *set);
 
-/* Triangles by the coordinates of their corners: six numbers each, sorted, least corner first. */
+/* Triangles as the coordinates of their corners: six numbers each, sorted, lowest corner first. */
 struct support_places {
     int32_t n;
-    double (*at)[6];
+    double (*at)[6]; /* [n] */
 };
 
 struct support_places support_places(const struct tri_mesh *mesh);
@@ -143,21 +144,22 @@ bool support_same_places(const struct support_places *a, const struct support_pl
 bool support_has_place(const struct support_places *set, const double place[6]);
 void support_places_free(struct support_places *set);
 
-/* The arrays of two meshes, numbers and all; lives of triangles aside. */
+/* Asserts that the arrays of two meshes are equal, including the numbering, except for the generations of triangles. */
 void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b);
 
 /* An executor that runs tasks from the last to the first. */
 extern const struct tri_executor support_backwards;
 
-/* Does a subsegment other than `except` cut the sight from p to q? Exact. A touched end cuts, save where it is q
- * itself. */
+/* Returns true if a subsegment other than `except` blocks the view from p to q; exact. A touched end of a subsegment
+ * blocks the view, unless that end is q itself. */
 bool support_is_hidden(const struct tri_mesh *mesh, struct tri_point p, struct tri_point q, int32_t except);
 
-/* Every edge without subsegment is Delaunay, ties included, and (where naive) no vertex in the circumcircle of a
- * triangle is visible from a point in its interior. O(triangles * vertices * subsegments) where naive. */
+/* Asserts that every edge without subsegment is Delaunay, ties included. With `naive`, also asserts that no vertex in
+ * the circumcircle of a triangle is visible from a point inside the triangle, which takes O(triangles * vertices *
+ * subsegments). */
 void support_assert_cdt(const struct tri_mesh *mesh, bool naive);
 
-/* The files in it, and then itself, if it is there. */
+/* Removes the files in the directory and then the directory itself, if it exists. */
 void support_remove_directory(const char *path);
 
 #endif

@@ -1,4 +1,4 @@
-/* The public headers as their users know them: nothing from the inside but the means to make allocations fail.
+/* Tests of the public headers from the view of a user. The only internal feature used makes allocations fail.
  *
  * Linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include <math.h>
@@ -17,7 +17,7 @@
 #include "ptriangle/par.h"
 #include "triangle/size/feature_size.h"
 
-/* A square with a square hole in it, two regions on either side of a wall, attributes, markers. */
+/* A square with a square hole, two regions on the two sides of a wall, attributes, and markers. */
 static const double points[][2] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {3, 0}, {3, 3}};
 static const int32_t segments[][2] = {{0, 8}, {8, 1}, {1, 2}, {2, 9}, {9, 3}, {3, 0},
                                       {4, 5}, {5, 6}, {6, 7}, {7, 4}, {8, 9}};
@@ -103,7 +103,7 @@ static double area_of(struct tri_reals xy, const int32_t *v)
     return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
 }
 
-static void test_a_mesh_keeps_what_was_asked(void **state)
+static void test_a_mesh_satisfies_its_settings(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -151,18 +151,18 @@ static void test_neighbors_and_edges(void **state)
         marked += edge_markers.at[i] != 0;
     assert_int_equal(marked, tri_mesh_segments(mesh).n);
     assert_int_equal(2 * edges.n, 3 * triangles.n + boundary);
-    assert_int_equal(tri_mesh_points(mesh).n - edges.n + triangles.n, 0); /* Euler, one hole */
+    assert_int_equal(tri_mesh_points(mesh).n - edges.n + triangles.n, 0); /* Euler's formula with one hole */
     tri_mesh_delete(mesh);
 }
 
-static void test_points_alone(void **state)
+static void test_points_without_segments(void **state)
 {
     (void)state;
     struct tri_figure figure = tri_no_figure();
     figure.points = tri_reals_of(points[0], 10, 2);
     struct tri_mesh *mesh = mesh_of(&figure, NULL);
     assert_int_equal(tri_mesh_points(mesh).n, 10);
-    assert_int_equal(tri_mesh_triangles(mesh).n, 2 * 10 - 2 - 6); /* six on the hull */
+    assert_int_equal(tri_mesh_triangles(mesh).n, 2 * 10 - 2 - 6); /* six vertices are on the hull */
     assert_int_equal(tri_mesh_triangle_attributes(mesh).n, 0);
     assert_int_equal(tri_mesh_point_attributes(mesh).n, 0);
     tri_mesh_delete(mesh);
@@ -198,7 +198,7 @@ static void test_strides_and_attributes(void **state)
     tri_mesh_delete(b);
 }
 
-/* A mesh is a figure: what it is made of again has the same triangles, and can be refined. */
+/* A mesh is a valid figure: meshing it again gives the same triangles, and the result can be refined. */
 static void test_a_mesh_as_figure(void **state)
 {
     (void)state;
@@ -222,8 +222,8 @@ static void test_a_mesh_as_figure(void **state)
     tri_mesh_delete(mesh);
 }
 
-/* Coordinates far beyond the range of the predicates, and with regions whose bounds count in refinement too. */
-static void test_any_unit(void **state)
+/* Coordinates far beyond the range of the predicates. Regions with area bounds must also work in refinement. */
+static void test_coordinates_of_any_magnitude(void **state)
 {
     (void)state;
     double large[10][2], there[2] = {ldexp(1.5, 700), ldexp(1.5, 700)};
@@ -245,7 +245,8 @@ static void test_any_unit(void **state)
     tri_mesh_delete(huge);
 }
 
-/* The ring of the hole empties it by itself; the wall between the regions is no ring, and changes nothing. */
+/* The ring of the hole makes the hole without a hole point. The wall between the regions is not a ring and has no
+ * effect. */
 static void test_even_odd(void **state)
 {
     (void)state;
@@ -260,13 +261,13 @@ static void test_even_odd(void **state)
     tri_mesh_delete(wanted);
 }
 
-/* A third fewer triangles, unless angles are expensive, or the figure is a mesh. */
+/* The lattice makes a third fewer triangles, unless the angle bound is large or the figure is a mesh. */
 static void test_placement(void **state)
 {
     (void)state;
     struct tri_figure figure = plate();
     static const double angles[] = {0, 20, 30, 30.5, 33};
-    figure.regions = tri_reals_of(NULL, 0, 0); /* or the coarse mesh has bounds, and vertices, of its own */
+    figure.regions = tri_reals_of(NULL, 0, 0); /* with regions, the coarse mesh would have bounds and new vertices */
     for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
         struct tri_settings settings = fine();
         settings.min_angle = angles[i];
@@ -290,7 +291,7 @@ static void test_placement(void **state)
     }
 }
 
-static void test_placement_in_a_mesh_that_is_given(void **state)
+static void test_placement_in_a_given_mesh(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -348,7 +349,7 @@ static double same_everywhere(void *user, const double at[2])
     return *(const double *)user;
 }
 
-static void test_edge_lengths_without_meaning(void **state)
+static void test_invalid_edge_lengths_are_refused(void **state)
 {
     (void)state;
     double odd[] = {0, -0.01, NAN, INFINITY, -INFINITY};
@@ -358,7 +359,7 @@ static void test_edge_lengths_without_meaning(void **state)
     struct tri_figure figure = plate();
     struct tri_settings settings = tri_no_settings();
     settings.min_angle = 30;
-    settings.placement = TRI_PLACEMENT_CLASSIC; /* as with any edge_length */
+    settings.placement = TRI_PLACEMENT_CLASSIC; /* edge_length requires this placement */
     struct tri_mesh *plain = mesh_of(&figure, &settings);
     settings.edge_length = same_everywhere;
     settings.most_new_points = 10000;
@@ -375,13 +376,13 @@ static void test_edge_lengths_without_meaning(void **state)
     tri_mesh_delete(plain);
 }
 
-/* Lengths, and how often they were asked for. */
+/* An edge length function that counts its calls. */
 struct lengths {
     double length;
-    double slope;   /* they shrink by so much along x */
-    double octaves; /* and vary by so much from place to place, beyond what anybody could follow */
+    double slope;   /* lengths decrease by this much per unit of x */
+    double octaves; /* lengths vary by this many octaves, at random by place */
     atomic_llong asked;
-    long long most; /* then the end is asked for */
+    long long most; /* number of calls after which `stop` returns true */
 };
 
 static double length_asked(void *user, const double at[2])
@@ -400,7 +401,8 @@ static bool is_asked_enough(void *user)
 
 static void ignore_progress(void *user, double done, int64_t triangles) { (void)user, (void)done, (void)triangles; }
 
-/* More triangles than a mesh holds, by far or just so, everywhere or at one side: refused after few questions. */
+/* Lengths that need more triangles than a mesh can hold, by far or slightly, everywhere or at one side, are rejected
+ * after few calls. */
 static void test_lengths_that_are_too_small(void **state)
 {
     (void)state;
@@ -421,8 +423,8 @@ static void test_lengths_that_are_too_small(void **state)
     }
 }
 
-/* Lengths that are no function of the place, to the eye, are asked for as often as the header says; whoever wants the
- * end meanwhile has it. */
+/* Lengths without a recognisable pattern are evaluated as often as the header says. A request to stop is obeyed
+ * meanwhile. */
 static void test_lengths_that_vary_wildly(void **state)
 {
     (void)state;
@@ -444,8 +446,8 @@ static void test_lengths_that_vary_wildly(void **state)
     }
 }
 
-/* One thread asks, or several. */
-static void test_one_mesh_for_one_size(void **state)
+/* The mesh is the same whether one thread or several evaluate the size. */
+static void test_threads_do_not_change_a_mesh_with_sizes(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -465,7 +467,7 @@ static void test_one_mesh_for_one_size(void **state)
     tri_mesh_delete(mesh[1]);
 }
 
-/* Beyond x = 2 there is no length: the place is told. */
+/* There is no length beyond x = 2. The error names the place. */
 static double length_to_two(void *user, const double at[2])
 {
     (void)user;
@@ -474,7 +476,7 @@ static double length_to_two(void *user, const double at[2])
 
 static void keep_note(void *user, const char *notes) { snprintf(user, 600, "%s", notes); }
 
-static void test_place_of_an_odd_length(void **state)
+static void test_error_names_the_place_of_an_invalid_length(void **state)
 {
     (void)state;
     char note[600] = "";
@@ -484,7 +486,7 @@ static void test_place_of_an_odd_length(void **state)
     settings.edge_length = length_to_two;
     settings.note = keep_note;
     settings.note_user = note;
-    for (int way = 0; way < 3; way++) { /* sequential, parallel, asked by one thread or by several */
+    for (int way = 0; way < 3; way++) { /* sequential; parallel, callbacks on one thread or on all */
         double x = 0, y = 0, length = 0;
         settings.callbacks_in_parallel = way == 2;
         enum tri_status status = way == 0 ? tri_mesh_new(&mesh, &figure, &settings, NULL)
@@ -527,7 +529,7 @@ static void test_notes_of_an_empty_mesh(void **state)
         assert_int_equal(tri_mesh_triangles(mesh).n, 0);
         assert_string_equal(tri_mesh_notes(mesh), wanted[n - 3]);
         assert_string_equal(note, wanted[n - 3]);
-        assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK); /* it is no less empty then */
+        assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK); /* the mesh stays empty */
         assert_string_equal(tri_mesh_notes(mesh), wanted[n - 3]);
         tri_mesh_delete(mesh);
         const struct tri_sink sink = {.take = take_no_triangles};
@@ -555,7 +557,7 @@ static void test_notes_of_skipped_segments(void **state)
     tri_mesh_delete(mesh);
 }
 
-/* A bound above the largest that is worked for is noted. */
+/* A bound above the largest supported angle is noted. */
 static void test_note_of_a_lowered_angle(void **state)
 {
     (void)state;
@@ -584,7 +586,7 @@ static void test_too_large_leaves_no_mesh(void **state)
     assert_null(mesh);
 }
 
-static void test_input_that_is_not_finite(void **state)
+static void test_input_that_is_not_finite_is_refused(void **state)
 {
     (void)state;
     const double odd[] = {NAN, INFINITY, -INFINITY};
@@ -613,8 +615,8 @@ static void test_input_that_is_not_finite(void **state)
 }
 
 struct fence_test {
-    bool open;
-    int64_t asked;
+    bool open;     /* the gate accepts points with x < 1; false: none */
+    int64_t asked; /* number of calls */
 };
 
 static bool is_left(void *user, const double at[2])
@@ -663,13 +665,14 @@ static struct tri_figure scattered(int n)
     uint32_t bits = 7;
     double *at = malloc(2 * (size_t)n * sizeof *at);
     for (int i = 0; i < 2 * n; i++)
-        at[i] = (bits = bits * 1664525 + 1013904223) / 4294967296.0; /* Numerical Recipes' generator */
+        at[i] = (bits = bits * 1664525 + 1013904223) / 4294967296.0; /* the generator of Numerical Recipes */
     figure.points = tri_reals_of(at, n, 2);
     return figure;
 }
 
-/* Bounds that no refinement was asked for are a reason of their own; those of the last one are not. */
-static void test_bounds_that_were_not_asked_for_are_deferred(void **state)
+/* Bad triangles count as deferred if no refinement had these bounds. With the bounds of the last refinement they have
+ * other reasons. */
+static void test_bounds_of_no_refinement_are_deferred(void **state)
 {
     (void)state;
     const struct tri_figure figure = scattered(500);
@@ -706,7 +709,7 @@ static void test_stop(void **state)
     settings.stop_user = &asked;
     assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_STOPPED);
     assert_int_equal(error.status, TRI_STOPPED);
-    if (!mesh) { /* before there was one */
+    if (!mesh) { /* before the first mesh was made */
         settings.stop = NULL;
         mesh = mesh_of(&figure, NULL);
         asked = 0;
@@ -723,9 +726,9 @@ static void test_stop(void **state)
 /* --- refusals */
 
 struct told {
-    double done;
-    int64_t triangles;
-    int times;
+    double done;       /* last reported fraction */
+    int64_t triangles; /* last reported number */
+    int times;         /* number of reports */
 };
 
 static void hear(void *user, double done, int64_t triangles)
@@ -735,7 +738,8 @@ static void hear(void *user, double done, int64_t triangles)
     *told = (struct told){done, triangles, told->times + 1};
 }
 
-/* By one sequential call and by the schedule: the share never falls, and ends with 1; the mesh is the same. */
+/* By one sequential call and by the schedule: the fraction never decreases and ends with 1, and the mesh is the
+ * same. */
 static void test_progress(void **state)
 {
     (void)state;
@@ -760,9 +764,9 @@ static void test_progress(void **state)
     }
 }
 
-/* What was told. */
+/* The reported progress. */
 struct heard {
-    double done[10000], triangles[10000];
+    double done[10000], triangles[10000]; /* [n] reported fractions and numbers of triangles */
     int n;
 };
 
@@ -774,7 +778,8 @@ static void note(void *user, double done, int64_t triangles)
     heard->triangles[heard->n++] = (double)triangles;
 }
 
-/* A mesh that was made without bounds is refined: what angles ask for is estimated as well as for a new mesh. */
+/* Refinement of a mesh that was made without bounds: the number of triangles for angles is estimated as well as for a
+ * new mesh. */
 static void test_progress_of_angles(void **state)
 {
     (void)state;
@@ -803,7 +808,7 @@ static void assert_refused(const struct tri_figure *figure, const struct tri_set
     assert_true(!mesh && error.status == TRI_BAD_INPUT && error.text[0]);
 }
 
-static void test_figures_without_meaning(void **state)
+static void test_invalid_figures_are_refused(void **state)
 {
     (void)state;
     struct tri_figure figures[10];
@@ -824,7 +829,7 @@ static void test_figures_without_meaning(void **state)
     assert_refused(NULL, NULL);
 }
 
-static void test_settings_without_meaning(void **state)
+static void test_invalid_settings_are_refused(void **state)
 {
     (void)state;
     const struct tri_figure figure = plate();
@@ -843,7 +848,7 @@ static void test_settings_without_meaning(void **state)
         assert_refused(&figure, &settings[i]);
 }
 
-/* An older header has fewer members; a newer one more, which must not be set. */
+/* Structs of an older header have fewer members. Those of a newer header have more, which must be 0. */
 static void test_headers_of_other_versions(void **state)
 {
     (void)state;
@@ -930,8 +935,8 @@ static void test_threads(void **state)
 }
 
 struct taken {
-    int64_t n_points, n_triangles;
-    const struct tri_mesh *mesh; /* to compare with */
+    int64_t n_points, n_triangles; /* numbers handed out so far */
+    const struct tri_mesh *mesh;   /* the mesh to compare with */
 };
 
 static enum tri_status begin_again(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -943,7 +948,7 @@ static enum tri_status begin_again(void *user, const struct tri_stream *stream, 
     return TRI_OK;
 }
 
-/* Tiles hold what the mesh has, in its order. */
+/* Checks that tiles contain the items of the mesh, in its order. */
 static enum tri_status compare(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct taken *taken = user;
@@ -1029,33 +1034,33 @@ static void test_version(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_mesh_keeps_what_was_asked),
+        cmocka_unit_test(test_a_mesh_satisfies_its_settings),
         cmocka_unit_test(test_neighbors_and_edges),
-        cmocka_unit_test(test_points_alone),
+        cmocka_unit_test(test_points_without_segments),
         cmocka_unit_test(test_strides_and_attributes),
         cmocka_unit_test(test_a_mesh_as_figure),
-        cmocka_unit_test(test_any_unit),
+        cmocka_unit_test(test_coordinates_of_any_magnitude),
         cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_placement),
-        cmocka_unit_test(test_placement_in_a_mesh_that_is_given),
+        cmocka_unit_test(test_placement_in_a_given_mesh),
         cmocka_unit_test(test_edge_length),
-        cmocka_unit_test(test_edge_lengths_without_meaning),
+        cmocka_unit_test(test_invalid_edge_lengths_are_refused),
         cmocka_unit_test(test_lengths_that_are_too_small),
         cmocka_unit_test(test_lengths_that_vary_wildly),
-        cmocka_unit_test(test_one_mesh_for_one_size),
-        cmocka_unit_test(test_place_of_an_odd_length),
+        cmocka_unit_test(test_threads_do_not_change_a_mesh_with_sizes),
+        cmocka_unit_test(test_error_names_the_place_of_an_invalid_length),
         cmocka_unit_test(test_notes_of_an_empty_mesh),
         cmocka_unit_test(test_notes_of_skipped_segments),
         cmocka_unit_test(test_note_of_a_lowered_angle),
         cmocka_unit_test(test_too_large_leaves_no_mesh),
-        cmocka_unit_test(test_input_that_is_not_finite),
+        cmocka_unit_test(test_input_that_is_not_finite_is_refused),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
-        cmocka_unit_test(test_bounds_that_were_not_asked_for_are_deferred),
+        cmocka_unit_test(test_bounds_of_no_refinement_are_deferred),
         cmocka_unit_test(test_progress),
         cmocka_unit_test(test_progress_of_angles),
-        cmocka_unit_test(test_figures_without_meaning),
-        cmocka_unit_test(test_settings_without_meaning),
+        cmocka_unit_test(test_invalid_figures_are_refused),
+        cmocka_unit_test(test_invalid_settings_are_refused),
         cmocka_unit_test(test_headers_of_other_versions),
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_threads),

@@ -74,8 +74,8 @@ static void test_words(void **state)
     arguments_free(&a);
 }
 
-/* A second file is an error, which says how numbers are written. */
-static void test_words_too_many(void **state)
+/* A second file is an error. The message says how numbers are written. */
+static void test_a_second_file_is_refused(void **state)
 {
     (void)state;
     static const char *const cases[][4] = {{"-p", "-q", "30", "a.poly"}, {"a.poly", "-pq", ".5", "-Q"},
@@ -96,6 +96,6 @@ static void test_words_too_many(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_iterations), cmocka_unit_test(test_suffixes),
-                                       cmocka_unit_test(test_words), cmocka_unit_test(test_words_too_many)};
+                                       cmocka_unit_test(test_words), cmocka_unit_test(test_a_second_file_is_refused)};
     return cmocka_run_group_tests_name("arguments", tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
-/* The queue against a naive twin: a list that is searched for the first entry of the lowest bucket. */
+/* The queue against a naive twin: a list that is searched for the first entry in the lowest bucket. */
 #include "support.h"
 #include "triangle/refine/bad_queue.h"
 
-/* Triangle t is in state 3 t, unless a test changes that. */
+/* Triangle t has generation 3 t, unless a test changes it. */
 enum { SLOTS = 100000 };
 static struct tri_triangle triangles[SLOTS];
 static struct tri_point corner;
@@ -37,11 +37,11 @@ static int32_t pop(struct tri_bad_queue *queue)
 }
 
 struct waiting {
-    int32_t t;
-    int bucket; /* TRI_BUCKETS: a size */
+    int32_t t;  /* triangle */
+    int bucket; /* TRI_BUCKETS: the entry is for size */
 };
 
-/* First come first served within the lowest bucket; sizes last. */
+/* First in, first out within the lowest bucket; entries for size come last. */
 static int32_t naive_pop(struct waiting *list, int *n)
 {
     int best = 0;
@@ -86,8 +86,8 @@ static void test_equals_naive_twin(void **state)
     }
 }
 
-/* More sizes than the window holds: each comes back once, and those that came last before the window ran over come
- * first. */
+/* With more entries for size than the window holds, each entry comes back once. The entries pushed last before the
+ * window overflowed come first. */
 static void test_sizes_beyond_the_window(void **state)
 {
     (void)state;
@@ -115,8 +115,8 @@ static void test_sizes_beyond_the_window(void **state)
     tri_bad_queue_free(&queue);
 }
 
-/* The window keeps what is recent: with one entry too many the older half waits until the rest is served. */
-static void test_older_half_is_spilt(void **state)
+/* The window keeps recent entries. When it overflows, the older half waits until all other entries are served. */
+static void test_a_full_window_moves_its_older_half(void **state)
 {
     (void)state;
     struct tri_bad_queue queue = {0};
@@ -131,9 +131,9 @@ static void test_older_half_is_spilt(void **state)
     tri_bad_queue_free(&queue);
 }
 
-/* Sizes that are out of date when their batch is taken are dropped, and what is not bad has never been there; the order
- * of the others stays. */
-static void test_only_what_is_up_to_date(void **state)
+/* An entry for size whose triangle has changed when its batch is filtered is dropped. Triangles that are not bad are
+ * not queued. The order of the other entries stays. */
+static void test_outdated_entries_are_dropped(void **state)
 {
     (void)state;
     enum { N = 1000 };
@@ -154,7 +154,7 @@ static void test_only_what_is_up_to_date(void **state)
     tri_bad_queue_free(&queue);
 }
 
-/* Blocks of the pool are used again: steady traffic does not grow it. */
+/* Blocks of the pool are reused, so constant traffic does not enlarge the pool. */
 static void test_worklist_is_reused(void **state)
 {
     (void)state;
@@ -174,8 +174,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_equals_naive_twin, set_up),
         cmocka_unit_test_setup(test_sizes_beyond_the_window, set_up),
-        cmocka_unit_test_setup(test_older_half_is_spilt, set_up),
-        cmocka_unit_test_setup(test_only_what_is_up_to_date, set_up),
+        cmocka_unit_test_setup(test_a_full_window_moves_its_older_half, set_up),
+        cmocka_unit_test_setup(test_outdated_entries_are_dropped, set_up),
         cmocka_unit_test_setup(test_worklist_is_reused, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,7 @@
-/* Segments along each other, and along many vertices, but for rounding: how many steps they take. */
+/* Number of steps for segments that run along each other or along many vertices, within rounding error. */
 #include "support.h"
 
-/* N points along a line, as well as rounding lets them, and four corners around it. */
+/* N points along a line, as exactly as rounding allows, and four corners around it. */
 static struct tri_pslg along_a_line(int32_t n, int32_t segments, double slope)
 {
     struct tri_pslg pslg = support_pslg(n + 4, segments, 0, 0);
@@ -12,7 +12,7 @@ static struct tri_pslg along_a_line(int32_t n, int32_t segments, double slope)
     return pslg;
 }
 
-/* Laid in O(n) steps, as one chain. */
+/* Asserts that the segments are inserted in O(n) steps, as one chain. */
 static void assert_short_work(struct tri_pslg *pslg, int32_t n)
 {
     struct tri_constrain_report report;
@@ -26,8 +26,8 @@ static void assert_short_work(struct tri_pslg *pslg, int32_t n)
     tri_pslg_free(pslg);
 }
 
-/* A path to and fro: each of its segments runs along a third of the points on average, on their line or each a little
- * beside it. */
+/* A path to and fro. Each of its segments runs along a third of the points on average, exactly on their line or a
+ * little beside it. */
 static void go_to_and_fro(double slope)
 {
     enum { N = 1500 };
@@ -44,15 +44,15 @@ static void go_to_and_fro(double slope)
     assert_short_work(&pslg, N);
 }
 
-static void test_paths_to_and_fro_are_short_work(void **state)
+static void test_paths_to_and_fro_take_little_work(void **state)
 {
     (void)state;
     go_to_and_fro(1 / 3.0);
     go_to_and_fro(1);
 }
 
-/* From one end to all others, the shortest first. */
-static void test_rays_along_a_line_are_short_work(void **state)
+/* Segments from one end to all other points, the shortest first. */
+static void test_rays_along_a_line_take_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -62,8 +62,9 @@ static void test_rays_along_a_line_are_short_work(void **state)
     assert_short_work(&pslg, N);
 }
 
-/* One segment, whose far end lies an ulp off the line of all other points: the nearest to it is always the first. */
-static void test_a_side_an_ulp_off_is_short_work(void **state)
+/* One segment whose far end lies one ulp off the line of all other points. The point nearest to the segment is always
+ * the first. */
+static void test_a_side_an_ulp_off_takes_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -79,9 +80,9 @@ static void test_a_side_an_ulp_off_is_short_work(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_paths_to_and_fro_are_short_work),
-        cmocka_unit_test(test_rays_along_a_line_are_short_work),
-        cmocka_unit_test(test_a_side_an_ulp_off_is_short_work),
+        cmocka_unit_test(test_paths_to_and_fro_take_little_work),
+        cmocka_unit_test(test_rays_along_a_line_take_little_work),
+        cmocka_unit_test(test_a_side_an_ulp_off_takes_little_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

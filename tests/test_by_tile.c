@@ -1,4 +1,4 @@
-/* The order of a worklist by tiles: whatever order it comes in, and whoever has which tiles. */
+/* Sorting a worklist by tiles gives the same order for any initial order, and for any distribution of the tiles. */
 #include "sched/schedule/worklist.h"
 
 #include "tests/support.h"
@@ -54,7 +54,7 @@ static void shuffle(struct par_ids *list)
     }
 }
 
-static void test_the_order_it_comes_in_does_not_count(void **state)
+static void test_initial_order_does_not_matter(void **state)
 {
     (void)state;
     struct world w, other;
@@ -73,8 +73,8 @@ static void test_the_order_it_comes_in_does_not_count(void **state)
     end(&other);
 }
 
-/* What has some tiles finds the triangles of these with the keys that they have among all. */
-static void test_parts_make_the_whole(void **state)
+/* A rank that has some of the tiles finds their triangles with the same keys as a rank that has all tiles. */
+static void test_parts_get_the_keys_of_the_whole(void **state)
 {
     (void)state;
     struct world w;
@@ -97,13 +97,13 @@ static void test_parts_make_the_whole(void **state)
     end(&w);
 }
 
-/* Triangles with one centre: corners decide. */
+/* Triangles with the same centre are ordered by their corners. */
 static void test_equal_centres(void **state)
 {
     (void)state;
     struct world w;
     begin(&w);
-    for (int32_t v = 0; v < w.mesh.n_vertices; v++) /* few places */
+    for (int32_t v = 0; v < w.mesh.n_vertices; v++) /* only few different places */
         w.mesh.xy[v] = (struct tri_point){floor(4 * w.mesh.xy[v].x), floor(4 * w.mesh.xy[v].y)};
     shuffle(&w.worklist);
     assert_true(order(&w, 0, par_blocks(&w.tiles)));
@@ -122,8 +122,8 @@ static void test_equal_centres(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_order_it_comes_in_does_not_count),
-        cmocka_unit_test(test_parts_make_the_whole),
+        cmocka_unit_test(test_initial_order_does_not_matter),
+        cmocka_unit_test(test_parts_get_the_keys_of_the_whole),
         cmocka_unit_test(test_equal_centres),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,8 +2,8 @@
 #include "support.h"
 #include "triangle/cdt/carve.h"
 
-/* paint[t]: the least number of a triangle that t reaches without crossing a subsegment. Sweeps until nothing
- * changes. */
+/* paint[t]: the lowest number of a triangle that can be reached from t without crossing a subsegment. Repeats sweeps
+ * until nothing changes. */
 static int32_t *paint_components(const struct tri_mesh *mesh)
 {
     int32_t *paint = calloc((size_t)mesh->n_triangles + 1, sizeof *paint);
@@ -37,7 +37,7 @@ static void mark_component(const struct tri_mesh *mesh, const int32_t *paint, in
             out[t] = value;
 }
 
-/* region[t] becomes TRI_NONE where t goes, else the number of its region. */
+/* region[t] becomes TRI_NONE if t is carved, otherwise the number of its region. */
 static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg *pslg,
                               const struct tri_carve_options *options)
 {
@@ -58,7 +58,7 @@ static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg
     return region;
 }
 
-/* The triangles that stay, of the naive twin, with their regions in a parallel array by position in the sorted set. */
+/* The triangles that the naive twin keeps; their regions are in a parallel array by position in the sorted set. */
 static struct support_set survivors(const struct tri_mesh *mesh, const int32_t *region, int32_t wanted)
 {
     struct support_set set = {0, calloc((size_t)mesh->n_triangles + 1, sizeof *set.v)};
@@ -95,7 +95,7 @@ static void assert_compact(const struct tri_mesh *mesh, int32_t n_segments)
         assert_true(mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE);
         assert_memory_equal(mesh->parents[s].v, mesh->sub[s].v, sizeof mesh->sub[s].v);
         segment = segment == TRI_NONE ? n_segments : segment;
-        assert_true(segment >= last); /* hull edges last */
+        assert_true(segment >= last); /* hull edges come last */
         last = segment;
     }
 }
@@ -126,7 +126,7 @@ static void add_places(struct tri_pslg *pslg, int32_t n, uint64_t seed, double s
     struct support_random random = {seed};
     pslg->n_holes = pslg->n_regions = n;
     for (int32_t i = 0; i < 2 * n; i++)
-        pslg->holes[i] = size * (2.4 * support_unit(&random) - 1.2); /* some outside */
+        pslg->holes[i] = size * (2.4 * support_unit(&random) - 1.2); /* some of them outside */
     for (int32_t i = 0; i < 4 * n; i++)
         pslg->regions[i] = i % 4 < 2 ? size * (2.4 * support_unit(&random) - 1.2) : i;
 }
@@ -139,7 +139,7 @@ static void test_tangles_equal_naive_twin(void **state)
             struct tri_carve_options options = {which & 1, which & 2, which & 4, false, NULL};
             struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
             if (seed % 3)
-                memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* an open hull */
+                memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* makes an open hull */
             add_places(&pslg, 4, seed, seed % 2 ? 2 : 12);
             compare_with_twin(&pslg, &options);
             tri_pslg_free(&pslg);
@@ -161,7 +161,7 @@ static void test_polygons_equal_naive_twin(void **state)
     }
 }
 
-/* Inside nested squares: the region that comes last wins; holes stop at rings; a hole on the outside is ignored. */
+/* In nested squares, the last region wins, holes stop at rings, and a hole point outside is ignored. */
 static void test_nested_rings(void **state)
 {
     (void)state;
@@ -195,8 +195,8 @@ static void test_nested_rings(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A hole point on a vertex, on a segment, and on an edge without segment: nothing breaks, the hull stays convex or
- * empty. */
+/* A hole point on a vertex, on a segment, or on an edge without segment breaks nothing. The hull stays convex or
+ * becomes empty. */
 static void test_hole_points_in_odd_places(void **state)
 {
     (void)state;
@@ -217,7 +217,8 @@ static void test_hole_points_in_odd_places(void **state)
     }
 }
 
-/* Far away is outside, however far: there holes and regions change nothing, whatever size the figure has. */
+/* Points outside the figure have no effect as holes or regions, regardless of their distance and of the figure's
+ * size. */
 static void test_far_places_are_outside(void **state)
 {
     (void)state;
@@ -248,7 +249,7 @@ static void test_far_places_are_outside(void **state)
         }
 }
 
-/* Exactly on a segment, at its end, or at a vertex through which it is led: no face is meant. */
+/* A hole point exactly on a segment, at its end, or at a vertex through which it is routed selects no face. */
 static void test_holes_between_faces_empty_nothing(void **state)
 {
     (void)state;
@@ -312,7 +313,7 @@ static void test_boundary_markers(void **state)
 
 /* --- even_odd */
 
-/* How many segments a ray to the right of p crosses: the rule itself. */
+/* Returns the number of segments that a ray to the right of (x, y) crosses, which defines the even-odd rule. */
 static int crossings(const struct tri_pslg *pslg, double x, double y)
 {
     int n = 0;
@@ -332,7 +333,7 @@ static double area_of(const struct tri_mesh *mesh, int32_t t, double centroid[2]
     return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/* Area of what has an odd number of crossings, of all triangles of the hull or of what is left; `stays`: all have. */
+/* Area of the triangles with an odd number of crossings. `stays`: set to true if all triangles are of this kind. */
 static double odd_area(const struct tri_mesh *mesh, const struct tri_pslg *pslg, bool *stays)
 {
     double sum = 0, at[2];
@@ -341,7 +342,7 @@ static double odd_area(const struct tri_mesh *mesh, const struct tri_pslg *pslg,
         double area = area_of(mesh, t, at);
         bool odd = crossings(pslg, at[0], at[1]) % 2;
         sum += odd ? area : 0;
-        *stays = *stays && (odd || area < 1e-9); /* thinner: rounding decides */
+        *stays = *stays && (odd || area < 1e-9); /* for thinner triangles rounding decides */
     }
     return sum;
 }
@@ -368,7 +369,8 @@ static struct tri_mesh carved(const struct tri_pslg *pslg, const struct tri_carv
     return mesh;
 }
 
-/* Rings that cross themselves and each other, and on a lattice overlap: what is left is what the rule says. */
+/* Rings that cross themselves and each other, and overlap on a lattice: the remaining area follows the even-odd
+ * rule. */
 static void test_rings_keep_the_even_odd_rule(void **state)
 {
     (void)state;
@@ -390,7 +392,7 @@ static void test_rings_keep_the_even_odd_rule(void **state)
     }
 }
 
-/* The least number of odd subsegments on a way from outside, by sweeps until nothing changes. */
+/* The lowest number of odd subsegments on a path from outside, by sweeps until nothing changes. */
 static int32_t *naive_depths(const struct tri_mesh *mesh, bool keep_hull)
 {
     int32_t *depth = calloc((size_t)mesh->n_triangles + 1, sizeof *depth);
@@ -413,7 +415,7 @@ static int32_t *naive_depths(const struct tri_mesh *mesh, bool keep_hull)
     return depth;
 }
 
-/* Rings, and any segments beside. */
+/* Rings with arbitrary other segments. */
 static void test_depths_equal_naive_twin(void **state)
 {
     (void)state;
@@ -459,7 +461,7 @@ static double area_left(const struct tri_pslg *pslg, bool keep_hull)
     return sum;
 }
 
-/* Boxes in, beside and along each other; each step adds to what is there. */
+/* Boxes inside, beside and along each other. Each step adds a box to the previous ones. */
 static void test_boxes(void **state)
 {
     (void)state;
@@ -469,15 +471,15 @@ static void test_boxes(void **state)
     assert_true(area_left(&pslg, false) == 48);
     add_box(&pslg, 2, 2, 1, 1); /* an island */
     assert_true(area_left(&pslg, false) == 49);
-    add_box(&pslg, 8, 0, 2, 4); /* a neighbour, which shares a piece of the border */
+    add_box(&pslg, 8, 0, 2, 4); /* a neighbour that shares a part of the border */
     assert_true(area_left(&pslg, false) == 57);
     add_box(&pslg, 0, 6, 2, 2); /* a hole along the border */
     assert_true(area_left(&pslg, false) == 53);
-    support_add_segment(&pslg, 0, 4); /* across to the hole, and into it */
+    support_add_segment(&pslg, 0, 4); /* a segment that leads across to the hole and into it */
     support_add_segment(&pslg, 0, 8);
     assert_true(area_left(&pslg, false) == 53);
-    assert_true(area_left(&pslg, true) == 53 + 4); /* the hull is a ring: the pocket at the neighbour's corner stays */
-    add_box(&pslg, 2, 2, 1, 1); /* the island again: its ring is there twice, and none */
+    assert_true(area_left(&pslg, true) == 53 + 4); /* the hull is a ring: the pocket at the corner stays */
+    add_box(&pslg, 2, 2, 1, 1); /* the island again: a ring given twice does not count */
     assert_true(area_left(&pslg, false) == 52);
     tri_pslg_free(&pslg);
 }

@@ -34,7 +34,7 @@ static bool is_vertex(const struct tri_mesh *mesh, struct tri_point p)
     return false;
 }
 
-/* Whoever shares an edge without subsegment with the cavity and has p in its circumdisk belongs to it; until nothing
+/* Adds triangles that share an edge without subsegment with the cavity and have p in their circumdisk, until nothing
  * changes. */
 static int32_t naive_cavity(const struct tri_mesh *mesh, struct tri_point p, int32_t start, bool *in)
 {
@@ -65,7 +65,8 @@ static void assert_same_set(const struct tri_cavity *cavity, const bool *in, int
     }
 }
 
-/* Closed, counter-clockwise as seen from p (save subsegments that have p beyond them), walls where subsegments are. */
+/* Checks that the boundary is closed, counter-clockwise as seen from p (except subsegments with p beyond them), and has
+ * walls exactly at subsegments. */
 static bool check_edges_seen(const struct tri_cavity *cavity, const struct tri_mesh *mesh)
 {
     int32_t walls = 0;
@@ -154,7 +155,7 @@ static bool in_diametral_disk(struct tri_point p, struct tri_point a, struct tri
     return (a.x - p.x) * (b.x - p.x) + (a.y - p.y) * (b.y - p.y) < 0;
 }
 
-/* Encroached from p's side, by a p that sees it, while the apex on that side keeps out of the diametral disk? */
+/* Returns true if p encroaches s and sees it, while the apex on that side is outside the diametral disk. */
 static bool is_encroached_in_sight(const struct tri_mesh *mesh, int32_t s, struct tri_point p)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
@@ -204,7 +205,7 @@ static void test_encroached_subsegments_are_walls(void **state)
     tri_cavity_free(&cavity);
 }
 
-static void test_split_keeps_everything(void **state)
+static void test_split_keeps_links_markers_and_parents(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
@@ -247,19 +248,19 @@ static void test_split_keeps_everything(void **state)
     tri_cavity_free(&cavity);
 }
 
-/* On coordinates that halves do not round, a split mesh is exactly constrained Delaunay. */
-static void test_split_is_delaunay_where_nothing_rounds(void **state)
+/* If halving does not round, a split mesh is exactly constrained Delaunay. */
+static void test_split_is_delaunay_without_rounding(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
-    for (uint64_t seed = 1; seed < 40; seed += 4) { /* lattices */
+    for (uint64_t seed = 1; seed < 40; seed += 4) { /* the seeds of lattices */
         struct tri_mesh mesh = tangle(seed);
         for (int32_t s = 0, end = mesh.n_subs; s < end; s++) {
             int32_t n_left;
             struct tri_point a = mesh.xy[mesh.sub[s].v[0]], b = mesh.xy[mesh.sub[s].v[1]];
             struct tri_point p = tri_point_between(a, b, 0.5);
             if (tri_orient2d(a, b, p) != 0)
-                continue; /* a crossing with rounded coordinates is an end of it */
+                continue; /* one of its ends is a crossing with rounded coordinates */
             assert_int_equal(tri_cavity_search_split(&cavity, &mesh, p, s, &n_left), TRI_SEARCH_FOUND);
             assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, NULL), TRI_OK);
             assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, NULL), TRI_OK);
@@ -285,7 +286,7 @@ static bool owned(const struct tri_mesh *mesh, const struct tri_fence *f, int32_
     return true;
 }
 
-static void test_fence_stops_exactly_what_it_does_not_own(void **state)
+static void test_fence_stops_exactly_searches_that_leave_it(void **state)
 {
     (void)state;
     struct tri_cavity cavity = {0};
@@ -334,7 +335,7 @@ static void test_a_vertex_is_refused(void **state)
     tri_cavity_free(&cavity);
 }
 
-/* The circumcentre of a flat triangle may be anywhere; no predicate is asked about it. */
+/* The circumcentre of a flat triangle may be anywhere, even too far away for the predicates. */
 static void test_a_point_out_of_range_is_outside(void **state)
 {
     (void)state;
@@ -357,9 +358,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_search_equals_flood_and_fill_is_delaunay),
         cmocka_unit_test(test_encroached_subsegments_are_walls),
-        cmocka_unit_test(test_split_keeps_everything),
-        cmocka_unit_test(test_split_is_delaunay_where_nothing_rounds),
-        cmocka_unit_test(test_fence_stops_exactly_what_it_does_not_own),
+        cmocka_unit_test(test_split_keeps_links_markers_and_parents),
+        cmocka_unit_test(test_split_is_delaunay_without_rounding),
+        cmocka_unit_test(test_fence_stops_exactly_searches_that_leave_it),
         cmocka_unit_test(test_a_vertex_is_refused),
         cmocka_unit_test(test_a_point_out_of_range_is_outside),
     };

@@ -1,4 +1,4 @@
-/* What is counted in a whole mesh, against naive counts. */
+/* Counts over a whole mesh, compared with naive counts. */
 #include "tests/support.h"
 #include "triangle/size/quality.h"
 #include "triangle/base/grow.h"
@@ -12,7 +12,8 @@ static struct tri_mesh refined_letter(const struct tri_options *options, struct 
     return mesh;
 }
 
-/* Among every third triangle, backwards and in place: those of all that are among them. */
+/* A search among every third triangle, in reverse order and in place, finds those bad triangles of the mesh that are
+ * among them. */
 static void assert_finds_among(const struct tri_mesh *mesh)
 {
     const struct tri_options some = support_quality(20, 0);
@@ -28,9 +29,9 @@ static void assert_finds_among(const struct tri_mesh *mesh)
     assert_memory_equal(list, wanted, (size_t)n_wanted * sizeof *wanted);
 }
 
-/* Work is found triangle by triangle: any cut into ranges finds the same, and what is found is what the criterion
- * says. */
-static void test_find_work(void **state)
+/* Bad triangles are found independently of each other: any division into ranges finds the same, as the criterion
+ * defines them. */
+static void test_bad_triangles_are_found(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults(), asked = support_quality(30, 0.01);
@@ -55,7 +56,7 @@ static void test_find_work(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A mesh that keeps its bounds has nothing to count; one that is held to stricter ones has, and each once. */
+/* A mesh that satisfies its bounds has count 0. With stricter bounds, each bad triangle is counted once. */
 static void test_count_bad(void **state)
 {
     (void)state;
@@ -81,8 +82,8 @@ static void test_count_bad(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* The reasons that a run's own report gives. */
-static void test_excuses(void **state)
+/* The reasons are those in the report of the run. */
+static void test_reasons_match_the_report(void **state)
 {
     (void)state;
     struct tri_options options = support_quality(30, 0.005);
@@ -113,7 +114,7 @@ static int64_t encroached(const struct tri_mesh *mesh, const struct tri_options 
     return n;
 }
 
-/* What has no reason of its own gets the one that the report of the run makes likely. */
+/* A bad triangle without a reason of its own gets the most likely reason from the report of the run. */
 static void test_settle_counts(void **state)
 {
     (void)state;
@@ -155,8 +156,9 @@ static void test_encroached(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_find_work),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_excuses),
-        cmocka_unit_test(test_encroached), cmocka_unit_test(test_settle_counts),
+        cmocka_unit_test(test_bad_triangles_are_found), cmocka_unit_test(test_count_bad),
+        cmocka_unit_test(test_reasons_match_the_report), cmocka_unit_test(test_encroached),
+        cmocka_unit_test(test_settle_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
-/* Subsegments on one straight line get one parent; whatever turns, forks or changes its marker stays apart. */
+/* Subsegments on one straight line get one parent. Chains end at turns, forks and changes of the marker. */
 #include "support.h"
 #include "triangle/cdt/reconstruct.h"
 
-/* The mesh; of its subsegments some run one way, some the other. */
+/* Returns the mesh of the PSLG. Some of its subsegments run in one direction, some in the other. */
 static struct tri_mesh mesh_of(struct tri_pslg *pslg)
 {
     struct tri_options options = tri_defaults();
@@ -19,7 +19,7 @@ static struct tri_mesh mesh_of(struct tri_pslg *pslg)
     return mesh;
 }
 
-/* A polygon whose k-th side is cut into parts[k] pieces. Corners are small integers, so that all points are exact. */
+/* A polygon whose k-th side is cut into parts[k] pieces. Corners are small integers, so all points are exact. */
 static struct tri_pslg polygon(int n, const double corner[][2], const int32_t *parts)
 {
     struct tri_pslg pslg = support_pslg(200, 200, 0, 0);
@@ -33,7 +33,7 @@ static struct tri_pslg polygon(int n, const double corner[][2], const int32_t *p
     return pslg;
 }
 
-/* Each parent is a chain of its subsegments, all of which run its way; what lies between them lies on it. */
+/* Asserts that each parent is a chain of its subsegments in one direction, and that its inner vertices lie on it. */
 static void assert_chains(const struct tri_mesh *mesh)
 {
     int32_t inner = 0;
@@ -76,7 +76,7 @@ static void test_sides_of_a_square(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_markers_part_a_line(void **state)
+static void test_a_new_marker_ends_a_chain(void **state)
 {
     (void)state;
     const int32_t parts[4] = {8, 1, 1, 1};
@@ -92,13 +92,13 @@ static void test_markers_part_a_line(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Where a third subsegment ends a line is cut, also where it would go on straight. */
-static void test_forks_part_a_line(void **state)
+/* A chain ends at a vertex with a third subsegment, even if it would continue straight. */
+static void test_forks_end_a_chain(void **state)
 {
     (void)state;
     const int32_t parts[4] = {8, 8, 1, 1};
     struct tri_pslg pslg = polygon(4, square, parts);
-    support_add_segment(&pslg, 4, 12); /* from the middle of one side to that of the next */
+    support_add_segment(&pslg, 4, 12); /* from the middle of one side to the middle of the next */
     struct tri_mesh mesh = mesh_of(&pslg);
     assert_int_equal(tri_unite_chains(&mesh, NULL), TRI_OK);
     assert_int_equal(mesh.n_parents, 7);
@@ -106,8 +106,8 @@ static void test_forks_part_a_line(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Every joint is straight as far as rounding tells, and all together go round: two units in the last place at each
- * joint, two thousand amid the chain. Three of them in a row keep to the tolerance. */
+/* Every joint is straight within rounding error, but together they form a closed curve: each of two thousand joints
+ * deviates by two units in the last place. Any three consecutive joints are within the tolerance. */
 static void test_curves_stay_in_pieces(void **state)
 {
     (void)state;
@@ -128,14 +128,14 @@ static void test_curves_stay_in_pieces(void **state)
     }
 }
 
-/* Three sides that bend so little that the pieces around the corners tell nothing of it: the sides come back, also
- * where the chain is closed. */
+/* Three sides that bend so little that pieces near the corners look straight. The sides are recovered, also if the
+ * chain is closed. */
 static void test_corners_without_angle(void **state)
 {
     (void)state;
     enum { N = 40, SIDES = 3 };
     struct tri_pslg pslg = support_pslg(SIDES * (N + 1) + 3, SIDES * (N + 1) + 3, 0, 0);
-    double at[N + 1]; /* along a side, finest at its ends */
+    double at[N + 1]; /* along a side, with the finest pieces at its ends */
     for (int i = 0; i <= N; i++)
         at[i] = i <= N / 2 ? ldexp(0.5, i - N / 2) : 1 - ldexp(0.5, N / 2 - i);
     at[0] = 0, at[N] = 1;
@@ -171,8 +171,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sides_of_a_square),
-        cmocka_unit_test(test_markers_part_a_line),
-        cmocka_unit_test(test_forks_part_a_line),
+        cmocka_unit_test(test_a_new_marker_ends_a_chain),
+        cmocka_unit_test(test_forks_end_a_chain),
         cmocka_unit_test(test_curves_stay_in_pieces),
         cmocka_unit_test(test_corners_without_angle),
     };

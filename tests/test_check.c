@@ -1,7 +1,7 @@
-/* The judge on trial: valid meshes of every kind pass, and each way of breaking one is found and named.
+/* Tests of the checker: valid meshes of every kind pass, and each kind of fault is found and named.
  *
- * Meshes are written down by hand, or are a patch of slanted rows: point (i, j) at (i + 0.5 * (j odd), 0.8 * j), every
- * edge strictly Delaunay. The judgement on overlap is compared with a naive twin on random heaps of triangles. */
+ * Meshes are written by hand, or are a patch of slanted rows: point (i, j) is at (i + 0.5 * (j odd), 0.8 * j), and
+ * every edge is strictly Delaunay. The overlap check is compared with a naive twin on random sets of triangles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@
 
 enum { ROOM = 4096 };
 
-/* A mesh with room to be changed, its input, and the outcome. */
+/* A mesh with room for changes, its input, and the report. */
 struct trial {
     double points[2 * ROOM];
     int32_t triangles[3 * ROOM], neighbors[3 * ROOM], segments[2 * ROOM], markers[ROOM];
@@ -81,7 +81,7 @@ static void remove_segment(int32_t s)
     memmove(&trial.segments[2 * s], &trial.segments[2 * last], 2 * sizeof(int32_t));
 }
 
-/* Triangle with the directed edge a b, -1: none. *corner: the one opposite. */
+/* Returns the triangle with the directed edge a b, or -1. *corner: the corner opposite the edge. */
 static int32_t find_edge(int32_t a, int32_t b, int *corner)
 {
     for (int32_t t = 0; t < trial.mesh.n_triangles; t++) {
@@ -159,7 +159,7 @@ static void add_patch_points(int32_t columns, int32_t rows, double x, double y, 
     }
 }
 
-/* The patch with neighbours, boundary subsegments, and itself as input. */
+/* Makes a patch with neighbours and boundary subsegments, which is also the input. */
 static void begin_patch(void)
 {
     begin();
@@ -169,7 +169,7 @@ static void begin_patch(void)
     list_neighbors();
 }
 
-/* The points and subsegments there are now, copied, become the input. */
+/* Copies the current points and subsegments into the input. */
 static void take_as_input(void)
 {
     static double points[2 * ROOM];
@@ -185,7 +185,7 @@ static void take_as_input(void)
     trial.has_input = true;
 }
 
-/* Points get the last non-zero marker of a subsegment at them. */
+/* Gives each point the last non-zero marker of a subsegment at it. */
 static void mark_points(void)
 {
     trial.mesh.point_markers = trial.point_markers;
@@ -212,7 +212,8 @@ static void expect_good(void)
     assert_true(tri_check_passed(&trial.report));
 }
 
-/* The kind has so many faults and a witness; kinds that are not among `also` (-1: none) have none. */
+/* Asserts that this kind has `count` faults and a witness, and that other kinds except `also` (-1: no exception) have
+ * none. */
 static void expect(enum tri_check_kind kind, int64_t count, int also)
 {
     judge();
@@ -285,7 +286,7 @@ static void good_nothing(void **state)
     trial.input.segments[0] = 0, trial.input.segments[1] = 2;
     trial.options.min_angle = 20;
     trial.options.convex = true;
-    expect_good(); /* a PSLG that is not closed loses all */
+    expect_good(); /* a PSLG that is not closed encloses nothing */
     assert_near(trial.report.smallest_angle, 0, 0);
 }
 
@@ -308,25 +309,25 @@ static void good_hole_and_island(void **state)
     trial.options.border = TRI_CHECK_BORDER_SEGMENTS;
     trial.input.n_holes = 1;
     trial.input.holes = hole;
-    hole[0] = 9; /* outside */
+    hole[0] = 9; /* outside the mesh */
     expect(TRI_CHECK_FACES, 1, -1);
     hole[0] = 2.5;
     hole[1] = 1.65;
     expect_good();
     hole[1] = 1.7; /* on the island's edge */
     expect_good();
-    hole[1] = 1.7 + 0x1p-48; /* beside it: rounding may put an edge there */
+    hole[1] = 1.7 + 0x1p-48; /* beside it: rounding may have put an edge there */
     expect_good();
     hole[1] = 1.75; /* in the island */
     expect(TRI_CHECK_HOLES, 1, TRI_CHECK_FACES);
     trial.options.ignore_holes = true;
     expect(TRI_CHECK_FACES, 1, -1);
-    hole[1] = 1.65; /* then nothing is to be empty */
+    hole[1] = 1.65; /* now nothing must be empty */
     expect(TRI_CHECK_FACES, 1, -1);
 }
 
-/* No triangle is there, of segments that meet at one point and of three that enclose something apart from them. So many
- * that comparing all pairs of them is more than the judge does. */
+/* A mesh without triangles for an input with many segments that meet at one point and three segments that enclose a
+ * face elsewhere. There are more segments than the checker compares pairwise. */
 static void lost_face_beside_a_hub(void **state)
 {
     (void)state;
@@ -351,14 +352,14 @@ static void lost_face_beside_a_hub(void **state)
     struct tri_check_report report;
     assert_int_equal(tri_check(&mesh, &input, &options, &report, NULL), TRI_OK);
     assert_int_equal(report.item[TRI_CHECK_FACES].state, TRI_CHECK_FAILED);
-    input.n_segments = N; /* which enclose nothing */
+    input.n_segments = N; /* these segments enclose nothing */
     assert_int_equal(tri_check(&mesh, &input, &options, &report, NULL), TRI_OK);
     assert_int_equal(report.item[TRI_CHECK_FACES].state, TRI_CHECK_OK);
     free(points);
     free(ends);
 }
 
-/* Two holes that touch at a corner are two faces; a hole point at that corner is in both. */
+/* Two holes that touch at a corner are two faces. A hole point at that corner is in both. */
 static void faces_that_touch(void **state)
 {
     (void)state;
@@ -400,7 +401,7 @@ static void good_components_that_touch(void **state)
     list_neighbors();
     take_as_input();
     expect_good();
-    int32_t e = add_point(0, 1), f = add_point(0, 2), g = add_point(-1, 2); /* a vertical edge, apart */
+    int32_t e = add_point(0, 1), f = add_point(0, 2), g = add_point(-1, 2); /* a separate vertical edge */
     add_triangle(e, f, g);
     trial.mesh.n_segments = 0;
     list_boundary();
@@ -415,7 +416,7 @@ static void good_rounded_chain(void **state)
 {
     (void)state;
     begin();
-    double m = 1.0 / 3; /* on neither line exactly */
+    double m = 1.0 / 3; /* not exactly on either line */
     int32_t a = add_point(0.1, 0.1), b = add_point(1.3, 0.7), c = add_point(0, 2);
     add_segment(a, b), add_segment(b, c), add_segment(c, a);
     take_as_input();
@@ -481,7 +482,7 @@ static void broken_orientation(void **state)
     add_triangle(0, 1, 2);
     judge();
     assert_string_equal(trial.report.item[TRI_CHECK_ORIENTATION].text, "triangle 0 (0 1 2) is flat");
-    trial.points[5] = nextafter(3, 4); /* by a hair counter-clockwise */
+    trial.points[5] = nextafter(3, 4); /* counter-clockwise by the smallest amount */
     expect_good();
 }
 
@@ -489,19 +490,19 @@ static void broken_edges(void **state)
 {
     (void)state;
     begin_patch();
-    add_triangle(trial.triangles[30], trial.triangles[31], trial.triangles[32]); /* a triangle twice */
+    add_triangle(trial.triangles[30], trial.triangles[31], trial.triangles[32]); /* a triangle given twice */
     trial.mesh.neighbors = NULL;
     judge();
     assert_true(failed(TRI_CHECK_EDGES));
     begin_patch();
-    int32_t v = add_point(2.5, -1); /* a second triangle on an edge of the inside */
+    int32_t v = add_point(2.5, -1); /* a second triangle on an inner edge */
     add_triangle(at(2, 1), at(2, 2), v);
     trial.mesh.neighbors = NULL;
     judge();
     assert_true(failed(TRI_CHECK_EDGES) || failed(TRI_CHECK_ORIENTATION));
     begin();
     add_point(0, 0), add_point(4, 0), add_point(1, 3), add_point(2, 2), add_point(3, 3), add_point(2, -2);
-    add_triangle(0, 1, 2), add_triangle(0, 1, 4); /* two on the same side, a third on the other */
+    add_triangle(0, 1, 2), add_triangle(0, 1, 4); /* two triangles on one side of an edge, a third on the other */
     add_triangle(1, 0, 5);
     expect(TRI_CHECK_EDGES, 3, -1);
 }
@@ -521,7 +522,7 @@ static void broken_neighbors(void **state)
     expect(TRI_CHECK_NEIGHBORS, 18, -1);
 }
 
-/* Eight points around a ninth, a quarter turn from each to the next: the star winds twice. */
+/* Eight points around a ninth, each a quarter turn after the previous one, so that the star winds twice. */
 static void broken_star(void **state)
 {
     (void)state;
@@ -533,7 +534,7 @@ static void broken_star(void **state)
     for (int32_t i = 0; i < 8; i++)
         add_triangle(o, i, (i + 1) % 8);
     expect(TRI_CHECK_OVERLAP, 1, -1);
-    remove_triangle(5); /* open, but still more than once around */
+    remove_triangle(5); /* the star is open, but still winds more than once */
     judge();
     assert_true(failed(TRI_CHECK_OVERLAP));
 }
@@ -541,7 +542,7 @@ static void broken_star(void **state)
 static void broken_overlap(void **state)
 {
     (void)state;
-    begin_patch(); /* a second patch on top, boundaries apart */
+    begin_patch(); /* a second patch on top, with a separate boundary */
     trial.mesh.n_segments = 0;
     trial.mesh.neighbors = NULL;
     add_patch_points(3, 3, 1.01, 0.81, 0.5);
@@ -552,7 +553,7 @@ static void broken_overlap(void **state)
     add_point(0, 0), add_point(4, 0), add_point(2, 4), add_point(0, 3), add_point(2, -1), add_point(4, 3);
     add_triangle(0, 1, 2), add_triangle(3, 4, 5);
     expect(TRI_CHECK_OVERLAP, 1, -1);
-    begin(); /* the same, vertices nowhere inside, one edge vertical */
+    begin(); /* the same without a vertex inside the other triangle, and with a vertical edge */
     add_point(0, 0), add_point(4, 0), add_point(2, 4), add_point(2, -1), add_point(6, 0), add_point(2, 9);
     add_triangle(0, 1, 2), add_triangle(3, 4, 5);
     expect(TRI_CHECK_OVERLAP, 1, -1);
@@ -562,7 +563,7 @@ static void broken_overlap_by_a_moved_vertex(void **state)
 {
     (void)state;
     begin_patch();
-    trial.points[2 * at(2, 2)] += 2; /* past its star */
+    trial.points[2 * at(2, 2)] += 2; /* outside its star */
     judge();
     assert_true(failed(TRI_CHECK_ORIENTATION));
 }
@@ -582,7 +583,7 @@ static void broken_hanging_vertex(void **state)
     add_triangle(0, 1, 2), add_triangle(3, 4, 5);
     expect(TRI_CHECK_OVERLAP, 1, -1);
     assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "a vertex of one lies inside the other"));
-    trial.points[2 * 3 + 1] = -1e-300; /* apart by a hair, which counts as 0 */
+    trial.points[2 * 3 + 1] = -1e-300; /* a gap that is tiny, which counts as 0 */
     expect(TRI_CHECK_OVERLAP, 1, -1);
     trial.points[2 * 3 + 1] = -1e-60;
     expect_good();
@@ -598,9 +599,9 @@ static void broken_coinciding_vertices(void **state)
     assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "same place"));
 }
 
-/* --- twin of the overlap check: random heaps of triangles on a small grid of points */
+/* --- naive twin of the overlap check: random sets of triangles on a small grid of points */
 
-/* Exact: the coordinates are small integers. */
+/* Exact, because the coordinates are small integers. */
 static double turn(const double *p, const double *q, const double *r)
 {
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -611,7 +612,7 @@ static const double *corner(int32_t t, int k)
     return &trial.points[2 * trial.triangles[3 * t + k]];
 }
 
-/* An edge line of t that all of u lies beyond. */
+/* Returns true if all of u lies beyond the line of an edge of t. */
 static bool separates(int32_t t, int32_t u)
 {
     for (int k = 0; k < 3; k++) {
@@ -624,7 +625,7 @@ static bool separates(int32_t t, int32_t u)
     return false;
 }
 
-/* A corner of u lies in t without being a corner of it. */
+/* Returns true if a corner of u lies in t and is not a corner of t. */
 static bool intrudes(int32_t t, int32_t u)
 {
     for (int m = 0; m < 3; m++) {
@@ -659,7 +660,7 @@ static uint32_t random_below(uint32_t n)
     return x % n;
 }
 
-/* Random corners, turned counter-clockwise; rarely left as they are. */
+/* Random corners, usually made counter-clockwise. */
 static void add_random_triangle(int32_t n_points)
 {
     int32_t v[3];
@@ -685,7 +686,7 @@ static void twin_of_overlap(void **state)
             add_point(random_below(side), random_below(side));
         for (int32_t k = 0; k < 60 && trial.mesh.n_triangles < wanted; k++) {
             add_random_triangle(n);
-            /* a heap of random triangles is seldom valid: take most of the faulty ones back */
+            /* random sets are seldom valid, so most triangles that make a fault are removed again */
             if (trial.mesh.n_triangles > 0 && random_below(12) > 0 && !naive_is_triangulation())
                 trial.mesh.n_triangles--;
         }
@@ -718,17 +719,17 @@ static void broken_delaunay(void **state)
     int p;
     (void)find_edge(at(2, 1), at(2, 3), &p);
     add_segment(at(2, 1), at(2, 3));
-    expect_good(); /* constrained, it may be there */
+    expect_good(); /* as a constrained edge it is allowed */
     trial.options.delaunay = TRI_CHECK_CONFORMING;
     expect(TRI_CHECK_LOCAL_DELAUNAY, 1, TRI_CHECK_ENCROACHMENT);
-    assert_int_equal(trial.report.item[TRI_CHECK_ENCROACHMENT].count, 1); /* seen flat from both sides */
+    assert_int_equal(trial.report.item[TRI_CHECK_ENCROACHMENT].count, 1); /* both sides see it at a flat angle */
 }
 
 static void broken_diametral_circle(void **state)
 {
     (void)state;
     begin();
-    add_point(0, 0), add_point(2, 0), add_point(1, 1); /* a right angle: on the circle */
+    add_point(0, 0), add_point(2, 0), add_point(1, 1); /* a right angle: the vertex is on the circle */
     add_triangle(0, 1, 2);
     trial.options.delaunay = TRI_CHECK_CONFORMING;
     expect_good();
@@ -736,7 +737,7 @@ static void broken_diametral_circle(void **state)
     expect(TRI_CHECK_ENCROACHMENT, 1, -1);
     trial.points[5] = 1 + 0x1p-52;
     expect_good();
-    begin(); /* the two products are 2^54 - 1 and -2^54: equal, once rounded */
+    begin(); /* the two products are 2^54 - 1 and -2^54, which are equal after rounding */
     add_point(0x1p27 + 1, -0x1p27), add_point(0x1p27 - 1, 0x1p27), add_point(0, 0);
     add_triangle(0, 1, 2);
     trial.options.delaunay = TRI_CHECK_CONFORMING;
@@ -784,7 +785,7 @@ static void broken_input_segments(void **state)
     remove_segment(trial.mesh.n_segments - 1);
     expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
     assert_non_null(strstr(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].text, "segment 18 (7-8)"));
-    begin_patch(); /* a long one, of which one subsegment is missing */
+    begin_patch(); /* one subsegment of a long segment is missing */
     take_as_input();
     int32_t *ends = &trial.input.segments[2 * trial.input.n_segments++];
     ends[0] = at(0, 2), ends[1] = at(5, 2);
@@ -793,11 +794,11 @@ static void broken_input_segments(void **state)
     expect_good();
     remove_segment(trial.mesh.n_segments - 3);
     expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
-    ends[0] = -5; /* not a segment */
+    ends[0] = -5; /* not a valid segment */
     expect_good();
 }
 
-/* A strip of unit squares 0 .. 6; squares 1 and 4 are carved; one input segment runs along the middle line. */
+/* A strip of unit squares 0 .. 6. Squares 1 and 4 are carved, and one input segment runs along the middle line. */
 static void begin_strip(void)
 {
     begin();
@@ -830,7 +831,7 @@ static void carved_pieces_are_good(void **state)
     for (int k = 0; k < 5; k++)
         add_segment(3 * inside[k] + 1, 3 * inside[k] + 4);
     expect_good();
-    for (int32_t k = 0; k < 5; k++) { /* each of them is needed */
+    for (int32_t k = 0; k < 5; k++) { /* each of the five is needed */
         int32_t a = trial.segments[2 * (first + k)], b = trial.segments[2 * (first + k) + 1];
         remove_segment(first + k);
         expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
@@ -839,7 +840,7 @@ static void carved_pieces_are_good(void **state)
         end[0] = moved[0], end[1] = moved[1];
         moved[0] = a, moved[1] = b;
     }
-    int32_t far = trial.input.n_points++; /* the segment ends in the open */
+    int32_t far = trial.input.n_points++; /* an end of the segment is outside the mesh */
     trial.input.points[2 * far] = 30, trial.input.points[2 * far + 1] = 0;
     trial.points[2 * far] = 30, trial.points[2 * far + 1] = 0;
     trial.mesh.n_points++;
@@ -864,14 +865,14 @@ static void broken_markers(void **state)
     expect(TRI_CHECK_MARKERS, 1, -1);
     trial.markers[2] = 1;
     expect(TRI_CHECK_MARKERS, 2, -1);
-    begin_patch(); /* overlapping input segments: the first marker that is not zero wins */
+    begin_patch(); /* overlapping input segments: the first non-zero marker wins */
     s = add_segment(at(1, 1), at(2, 1));
     add_segment(at(1, 1), at(3, 1));
     add_segment(at(2, 1), at(3, 1));
     trial.markers[s + 1] = 5;
     trial.markers[s + 2] = 6;
     take_as_input();
-    trial.segments[2 * (s + 1)] = at(2, 1); /* in the mesh two subsegments */
+    trial.segments[2 * (s + 1)] = at(2, 1); /* the mesh has two subsegments instead */
     remove_segment(s + 2);
     trial.mesh.segment_markers = trial.markers;
     for (int32_t k = 0; k < s; k++)
@@ -892,18 +893,18 @@ static void broken_vertex_markers(void **state)
         trial.markers[s] = 1;
     mark_points();
     expect_good();
-    trial.point_markers[inside] = 1; /* of nobody */
+    trial.point_markers[inside] = 1; /* the marker of no input segment */
     expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
     trial.point_markers[inside] = 0;
     trial.point_markers[rim] = 0; /* on the boundary */
     expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
-    trial.point_markers[rim] = 9; /* of a segment elsewhere */
+    trial.point_markers[rim] = 9; /* the marker of a segment at another place */
     expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
     trial.point_markers[rim] = 1;
     trial.point_markers[at(1, 1)] = 0; /* on a segment with a marker */
     expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
     int32_t own[ROOM] = {0};
-    own[rim] = 4; /* a marker of its own, which must stay */
+    own[rim] = 4; /* a marker of its own, which must be kept */
     trial.input.markers = own;
     trial.point_markers[at(1, 1)] = 9;
     expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
@@ -911,7 +912,7 @@ static void broken_vertex_markers(void **state)
     expect_good();
 }
 
-/* Triangles are cut off at the rim: the mesh falls short inside, its new rim is listed. */
+/* Triangles are removed at the rim. The mesh then lacks area inside, and its new rim is reported. */
 static void broken_border(void **state)
 {
     (void)state;
@@ -933,7 +934,7 @@ static void broken_border(void **state)
     }
 }
 
-/* Without segments the mesh may end along the hull, and nowhere else. */
+/* Without segments the mesh must end at the hull. */
 static void border_of_points(void **state)
 {
     (void)state;
@@ -946,7 +947,7 @@ static void border_of_points(void **state)
     remove_triangle(3);
     judge();
     assert_int_equal(trial.report.item[TRI_CHECK_BORDER].count, 2);
-    begin(); /* a point made on the hull is rounded */
+    begin(); /* a new point on the hull is rounded */
     add_point(0.1, 0.1), add_point(1.3, 0.7), add_point(0, 2);
     take_as_input();
     add_point(0.1 + (1.3 - 0.1) / 3, 0.1 + (0.7 - 0.1) / 3);
@@ -956,8 +957,9 @@ static void border_of_points(void **state)
     expect_good();
 }
 
-/* Two chains from vertex 1 to 4, over 2 and 3, so near to each other that the input segment from 0 to 4 may run along
- * either; from 0 to 1 there is one way. Input segment 0 is that one, with marker 5, and 1 to 2 has marker 3. */
+/* Two chains lead from vertex 1 to 4, over 2 and over 3. They are so close that the input segment from 0 to 4 may run
+ * along either; from 0 to 1 there is only one way. That segment has marker 5 and comes first with long_one_first. The
+ * segment from 1 to 2 has marker 3. */
 static void begin_lens(bool long_one_first)
 {
     static const int32_t chains[5][2] = {{0, 1}, {1, 2}, {2, 4}, {1, 3}, {3, 4}};
@@ -980,7 +982,7 @@ static void begin_lens(bool long_one_first)
     trial.input.segment_markers[first] = 5;
     trial.input.segment_markers[second] = 3;
     trial.mesh.segment_markers = trial.markers;
-    trial.markers[0] = 5; /* 0 to 1, which is certain */
+    trial.markers[0] = 5; /* 0 to 1, certainly on the long segment */
     trial.markers[1] = 3;
 }
 
@@ -989,35 +991,35 @@ static void markers_at_forks(void **state)
     (void)state;
     begin_lens(true);
     expect_good();
-    trial.markers[1] = 5, trial.markers[2] = 5; /* along the one */
+    trial.markers[1] = 5, trial.markers[2] = 5; /* on one way */
     expect_good();
-    trial.markers[1] = 3, trial.markers[2] = 0, trial.markers[3] = 5, trial.markers[4] = 5; /* along the other */
+    trial.markers[1] = 3, trial.markers[2] = 0, trial.markers[3] = 5, trial.markers[4] = 5; /* on the other way */
     expect_good();
-    trial.markers[3] = 6; /* of nobody */
+    trial.markers[3] = 6; /* the marker of no input segment */
     expect(TRI_CHECK_MARKERS, 1, -1);
-    trial.markers[3] = 3; /* of somebody who does not run there */
+    trial.markers[3] = 3; /* the marker of a segment elsewhere */
     expect(TRI_CHECK_MARKERS, 1, -1);
-    for (int32_t marker = 0; marker < 4; marker++) { /* before the fork there is no choice */
+    for (int32_t marker = 0; marker < 4; marker++) { /* before the fork only one way is possible */
         begin_lens(true);
         trial.markers[0] = marker;
         expect(TRI_CHECK_MARKERS, 1, -1);
     }
-    begin_lens(false); /* who is there for certain, and comes first, precedes who may be */
+    begin_lens(false); /* a segment that certainly runs there and comes first takes precedence over a possible one */
     expect_good();
     trial.markers[1] = 5;
     expect(TRI_CHECK_MARKERS, 1, -1);
 }
 
-/* Of either chain of the lens one half is missing, not the same: all places of the long segment are beside some
- * subsegment, but no way leads from one half to the other. */
+/* A different half of each chain of the lens is missing. All places of the long segment are near some subsegment, but
+ * no path leads from one half to the other. */
 static void halves_beside_each_other(void **state)
 {
     (void)state;
     begin_lens(true);
     trial.mesh.segment_markers = NULL;
-    remove_segment(4); /* 3 to 4 */
-    remove_segment(1); /* 1 to 2 */
-    for (int s = 0; s < 5; s++) { /* of the input: 1 to 3, and 2 to 4 */
+    remove_segment(4); /* the subsegment 3 to 4 */
+    remove_segment(1); /* the subsegment 1 to 2 */
+    for (int s = 0; s < 5; s++) { /* input segments 1 to 3 and 2 to 4 are fine */
         trial.input.segments[2 * s] = s % 2 == 1 ? 1 : 2;
         trial.input.segments[2 * s + 1] = s % 2 == 1 ? 3 : 4;
     }
@@ -1026,7 +1028,7 @@ static void halves_beside_each_other(void **state)
     expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
 }
 
-/* A chain whose inner vertex is so many units of its larger coordinate off the line. */
+/* A chain whose inner vertex is this many units in the last place of its larger coordinate off the line. */
 static void begin_bend(double ulps)
 {
     begin();
@@ -1057,8 +1059,8 @@ static void bent_segments(void **state)
     assert_int_equal(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].count, 1);
 }
 
-/* A side shorter than the tolerance of where it is: the input segment that ends at its corner, the rest of it carved,
- * does not run along it, although that is exactly on its line. */
+/* The side is shorter than the tolerance at its place. An input segment ends at its corner, on its exact line, and the
+ * rest of that segment is carved. The side does not belong to the segment. */
 static void marker_beyond_the_end(void **state)
 {
     (void)state;
@@ -1078,8 +1080,8 @@ static void marker_beyond_the_end(void **state)
     expect_good();
 }
 
-/* The unit square, and an input segment from below its lower side to beyond its right one that comes so far into it,
- * and is not there. */
+/* The unit square, and an input segment from below its lower side to beyond its right side. It reaches into the square
+ * by `depth`, and the mesh lacks it. */
 static void begin_grazed(double depth)
 {
     begin();
@@ -1093,7 +1095,7 @@ static void begin_grazed(double depth)
     trial.input.segments[2 * last + 1] = 5;
 }
 
-static void what_is_missing_beside_the_boundary(void **state)
+static void missing_segment_near_the_boundary(void **state)
 {
     (void)state;
     begin_grazed(0x1p-50);
@@ -1112,10 +1114,10 @@ static void broken_input_vertices(void **state)
     begin_patch();
     take_as_input();
     trial.points[2 * at(3, 1)] = nextafter(trial.points[2 * at(3, 1)], 10);
-    expect(TRI_CHECK_INPUT_VERTICES, 1, TRI_CHECK_LOST_VERTICES); /* nobody is at its place now */
+    expect(TRI_CHECK_INPUT_VERTICES, 1, TRI_CHECK_LOST_VERTICES); /* no vertex is at its place any more */
     begin_patch();
     take_as_input();
-    trial.input.points[2 * trial.input.n_points] = 100; /* outside, but missing */
+    trial.input.points[2 * trial.input.n_points] = 100; /* outside, and missing in the mesh */
     trial.input.n_points++;
     expect(TRI_CHECK_INPUT_VERTICES, 1, -1);
 }
@@ -1130,13 +1132,13 @@ static void broken_lost_vertex(void **state)
     trial.options.ignore_lost = true;
     expect_good();
     trial.options.ignore_lost = false;
-    trial.points[2 * 30] = trial.input.points[2 * 30] = 2.25; /* on a boundary edge: it should have split that */
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 2.25; /* on a boundary edge, which it should have split */
     trial.points[2 * 30 + 1] = trial.input.points[2 * 30 + 1] = 0;
     expect(TRI_CHECK_LOST_VERTICES, 1, -1);
-    trial.points[2 * 30] = trial.input.points[2 * 30] = 1.5; /* a duplicate of another vertex now */
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 1.5; /* at the place of another vertex */
     trial.points[2 * 30 + 1] = trial.input.points[2 * 30 + 1] = trial.points[2 * at(1, 1) + 1];
     expect_good();
-    trial.points[2 * 30] = trial.input.points[2 * 30] = 150; /* outside */
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 150; /* outside the mesh */
     expect_good();
     trial.options.convex = true;
     judge();
@@ -1152,7 +1154,7 @@ static void duplicates_stand_for_each_other(void **state)
     take_as_input();
     trial.input.segments[2 * 18] = twin;
     expect_good();
-    trial.mesh.n_points--; /* dropped from the output */
+    trial.mesh.n_points--; /* not in the output */
     expect(TRI_CHECK_INPUT_VERTICES, 1, -1);
     trial.options.renumbered = true;
     expect_good();
@@ -1180,20 +1182,20 @@ static void broken_angles(void **state)
     begin();
     add_point(0, 0), add_point(1, 0), add_point(0, 1);
     add_triangle(0, 1, 2);
-    trial.options.min_angle = 45; /* met exactly, whatever the rounding */
+    trial.options.min_angle = 45; /* satisfied exactly, regardless of rounding */
     trial.options.small_input_angle = 20;
     expect_good();
     assert_near(trial.report.largest_angle, 90, 1e-9);
     trial.options.min_angle = 45.000001;
     expect(TRI_CHECK_ANGLES, 1, -1);
-    trial.options.small_input_angle = 0; /* the corners of the input are to blame */
+    trial.options.small_input_angle = 0; /* caused by corners of the input */
     expect_good();
     assert_int_equal(trial.report.n_small_explained, 1);
     assert_int_equal(trial.report.n_apexes, 2);
 }
 
-/* Equilateral, turned by any angle: met, whatever the rounding. */
-static void bounds_are_met_but_for_rounding(void **state)
+/* Equilateral triangles, rotated by any angle, satisfy the bound regardless of rounding. */
+static void rounding_does_not_violate_bounds(void **state)
 {
     (void)state;
     for (int i = 0; i < 100; i++) {
@@ -1210,7 +1212,7 @@ static void bounds_are_met_but_for_rounding(void **state)
     }
 }
 
-/* A wedge of ten degrees whose triangles far from the apex have corners on both legs. */
+/* A wedge of ten degrees whose triangles have corners on both legs, also far from the apex. */
 static void small_input_angles_explain(void **state)
 {
     (void)state;
@@ -1230,7 +1232,7 @@ static void small_input_angles_explain(void **state)
     }
     int32_t p = add_point(40, -1), q = add_point(60, 1);
     add_triangle(before[0], q, before[1]);
-    add_triangle(before[0], p, q); /* thin, and nobody's fault */
+    add_triangle(before[0], p, q); /* thin, and not explained by the input */
     list_boundary();
     trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
     trial.options.min_angle = 20;
@@ -1246,7 +1248,7 @@ static void broken_areas(void **state)
 {
     (void)state;
     begin_patch();
-    trial.options.max_area = 0.4; /* the area of each, but for rounding */
+    trial.options.max_area = 0.4; /* the area of each triangle, except for rounding */
     expect_good();
     trial.options.max_area = 0.39999;
     expect(TRI_CHECK_AREAS, 40, -1);
@@ -1270,14 +1272,14 @@ static void broken_hull(void **state)
     expect_good();
     remove_triangle(2);
     expect(TRI_CHECK_HULL, 1, -1);
-    begin(); /* two hulls are none */
+    begin(); /* two hulls are not convex */
     add_point(0, 0), add_point(1, 0), add_point(0, 1), add_point(5, 0), add_point(6, 0), add_point(5, 1);
     add_triangle(0, 1, 2), add_triangle(3, 4, 5);
     trial.options.convex = true;
     expect(TRI_CHECK_HULL, 1, -1);
 }
 
-/* Vertices on an edge of the hull may lie to either side of it, within the tolerance; not so far inside. */
+/* Vertices on an edge of the hull may lie on either side of it within the tolerance, but not farther inside. */
 static void rounded_hull(void **state)
 {
     (void)state;
@@ -1297,7 +1299,7 @@ static void rounded_hull(void **state)
     }
 }
 
-/* A boundary that turns right within rounding at each vertex, but is hollow. */
+/* A boundary that turns right within rounding at each vertex, but is concave as a whole. */
 static void hollow_hull(void **state)
 {
     (void)state;
@@ -1327,8 +1329,8 @@ static void put_node(int32_t m, int32_t a, int32_t b, bool is_subsegment)
     trial.point_markers[m] = is_subsegment ? 4 : 0;
 }
 
-/* The patch with a node amid each edge, marked where it is a subsegment, and two attributes; without the nodes it is
- * the input, too. */
+/* The patch with a node in the middle of each edge and two attributes. Nodes on subsegments have markers. Without these
+ * nodes it is also the input. */
 static void begin_six(void)
 {
     begin_patch();
@@ -1355,7 +1357,7 @@ static void begin_six(void)
     assert_true(trial.mesh.n_nodes == 30 + 69 && trial.mesh.n_nodes <= ROOM);
 }
 
-/* Of an edge inside, as the first of its triangles names it. */
+/* The middle node of an inner edge, in the first of its triangles. */
 static int32_t *inner_middle(void)
 {
     for (int32_t i = 0; i < 3 * trial.mesh.n_triangles; i++)
@@ -1380,13 +1382,13 @@ static void broken_nodes(void **state)
     begin_six();
     double *x = &trial.points[2 * *inner_middle()];
     *x = nextafter(*x, 9);
-    expect(TRI_CHECK_NODES, 2, -1); /* as both triangles see it */
+    expect(TRI_CHECK_NODES, 2, -1); /* reported by both triangles */
     begin_six();
     int32_t own = trial.mesh.n_nodes++;
     memcpy(&trial.points[2 * own], &trial.points[2 * *inner_middle()], 2 * sizeof(double));
     memcpy(&attributes[2 * own], &attributes[2 * *inner_middle()], 2 * sizeof(double));
     *inner_middle() = own;
-    expect(TRI_CHECK_NODES, 1, -1); /* one node more than edges */
+    expect(TRI_CHECK_NODES, 1, -1); /* one node more than there are edges */
     begin_six();
     *inner_middle() = -1;
     expect(TRI_CHECK_NODES, 1, -1);
@@ -1415,7 +1417,7 @@ static void broken_vertex_attributes(void **state)
     trial.mesh.middles = NULL;
     attributes[7] += 0.5;
     expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
-    trial.options.renumbered = true; /* nobody knows whose it is, and it is in the range */
+    trial.options.renumbered = true; /* in range, and renumbering hides which node it is */
     expect_good();
     attributes[7] = 3.5;
     expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
@@ -1464,12 +1466,12 @@ int main(void)
         cmocka_unit_test(halves_beside_each_other),
         cmocka_unit_test(bent_segments),
         cmocka_unit_test(marker_beyond_the_end),
-        cmocka_unit_test(what_is_missing_beside_the_boundary),
+        cmocka_unit_test(missing_segment_near_the_boundary),
         cmocka_unit_test(broken_input_vertices),
         cmocka_unit_test(broken_lost_vertex),
         cmocka_unit_test(duplicates_stand_for_each_other),
         cmocka_unit_test(broken_angles),
-        cmocka_unit_test(bounds_are_met_but_for_rounding),
+        cmocka_unit_test(rounding_does_not_violate_bounds),
         cmocka_unit_test(small_input_angles_explain),
         cmocka_unit_test(broken_areas),
         cmocka_unit_test(broken_hull),

@@ -1,6 +1,5 @@
-/* Runs that are stopped at any time, or whose tiles nobody takes any more, and go on: the mesh is that of a run that
- * was never stopped, whether it is swept, or stays as a whole, in memory or parked. Files that are damaged, byte by
- * byte. */
+/* Runs that are stopped at any time, or whose sink rejects tiles, and are resumed. The mesh must equal that of a run
+ * without interruption, whether it is swept or stays whole, in memory or parked. Also files with damage at any byte. */
 #include "full.h"
 #include "support.h"
 
@@ -22,10 +21,10 @@
 
 static const char DIRECTORY[] = "state";
 
-/* A hash over all that is handed out, and when to fail. */
+/* A hash over everything that is handed out, and the tile at which to fail. */
 struct taker {
-    uint64_t hash;
-    int64_t n, fail_at; /* tiles; the tile that is refused, -1: none */
+    uint64_t hash;      /* of the bytes handed out so far */
+    int64_t n, fail_at; /* number of tiles; the tile to reject, -1: none */
     int32_t n_attributes;
 };
 
@@ -71,11 +70,11 @@ static struct tri_pslg figure(int32_t points)
 
 struct run {
     struct taker taker;
-    const struct tri_stop *stop;
-    struct par_checkpoint *checkpoint;
+    const struct tri_stop *stop;       /* NULL: never stops */
+    struct par_checkpoint *checkpoint; /* NULL: none */
     int threads;
     double max_area;
-    bool lattice;
+    bool lattice; /* points are placed on a lattice */
     struct tri_error error;
     int64_t given_up;
 };
@@ -133,10 +132,10 @@ static void remove_all(void)
     support_remove_directory(DIRECTORY);
 }
 
-/* The end is asked for once so many tiles have been taken. */
+/* Requests a stop after this many tiles. */
 struct patience {
     const struct taker *taker;
-    int64_t tiles;
+    int64_t tiles; /* number of tiles after which to stop */
 };
 
 static bool is_over(void *user)
@@ -145,7 +144,7 @@ static bool is_over(void *user)
     return p->taker->n >= p->tiles;
 }
 
-/* A few tiles more each time; the first time none. */
+/* Each run hands out a few more tiles than the previous one. The first hands out none. */
 static void test_stopped_at_any_time(void **state)
 {
     (void)state;
@@ -177,8 +176,8 @@ static void test_stopped_at_any_time(void **state)
     assert_int_not_equal(access(DIRECTORY, F_OK), 0);
 }
 
-/* Whoever takes the tiles fails at any of them: what has been done is kept. */
-static void test_nobody_takes_tiles(void **state)
+/* The sink may fail at any tile. Finished work is kept. */
+static void test_a_failing_sink_loses_no_finished_work(void **state)
 {
     (void)state;
     int64_t tiles;
@@ -201,7 +200,7 @@ static void test_nobody_takes_tiles(void **state)
     }
 }
 
-/* A run that has a state on the disk, and is stopped. */
+/* Makes a run that writes a state and is then stopped. */
 static void leave_state(void)
 {
     struct par_checkpoint c;
@@ -267,7 +266,7 @@ static bool has_file(const char *name)
     return access(path, F_OK) == 0;
 }
 
-/* Without a manifest nothing of these names is a run's. */
+/* Without a manifest, no file with these names belongs to a run. */
 static void test_files_of_others_are_refused(void **state)
 {
     (void)state;
@@ -286,7 +285,7 @@ static void test_files_of_others_are_refused(void **state)
     }
 }
 
-/* And with one only those of exactly these names are; the directory is whose who made it. */
+/* With a manifest, only files with exactly these names do. The directory belongs to its creator. */
 static void test_files_of_others_stay(void **state)
 {
     (void)state;
@@ -298,7 +297,7 @@ static void test_files_of_others_stay(void **state)
     assert_int_equal(mkdir(DIRECTORY, 0777), 0);
     for (int i = 0; i < N; i++)
         make_file(others[i], "precious");
-    make_file("manifest-new", ""); /* of a run that was killed at once */
+    make_file("manifest-new", ""); /* left by a run that was killed immediately */
     open_it(&c, false);
     make_file("piece-0-1", "");
     make_file("piece-1-12", "");
@@ -310,14 +309,14 @@ static void test_files_of_others_stay(void **state)
     for (size_t i = 0; i < sizeof own / sizeof *own; i++)
         assert_false(has_file(own[i]));
     remove_all();
-    assert_int_equal(mkdir(DIRECTORY, 0777), 0); /* not made by a run: it stays, though it is empty */
+    assert_int_equal(mkdir(DIRECTORY, 0777), 0); /* not made by a run, so it stays although it is empty */
     open_it(&c, false);
     par_checkpoint_close(&c, true);
     assert_int_equal(rmdir(DIRECTORY), 0);
 }
 
-/* Links in the folder, of whoever may write to it, lead to nothing that is written, removed or read. */
-static void test_links_lead_nowhere(void **state)
+/* A user who can write to the folder may add links. No file behind a link is written, removed or read. */
+static void test_links_are_not_followed(void **state)
 {
     (void)state;
     static const char *const names[] = {"manifest-new", "state-0", "state-1", "piece-0-0"};
@@ -336,7 +335,7 @@ static void test_links_lead_nowhere(void **state)
         snprintf(path, sizeof path, "%s/%s", DIRECTORY, names[i]);
         assert_int_equal(i % 2 ? symlink("../victim", path) : link("victim", path), 0);
     }
-    c.seconds = 0; /* both states are written */
+    c.seconds = 0; /* makes the run write both states */
     struct run r = run_of(&c);
     r.taker.fail_at = 14;
     assert_int_equal(refine(&r, POINTS), TRI_CANNOT_WRITE);
@@ -354,17 +353,17 @@ static void test_links_lead_nowhere(void **state)
         assert_int_equal(unlink(files[i].name), 0);
         assert_int_equal(rename(files[i].other, files[i].name), 0);
     }
-    assert_int_equal(link("state/tiles", "state/kept"), 0); /* it would be cut short */
+    assert_int_equal(link("state/tiles", "state/kept"), 0); /* opening this file would truncate it */
     assert_int_not_equal(par_checkpoint_open(&c, DIRECTORY, true, 7, NULL), TRI_OK);
     assert_int_equal(unlink("state/kept"), 0);
     assert_int_equal(unlink("state/manifest-new") == 0 || errno == ENOENT, true);
-    assert_int_equal(mkfifo("state/manifest-new", 0777), 0); /* nobody waits for its other end */
+    assert_int_equal(mkfifo("state/manifest-new", 0777), 0); /* opening this pipe would wait for its other end */
     open_it(&c, true);
     par_checkpoint_close(&c, true);
     assert_int_equal(unlink("victim"), 0);
 }
 
-/* Only the system's administrator can give folders away. */
+/* Needs root, because only root can change the owner of a folder. */
 static void test_folders_of_others_are_refused(void **state)
 {
     (void)state;
@@ -381,7 +380,7 @@ static void test_folders_of_others_are_refused(void **state)
     remove_all();
 }
 
-/* Flips a byte of a file, or flips it back. */
+/* Flips a bit of a file. A second call restores it. */
 static void flip(const char *name, long at)
 {
     FILE *file = fopen(name, "r+b");
@@ -403,7 +402,7 @@ static long length_of(const char *name)
     return n;
 }
 
-/* What comes of a run that is to go on. */
+/* Resumes the run and returns its status. */
 static enum tri_status go_on(void)
 {
     struct par_checkpoint c;
@@ -429,7 +428,7 @@ static void test_damage_is_found(void **state)
             flip(names[k], at);
         }
     }
-    for (int k = 0; k < 3; k++) { /* too short */
+    for (int k = 0; k < 3; k++) { /* the file is too short */
         leave_state();
         assert_int_equal(truncate(names[k], length_of(names[k]) / 2), 0);
         assert_int_equal(go_on(), TRI_BAD_INPUT);
@@ -437,14 +436,14 @@ static void test_damage_is_found(void **state)
     remove_all();
 }
 
-/* --- meshes that stay as a whole */
+/* --- meshes that stay whole */
 
 /* How a trial is refined. */
 struct way {
     struct trial trial;
-    bool has_sink, by_block;
+    bool has_sink, by_block; /* the mesh goes to a sink; as in par_options */
     int64_t memory, max_steiner;
-    enum par_way expected; /* of what has never been stopped */
+    enum par_way expected; /* of a run without interruption */
     int32_t tight_room;    /* as in par_options */
 };
 
@@ -453,7 +452,7 @@ static const struct way ways[] = {
     {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0},
     {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED, 0}, /* two schedules */
     {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED, 0}, /* swept at first */
-    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* beyond the schedule */
+    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* no schedule at 35 */
     {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, false, 0, -1, PAR_IN_MEMORY, 400}, /* blocks wait */
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
     {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
@@ -464,18 +463,18 @@ static const struct way ways[] = {
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
 
-/* A run to be stopped after so many phases were told of, or once so many have asked whether it is to stop. */
+/* A run that stops after most_told phases have been reported, or after is_asked has been called most_asked times. */
 struct whole_run {
     const struct way *way;
     struct par_checkpoint *checkpoint;
-    int64_t memory;
+    int64_t memory; /* bound in bytes; 0: none */
     int threads;
-    atomic_int told, asked; /* whether to stop is asked by all threads */
-    int most_told, most_asked; /* the second: 0: any number */
+    atomic_int told, asked;    /* reported phases; calls of is_asked, by all threads */
+    int most_told, most_asked; /* limits of both; most_asked 0: no limit */
     struct taker taker;
-    uint64_t hash;
-    int64_t triangles; /* where there is no sink */
-    enum par_way was;
+    uint64_t hash;     /* of the whole mesh */
+    int64_t triangles; /* used if there is no sink */
+    enum par_way was;  /* how the mesh was made */
     struct tri_error error;
 };
 
@@ -485,7 +484,7 @@ static void count_phases(void *user, const struct par_place *place)
     r->told += place->done == 0;
 }
 
-static bool time_is_up; /* the checkpoint has said so */
+static bool time_is_up; /* set when the checkpoint reports the time limit */
 
 static bool is_told_enough(void *user)
 {
@@ -536,8 +535,8 @@ static struct whole_run whole_run_of(const struct way *way, struct par_checkpoin
                               .most_told = INT32_MAX, .taker = {.fail_at = -1}};
 }
 
-/* Stopped again and again, in a phase or between two; with other threads each time, and with the mesh in memory or in
- * files. A run from a state that stops in its first phase has done nothing. */
+/* Stops and resumes the run many times, in a phase or between two phases, each time with another number of threads, and
+ * with the mesh in memory or in files. A resumed run that stops in its first phase has made no progress. */
 static void go_on_until_done(const struct way *way, const struct whole_run *wanted)
 {
     enum tri_status status = TRI_STOPPED;
@@ -548,7 +547,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
         open_it(&c, rounds > 0);
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
-        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* anew, which is told */
+        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* making it again is reported */
         r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)
@@ -563,7 +562,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
     assert_true(with_state >= (way->max_steiner < 0 ? 4 : 0));
 }
 
-static void test_whole_meshes_go_on(void **state)
+static void test_whole_meshes_resume(void **state)
 {
     (void)state;
     for (int i = 0; i < N_WAYS; i += every(2)) {
@@ -574,8 +573,8 @@ static void test_whole_meshes_go_on(void **state)
     }
 }
 
-/* Stopped again and again amid phases, and amid the call of one that has no schedule, or what comes after it. */
-static void test_calls_go_on(void **state)
+/* Stops again and again during phases, and during or after the sequential call of a run without schedule. */
+static void test_sequential_calls_resume(void **state)
 {
     (void)state;
     for (int i = 0; i < N_WAYS; i++) {
@@ -604,8 +603,8 @@ static void test_calls_go_on(void **state)
     }
 }
 
-/* A run that is stopped amid a phase, when this allocation fails; *calls: so many it asked for. Whoever goes on from
- * what it has kept, be it nothing, makes the same mesh. */
+/* Stops a run during a phase while this allocation fails; *calls: number of allocations. A run that resumes from what
+ * was kept, possibly nothing, makes the same mesh. */
 static enum tri_status stop_short_of_memory(const struct way *way, const struct whole_run *wanted, int64_t fail_at,
                                             int64_t *calls)
 {
@@ -629,8 +628,8 @@ static enum tri_status stop_short_of_memory(const struct way *way, const struct 
     return status;
 }
 
-/* Each of its last allocations fails, those for the halt among them: it says so. */
-static void test_memory_is_short_for_a_halt(void **state)
+/* Each of the last allocations fails in turn, including those for stopping. The run must report it. */
+static void test_a_stop_without_memory_is_reported(void **state)
 {
     (void)state;
     static const struct way way = {{"letter.poly", 30, 4000, 200, false, false, 0},
@@ -644,7 +643,8 @@ static void test_memory_is_short_for_a_halt(void **state)
         assert_int_equal(stop_short_of_memory(&way, &wanted, all - k, &calls), TRI_NO_MEMORY);
 }
 
-/* A state after each step changes nothing, and whoever fails to take a tile finds all of the mesh again. */
+/* A state after each step does not change the mesh. If the sink rejects the last tile, the whole mesh can be handed out
+ * again. */
 static void test_a_finished_mesh_is_kept(void **state)
 {
     (void)state;
@@ -673,8 +673,8 @@ static void test_a_finished_mesh_is_kept(void **state)
     }
 }
 
-/* The state of a sweep does not serve a mesh that is to stay. */
-static void test_a_sweep_is_not_taken_for_a_whole(void **state)
+/* The state of a sweep cannot resume a mesh that must stay whole. */
+static void test_a_sweep_does_not_resume_as_a_whole_mesh(void **state)
 {
     (void)state;
     struct way way = {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0};
@@ -695,7 +695,7 @@ static void test_a_sweep_is_not_taken_for_a_whole(void **state)
     par_checkpoint_close(&c, true);
 }
 
-/* Seconds before a limit, by what the last state took. */
+/* How long before a time limit the last state begins, given the duration of the previous one. */
 static void test_the_last_state_begins_in_time(void **state)
 {
     (void)state;
@@ -704,17 +704,17 @@ static void test_the_last_state_begins_in_time(void **state)
     assert_false(par_state_is_due(&c, 599, 1e6));
     assert_true(par_state_is_due(&c, 601, 1e6));
     c.limit = 100;
-    assert_false(par_state_is_due(&c, 0.9, 1e6)); /* the first measures the disk */
+    assert_false(par_state_is_due(&c, 0.9, 1e6)); /* the first state measures the speed of the disk */
     assert_true(par_state_is_due(&c, 1.1, 1e6));
     assert_false(par_state_is_last(&c, 99, 1e6));
     c.last = c.saved = 1;
-    c.cost = c.writing = 0.01; /* one that is no more than a disk takes for any file measures nothing */
+    c.cost = c.writing = 0.01; /* a state that takes no longer than any small file measures nothing */
     c.size = 100;
     assert_false(par_state_is_due(&c, 1.9, 1e6) || par_state_is_last(&c, 99, 1e6));
     assert_true(par_state_is_due(&c, 2.1, 1e6));
     c.last = c.saved = 0;
     c.cost = c.writing = 0;
-    c.manifest.state_bytes = 1; /* resumed: the state that is there is to be surpassed first */
+    c.manifest.state_bytes = 1; /* resumed: first, the new state must exceed the old one */
     assert_false(par_state_is_due(&c, 49, 1e6));
     assert_true(par_state_is_due(&c, 51, 1e6));
     c.last = c.saved = 12;
@@ -724,16 +724,17 @@ static void test_the_last_state_begins_in_time(void **state)
     assert_true(par_state_is_due(&c, 96.1, 1e6) && par_state_is_last(&c, 96.1, 1e6));
     assert_false(par_state_is_last(&c, 87.9, 3e6));
     assert_true(par_state_is_last(&c, 88.1, 3e6));
-    c.writing = 0.5; /* the rest goes into what does not grow */
+    c.writing = 0.5; /* the rest of the time is spent on data that does not grow */
     assert_false(par_state_is_last(&c, 93.9, 3e6));
     assert_true(par_state_is_last(&c, 94.1, 3e6));
-    assert_true(par_state_is_last(&c, 96.1, 1)); /* it is not taken to be quicker than the last */
+    assert_true(par_state_is_last(&c, 96.1, 1)); /* the estimate does not assume a faster write than the last one */
     c.limit = 0;
     assert_false(par_state_is_last(&c, 1e9, 1e6));
 }
 
-/* A run on a clock of its own: so many triangles a second, which take so many seconds each on the disk; the last state
- * takes `slower` times as long. Returns when it is stopped, and *kept of its triangles. */
+/* Simulates a run with its own clock: `rate` triangles a second, `each` seconds on the disk for a triangle, and a last
+ * state that takes `slower` times as long. Returns the time when the run stops; *kept: number of triangles in the
+ * state. */
 static double run_on_paper(double limit, double rate, double each, double slower, double *kept)
 {
     struct par_checkpoint c = par_checkpoint_closed(DIRECTORY);
@@ -763,14 +764,14 @@ static void test_the_last_state_is_whole_before_the_limit(void **state)
                 for (double slower = 1; slower < 2; slower += 0.4) {
                     double kept = 0;
                     const double end = run_on_paper(limit, rate, 80 / speed, slower, &kept);
-                    assert_true(kept > 0 && end <= limit + 2); /* the program waits for 3 */
+                    assert_true(kept > 0 && end <= limit + 2); /* the program allows 3 seconds */
                     assert_true(end >= limit / 4);
                 }
 }
 
 static void note_time(void) { time_is_up = true; }
 
-/* Where the limit is over when the run begins, the first state is the last. */
+/* If the limit has passed when the run begins, the first state is the last. */
 static void test_a_limit_ends_the_run_with_a_state(void **state)
 {
     (void)state;
@@ -795,7 +796,7 @@ static void test_a_limit_ends_the_run_with_a_state(void **state)
     }
 }
 
-/* A state that finds no room on the disk leaves nothing there. */
+/* A state that does not fit on the disk leaves no file there. */
 static void test_a_failed_state_leaves_nothing(void **state)
 {
     (void)state;
@@ -825,18 +826,18 @@ int main(void)
         cmocka_unit_test(test_a_limit_ends_the_run_with_a_state),
         cmocka_unit_test(test_a_failed_state_leaves_nothing),
         cmocka_unit_test(test_stopped_at_any_time),
-        cmocka_unit_test(test_nobody_takes_tiles),
+        cmocka_unit_test(test_a_failing_sink_loses_no_finished_work),
         cmocka_unit_test(test_other_runs_are_refused),
         cmocka_unit_test(test_files_of_others_are_refused),
         cmocka_unit_test(test_files_of_others_stay),
-        cmocka_unit_test(test_links_lead_nowhere),
+        cmocka_unit_test(test_links_are_not_followed),
         cmocka_unit_test(test_folders_of_others_are_refused),
         cmocka_unit_test(test_damage_is_found),
-        cmocka_unit_test(test_whole_meshes_go_on),
-        cmocka_unit_test(test_calls_go_on),
-        cmocka_unit_test(test_memory_is_short_for_a_halt),
+        cmocka_unit_test(test_whole_meshes_resume),
+        cmocka_unit_test(test_sequential_calls_resume),
+        cmocka_unit_test(test_a_stop_without_memory_is_reported),
         cmocka_unit_test(test_a_finished_mesh_is_kept),
-        cmocka_unit_test(test_a_sweep_is_not_taken_for_a_whole),
+        cmocka_unit_test(test_a_sweep_does_not_resume_as_a_whole_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

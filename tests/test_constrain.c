@@ -1,4 +1,4 @@
-/* Segments against the naive definition of a constrained Delaunay triangulation, and against what the input says. */
+/* Segments against the naive definition of a constrained Delaunay triangulation, and against the input. */
 #include "support.h"
 
 static void test_tangles_are_naively_constrained_delaunay(void **state)
@@ -31,7 +31,7 @@ static void test_large_tangles_pass_the_judge(void **state)
     }
 }
 
-/* Without crossings the result depends on the set of segments alone. */
+/* Without crossings, the result depends only on the set of segments. */
 static void test_order_of_segments_does_not_matter(void **state)
 {
     (void)state;
@@ -45,7 +45,7 @@ static void test_order_of_segments_does_not_matter(void **state)
         tri_mesh_free(&mesh);
         for (int32_t i = 59; i > 0; i--) {
             int32_t k = support_below(&random, i + 1), from = pslg.segments[2 * i], to = pslg.segments[2 * i + 1];
-            pslg.segments[2 * i] = pslg.segments[2 * k + 1]; /* turned round as well */
+            pslg.segments[2 * i] = pslg.segments[2 * k + 1]; /* also reversed */
             pslg.segments[2 * i + 1] = pslg.segments[2 * k];
             pslg.segments[2 * k] = from;
             pslg.segments[2 * k + 1] = to;
@@ -60,9 +60,9 @@ static void test_order_of_segments_does_not_matter(void **state)
     }
 }
 
-/* Under a finely sampled curve n long parallels, in the order of their heights as strata are: each would cross what the
- * one before has left of the far side. */
-static void test_parallels_in_order_are_short_work(void **state)
+/* n long parallels under a finely sampled curve, in the order of their heights, as in geological strata. Naive
+ * insertion of each would cross all edges that the previous one has left on its far side. */
+static void test_parallels_in_order_take_little_work(void **state)
 {
     (void)state;
     enum { N = 1500 };
@@ -140,7 +140,7 @@ static void test_vertices_on_a_segment_split_it(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Where segments overlap each piece is one subsegment; the first non-zero marker wins. */
+/* If segments overlap, each piece is one subsegment, and the first non-zero marker wins. */
 static void test_overlap_keeps_the_first_marker(void **state)
 {
     (void)state;
@@ -199,7 +199,7 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
         for (int k = 0; k < 4; k++)
             support_add_point(&pslg, k == 1 || k == 2, k >= 2);
     support_add_segment(&pslg, 8, 6);
-    support_add_segment(&pslg, 4, 8); /* equal ends after that */
+    support_add_segment(&pslg, 4, 8); /* both ends are equal after that */
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.skipped, 1);
     assert_int_equal(count_subs(&mesh, 0), 1);
@@ -209,7 +209,7 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A fan of segments from one vertex, in order and far apart in angle by an ulp or so. */
+/* A fan of segments from one vertex, ordered by angle, with angles between them of about one ulp. */
 static void test_many_spokes_and_long_gaps(void **state)
 {
     (void)state;
@@ -219,7 +219,7 @@ static void test_many_spokes_and_long_gaps(void **state)
     for (int i = 0; i < 200; i++)
         support_add_point(&pslg, 1000, i);
     for (int i = 0; i < 200; i++)
-        support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a gap of teeth around y = 0 */
+        support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a zigzag gap around y = 0 */
     for (int i = 0; i < 200; i++)
         support_add_segment(&pslg, 0, 1 + i);
     struct tri_mesh mesh = support_constrained(&pslg, &report);
@@ -229,7 +229,8 @@ static void test_many_spokes_and_long_gaps(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Crossings nearer to each other and to vertices than coordinates can tell apart: no loop, no loss, links intact. */
+/* Crossings that coordinates cannot separate from each other or from vertices: no endless loop, no lost segment, valid
+ * links. */
 static void test_crossings_below_resolution(void **state)
 {
     (void)state;
@@ -257,8 +258,7 @@ static void test_crossings_below_resolution(void **state)
     }
 }
 
-/* Inputs that once broke links, went astray, looped or lost the Delaunay property: points, then segments, -1 at the
- * end. */
+/* Inputs that broke earlier versions, each as points and then segments, with -1 at the end. */
 static const struct {
     int32_t n_points;
     double points[12][2];
@@ -290,7 +290,7 @@ static const struct {
      {2, 4, 3, 5, 4, 2, 0, 1, -1}},
 };
 
-static void test_once_broken(void **state)
+static void test_earlier_failures(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof once_broken / sizeof *once_broken; i++) {
@@ -309,7 +309,7 @@ static void test_once_broken(void **state)
     }
 }
 
-/* --- what lies within rounding of y = 0, where places finer than a resolution can be given */
+/* --- features within rounding error of y = 0, where coordinates are finer than a resolution */
 
 static const double ULP = 0x1p-52;
 
@@ -325,7 +325,7 @@ static struct tri_pslg lying_segment(void)
     return pslg;
 }
 
-/* Does an input segment run through the vertex? */
+/* Returns true if an input segment runs through the vertex. */
 static bool is_run_through(const struct tri_mesh *mesh, int32_t v)
 {
     for (int32_t s = 0; s < mesh->n_subs; s++)
@@ -335,9 +335,9 @@ static bool is_run_through(const struct tri_mesh *mesh, int32_t v)
     return false;
 }
 
-/* Of two vertices on either side, each within half a resolution, the nearer one is taken, and the other is then too far
- * away: whichever comes first along the segment, and above or below. */
-static void test_nearest_beside_is_taken(void **state)
+/* Two vertices are on different sides of a segment, each within half a resolution. The nearer one is used, and the
+ * other is then too far away, regardless of their order along the segment and of their sides. */
+static void test_the_nearer_of_two_vertices_is_used(void **state)
 {
     (void)state;
     for (int turn = 0; turn < 4; turn++) {
@@ -355,8 +355,8 @@ static void test_nearest_beside_is_taken(void **state)
     }
 }
 
-/* Each vertex lies within half a resolution of the way from the one before to the end: the chain follows them, but no
- * farther than three resolutions of the segment's larger end. */
+/* Each vertex lies within half a resolution of the line from the previous vertex to the end. The chain follows them,
+ * but stays within three resolutions (of the segment's larger end) of the segment. */
 static void test_a_chain_does_not_drift(void **state)
 {
     (void)state;
@@ -380,8 +380,8 @@ static void test_a_chain_does_not_drift(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Two segments that cross share a vertex within two resolutions of the crossing, though it is on neither; one farther
- * away they do not. */
+/* Two crossing segments share a vertex within two resolutions of their crossing, although it is on neither. They do not
+ * share a vertex farther away. */
 static void test_crossing_at_a_vertex_nearby(void **state)
 {
     (void)state;
@@ -391,7 +391,7 @@ static void test_crossing_at_a_vertex_nearby(void **state)
         support_add_segment(&pslg, 2, 3);
         int32_t v = support_add_point(&pslg, 1.5 + steps * ULP, steps * ULP);
         struct tri_mesh mesh = support_constrained(&pslg, &report);
-        bool shared = steps < 3; /* 1.41 and 2.83 ulps away, or 4.24: a resolution is 1.5 ulps here */
+        bool shared = steps < 3; /* distances of 1.41, 2.83 and 4.24 ulps; a resolution is 1.5 ulps here */
         assert_int_equal(report.crossings, !shared);
         assert_int_equal(mesh.n_vertices, pslg.n_points + !shared);
         assert_int_equal(is_run_through(&mesh, v), shared);
@@ -437,7 +437,7 @@ static void test_all_segment_files(void **state)
     }
 }
 
-/* From one vertex segments of all lengths along one line, some twice: where they overlap the first marker wins. */
+/* Segments of all lengths from one vertex along one line, some given twice. If they overlap, the first marker wins. */
 static void test_overlaps_from_one_vertex(void **state)
 {
     (void)state;
@@ -488,7 +488,7 @@ int main(void)
         cmocka_unit_test(test_tangles_are_naively_constrained_delaunay),
         cmocka_unit_test(test_large_tangles_pass_the_judge),
         cmocka_unit_test(test_order_of_segments_does_not_matter),
-        cmocka_unit_test(test_parallels_in_order_are_short_work),
+        cmocka_unit_test(test_parallels_in_order_take_little_work),
         cmocka_unit_test(test_crossing_makes_a_vertex),
         cmocka_unit_test(test_vertices_on_a_segment_split_it),
         cmocka_unit_test(test_overlap_keeps_the_first_marker),
@@ -496,8 +496,8 @@ int main(void)
         cmocka_unit_test(test_segments_are_moved_to_the_lowest_copy),
         cmocka_unit_test(test_many_spokes_and_long_gaps),
         cmocka_unit_test(test_crossings_below_resolution),
-        cmocka_unit_test(test_once_broken),
-        cmocka_unit_test(test_nearest_beside_is_taken),
+        cmocka_unit_test(test_earlier_failures),
+        cmocka_unit_test(test_the_nearer_of_two_vertices_is_used),
         cmocka_unit_test(test_a_chain_does_not_drift),
         cmocka_unit_test(test_crossing_at_a_vertex_nearby),
         cmocka_unit_test(test_no_triangles_no_segments),

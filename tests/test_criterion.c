@@ -1,10 +1,10 @@
-/* Which triangles are bad and which subsegments encroached, on triangles whose answer is known. */
+/* Which triangles are bad and which subsegments are encroached, on triangles with known answers. */
 #include "triangle/size/quality.h"
 #include "triangle/refine/split.h"
 
 #include "tests/support.h"
 
-/* One triangle in region 1, which has an area bound of its own. */
+/* One triangle in region 1, which has its own area bound. */
 struct setting {
     struct tri_point xy[3];
     struct tri_triangle triangle;
@@ -50,7 +50,7 @@ static double area2_bound(const struct setting *s, int32_t region)
     return tri_area2_bound(&asked, region);
 }
 
-/* The smaller of the two bounds counts, in the caller's units, times the scale. */
+/* The smaller of the two bounds counts, in the caller's units and multiplied by the scale. */
 static void test_area_bounds(void **state)
 {
     (void)state;
@@ -70,7 +70,7 @@ static void test_area_bounds(void **state)
     assert_true(area2_bound(&s, 1) == 1);
 }
 
-/* Remembers the area and the first corner that it was asked about; refuses what is larger than 1. */
+/* Stores the area and first corner of the last call; rejects areas above 1. */
 static int remember(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     double *told = user;
@@ -80,7 +80,8 @@ static int remember(void *user, const double a[2], const double b[2], const doub
     return area > 1;
 }
 
-/* A size test is asked in the caller's units, at another scale about a triangle that is smaller by it. */
+/* A size test is called in the caller's units. With another scale, it receives a triangle that is smaller by the
+ * scale. */
 static void test_size_tests(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Crossings, feet of perpendiculars and distances against the same in rational arithmetic (GMP). */
+/* Crossings, feet of perpendiculars, and distances, compared with rational arithmetic (GMP). */
 #include "support.h"
 
 #include <gmp.h>
@@ -6,7 +6,7 @@
 #include "triangle/cdt/crossing.h"
 #include "triangle/geometry/expansion.h"
 
-/* A point of the plane in rationals; determinants of such. */
+/* A point with rational coordinates, for exact determinants. */
 struct exact {
     mpq_t x, y;
 };
@@ -37,7 +37,7 @@ static void load(struct exact *e, struct tri_point p)
     mpq_set_d(e->y, p.y);
 }
 
-/* z = (v - u) x (w - u). */
+/* z = (v - u) x (w - u), the cross product. */
 static void cross(mpq_t z, const struct exact *u, const struct exact *v, const struct exact *w)
 {
     mpq_sub(first, v->x, u->x);
@@ -58,7 +58,7 @@ static void square_of_length(mpq_t z, const struct exact *u, const struct exact 
     mpq_add(z, first, second);
 }
 
-/* The distance of p from the line through u and v, rounded once or twice. */
+/* The distance of p from the line through u and v, with one or two roundings. */
 static double distance(struct tri_point u, struct tri_point v, struct tri_point p)
 {
     load(&a, u), load(&b, v), load(&q, p);
@@ -69,7 +69,7 @@ static double distance(struct tri_point u, struct tri_point v, struct tri_point 
     return sqrt(mpq_get_d(det));
 }
 
-/* How far it is from p to r along the line through u and v, rounded once or twice. */
+/* The distance from p to r along the line through u and v, with one or two roundings. */
 static double way_along(struct tri_point u, struct tri_point v, struct tri_point p, struct tri_point r)
 {
     load(&a, u), load(&b, v), load(&c, p), load(&q, r);
@@ -201,8 +201,8 @@ static void test_touching_is_no_crossing(void **state)
 {
     (void)state;
     struct tri_point o = {0, 0}, e = {1, 0}, n = {0, 1}, m = {0.5, 0}, s = {0.5, -1}, at;
-    assert_false(tri_crossing(o, e, o, n, &at));  /* a common end */
-    assert_false(tri_crossing(o, e, m, n, &at));  /* an end inside */
+    assert_false(tri_crossing(o, e, o, n, &at));  /* an end inside the other segment */
+    assert_false(tri_crossing(o, e, m, n, &at));  /* one within the other */
     assert_false(tri_crossing(m, s, o, e, &at));
     assert_false(tri_crossing(o, e, m, e, &at));  /* one in the other */
     assert_false(tri_crossing(o, n, m, s, &at));
@@ -210,7 +210,8 @@ static void test_touching_is_no_crossing(void **state)
     assert_true(same(at, (struct tri_point){0.25, 0}));
 }
 
-/* On the line, and straight beside the point. What is left of a point 2^50 times as large shows. */
+/* The foot lies on the line and on the perpendicular through the point. Coordinates multiplied by 2^50 show the
+ * remaining error. */
 static void test_feet_lie_on_the_line(void **state)
 {
     (void)state;
@@ -244,7 +245,7 @@ static void test_distances(void **state)
         }
 }
 
-/* |pair - det| <= 2^-80 |det|, and the sign is that of the head. */
+/* |pair - det| <= 2^-80 |det|, and the sign is that of the first number of the pair. */
 static void test_determinants(void **state)
 {
     (void)state;

@@ -1,9 +1,9 @@
-/* What angles ask for, by the estimate, against what refinement makes. */
+/* The estimated number of triangles that angles require, compared with refinement. */
 #include "support.h"
 #include "triangle/size/estimate.h"
 
-/* What angles alone ask for: in a long gap between walls, where no size can grow, at a feature of a large square, and
- * along a coast. Before, the second was twice too much, and the last half of what came. */
+/* Bounds on angles alone: in a long gap between walls, where sizes cannot grow; at a small feature of a large square;
+ * and along coasts. */
 static void test_angles(void **state)
 {
     (void)state;

@@ -1,11 +1,11 @@
-/* The order of a triangulation's triangles: what it is, and that nothing of how they came about is left in it. */
+/* The order of a triangulation's triangles, and that this order does not depend on how they were made. */
 #include "support.h"
 #include "triangle/cdt/delaunay.h"
 
-/* A triangulation with ghosts of all vertices of a mesh, in numbers that leave gaps. */
+/* A triangulation with ghost triangles of all vertices of a mesh, whose numbers have gaps. */
 struct loose {
     struct tri_triangle *tri;
-    int32_t n, n_live;
+    int32_t n, n_live; /* entries of tri; those that are triangles */
 };
 
 static struct loose insert_all(const struct tri_mesh *mesh)
@@ -23,11 +23,11 @@ static struct loose insert_all(const struct tri_mesh *mesh)
     return loose;
 }
 
-/* The same under other numbers, each triangle beginning at another corner. */
+/* The same triangles with other numbers, each starting at another corner. */
 static void scramble(struct loose *loose, uint64_t seed)
 {
     struct support_random random = {seed};
-    int32_t *code = malloc((size_t)loose->n * sizeof *code); /* its number, and its corner that comes first */
+    int32_t *code = malloc((size_t)loose->n * sizeof *code); /* number of the triangle, and its first corner */
     struct tri_triangle *fresh = malloc((size_t)loose->n * sizeof *fresh);
     assert_true(code && fresh);
     for (int32_t t = 0; t < loose->n; t++)
@@ -80,7 +80,7 @@ static double length2(const struct tri_mesh *mesh, int32_t a, int32_t b)
     return x * x + y * y;
 }
 
-/* The lower end of the shortest edge, of several the lowest. */
+/* The lower end of the shortest edge; of several shortest edges, the lowest. */
 static int32_t naive_first(const struct tri_mesh *mesh, const int32_t v[3])
 {
     double least = HUGE_VAL;
@@ -129,9 +129,9 @@ static void test_hull(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Numbers, first corners and the order of tasks do not show; nor where the fans are so large that they are sorted in
- * another way. */
-static void test_nothing_of_the_past_is_left(void **state)
+/* Numbers, first corners and the order of tasks do not influence the result, including fans so large that they are
+ * sorted by another method. */
+static void test_order_does_not_depend_on_numbers(void **state)
 {
     (void)state;
     for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -147,7 +147,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_hull),
-        cmocka_unit_test(test_nothing_of_the_past_is_left),
+        cmocka_unit_test(test_order_does_not_depend_on_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Numbers to text and back, against printf and strtod. */
+/* Conversion between numbers and text, compared with printf and strtod. */
 #include "triangle/text/decimal.h"
 
 #include <inttypes.h>
@@ -33,7 +33,7 @@ static double double_of(uint64_t bits)
     return value;
 }
 
-/* Prints, compares with printf, and reads back the same bits. */
+/* Prints the value, compares the text with printf, and reads back the same bits. */
 static void check_real(double value)
 {
     char text[TRI_REAL_ROOM + 1], expected[64];
@@ -78,7 +78,8 @@ static void print_real_near_powers(void **state)
     }
 }
 
-/* Exact ties of the 17th digit, which round to even: k + 2^-17 and the like have 18 digits, the last a 5. */
+/* Exact ties at the 17th digit, which round to even. Numbers such as k + 2^-17 have 18 digits, the last of which is a
+ * 5. */
 static void print_real_ties(void **state)
 {
     (void)state;
@@ -92,7 +93,7 @@ static void print_real_random(void **state)
     (void)state;
     for (int i = 0; i < 700000 / every(5); i++)
         check_real(double_of(random_bits()));
-    for (int i = 0; i < 300000 / every(5); i++) { /* of everyday size, and of few digits */
+    for (int i = 0; i < 300000 / every(5); i++) { /* of ordinary size, and with few digits */
         const double value = (double)(random_bits() >> 11) * 0x1p-53;
         check_real(ldexp(value, (int)(random_bits() % 70) - 20));
         check_real((double)(int64_t)(random_bits() % 2000001 - 1000000) / 1000);
@@ -131,7 +132,7 @@ static void print_integer_all_widths(void **state)
 struct real_case {
     const char *text;
     double value;
-    int length; /* characters read */
+    int length; /* number of characters read */
 };
 
 static void scan_real_table(void **state)
@@ -159,7 +160,7 @@ static void scan_real_table(void **state)
     }
 }
 
-/* Out of range although the exponent has the other sign: the digits decide. */
+/* Numbers out of range whose exponent has the other sign, because of their many digits. */
 static void scan_real_of_many_digits(void **state)
 {
     (void)state;
@@ -205,7 +206,7 @@ static void scan_integer_table(void **state)
     }
 }
 
-/* The end is respected although more digits follow. */
+/* Scanning stops at the given end, even if more digits follow. */
 static void scan_stops_at_end(void **state)
 {
     (void)state;

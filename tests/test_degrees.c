@@ -1,4 +1,4 @@
-/* The cosine against that of the C library in long double, and what must hold exactly. */
+/* The cosine compared with the C library's in long double, and properties that must hold exactly. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* The triangulation of a point set against its naive twin: all triangles whose circle holds no other point. */
+/* The triangulation of a point set compared with a naive twin: all triangles whose circle contains no other point. */
 #include "support.h"
 #include "triangle/cdt/delaunay.h"
 
@@ -20,7 +20,7 @@ static bool is_empty_circle(const struct tri_point *xy, const int32_t *id, int32
     return true;
 }
 
-/* O(n^4), on the points of lowest index at each place. */
+/* O(n^4). Of equal points it uses the one with the lowest index. */
 static struct support_set naive_delaunay(const struct tri_point *xy, int32_t n_points)
 {
     struct support_set set = {0, calloc((size_t)n_points * 2 + 8, sizeof *set.v)};
@@ -82,7 +82,7 @@ static void test_grid_equals_naive_twin(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The result depends on the set of points alone, not on their order or numbers. */
+/* The result depends only on the set of points, not on their order or numbers. */
 static void test_is_unique_under_permutation(void **state)
 {
     (void)state;
@@ -140,7 +140,7 @@ static void test_no_duplicates_no_twins(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* -0 and 0 are one place. */
+/* -0 and 0 are the same coordinate. */
 static void test_signed_zeros_are_one_point(void **state)
 {
     (void)state;
@@ -173,7 +173,7 @@ static void test_collinear_points_give_nothing(void **state)
     }
 }
 
-/* Collinear but for one point, wherever that stands in the order. */
+/* All points but one are collinear. The other may be anywhere in the order. */
 static void test_one_point_beside_a_line(void **state)
 {
     (void)state;
@@ -186,8 +186,8 @@ static void test_one_point_beside_a_line(void **state)
     }
 }
 
-/* Blocks are a matter of speed: leaves of all sizes, and blocks that run in the other order, make the same mesh. */
-static void test_leaves_leave_no_trace(void **state)
+/* Blocks influence only the speed: leaves of all sizes and blocks in reverse order make the same mesh. */
+static void test_leaf_size_does_not_matter(void **state)
 {
     (void)state;
     static const int32_t sizes[] = {30, 300, 3000};
@@ -205,7 +205,7 @@ static void test_leaves_leave_no_trace(void **state)
         }
 }
 
-/* A fan: its hub is a corner of all triangles, so that a single block has work; and its hull has nothing else. */
+/* The hub of a fan is a corner of all triangles, so only one block has work, and the hull has no further triangles. */
 static void test_fan_equals_naive_twin(void **state)
 {
     (void)state;
@@ -217,7 +217,8 @@ static void test_fan_equals_naive_twin(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Large: judged by counts (Euler), exact local Delaunay property, a convex hull that carries all. */
+/* Large sets, checked by counts (Euler's formula), the exact local Delaunay property, and a convex hull around all
+ * points. */
 static void test_large_sets_pass_the_judge(void **state)
 {
     (void)state;
@@ -270,7 +271,7 @@ int main(void)
         cmocka_unit_test(test_signed_zeros_are_one_point),
         cmocka_unit_test(test_collinear_points_give_nothing),
         cmocka_unit_test(test_one_point_beside_a_line),
-        cmocka_unit_test(test_leaves_leave_no_trace),
+        cmocka_unit_test(test_leaf_size_does_not_matter),
         cmocka_unit_test(test_fan_equals_naive_twin),
         cmocka_unit_test(test_large_sets_pass_the_judge),
         cmocka_unit_test(test_all_point_files),

@@ -1,4 +1,5 @@
-/* Diametral circles: conforming meshes of segments side by side, and where their circles are not empty. */
+/* Diametral circles: conforming meshes of segments that lie close together, and the places where circles are not
+ * empty. */
 #include "support.h"
 
 #include "triangle/refine/split.h"
@@ -10,7 +11,7 @@ static struct tri_mesh conforming(const struct tri_pslg *pslg, double angle, str
     return support_generate(pslg, &options, report);
 }
 
-/* All circles are empty; by the judge and by the census. */
+/* Asserts, with the checker and with the census, that all circles are empty. */
 static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_report *report)
 {
     struct tri_check_options check = {.delaunay = TRI_CHECK_CONFORMING};
@@ -22,7 +23,8 @@ static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg 
         assert_int_equal(count[k], 0);
 }
 
-/* Segments from the middle of a square, at angles between 1e-5 and 1. */
+/* n segments from the middle of a square. Each is turned from the previous one by an angle with a tangent between 1e-5
+ * and 1. */
 static struct tri_pslg needles(int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -46,7 +48,7 @@ static struct tri_pslg needles(int32_t n, uint64_t seed)
     return pslg;
 }
 
-static void test_needles_part(void **state)
+static void test_needles_become_conforming(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++)
@@ -61,8 +63,9 @@ static void test_needles_part(void **state)
         }
 }
 
-/* Segments across a square, side by side: n of them take points for their 2 n ends each, not length / width. */
-static void test_bundles_part(void **state)
+/* n segments side by side across a square. The number of new points depends on their 2 n ends, not on length /
+ * width. */
+static void test_bundles_become_conforming(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
@@ -90,7 +93,7 @@ static void test_bundles_part(void **state)
     }
 }
 
-/* A spike a few million units in the last place wide: rounding must not put its levels beside each other. */
+/* A spike a few million units in the last place wide. Rounding must not shift its level vertices along the spike. */
 static void test_levels_are_level_in_spite_of_rounding(void **state)
 {
     (void)state;
@@ -105,7 +108,7 @@ static void test_levels_are_level_in_spite_of_rounding(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* So many circles are not empty, whatever the reason. */
+/* Returns the number of circles that are not empty, for any reason. */
 static int64_t circles_left(const struct tri_mesh *mesh, const struct tri_report *report)
 {
     struct tri_quality options = {.conforming = true};
@@ -116,15 +119,15 @@ static int64_t circles_left(const struct tri_mesh *mesh, const struct tri_report
     return left;
 }
 
-/* Lines of a fan that meet at a point of which one coordinate is far smaller than the other: there are places that fit
- * among those that only it tells apart. */
+/* The lines of a fan meet at a point with one coordinate far smaller than the other. Some suitable places differ only
+ * in the small coordinate, and must be found. */
 static void test_finer_coordinates_resolve_more(void **state)
 {
     (void)state;
     static const struct {
         const char *file;
         int angle;
-        int64_t most; /* and where only places beside the rounded one are looked at: */
+        int64_t most; /* the results when only places next to the rounded one are tried: */
     } cases[] = {{"regress/endless_q36_fan.poly", 0, 60}, /* 98 */
                  {"regress/endless_q36_fan.poly", 20, 90}}; /* 178 */
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -138,8 +141,8 @@ static void test_finer_coordinates_resolve_more(void **state)
     }
 }
 
-/* A wall on the boundary, high and narrow: rounding puts split points units of its height beside it, and they come back
- * to its line, instead of moving inwards until no place is left to split. */
+/* A high and narrow wall on the boundary. Rounding puts split points off the wall by units of its height. They must
+ * return to its line instead of moving inwards until no place for a split is left. */
 static void test_boundaries_come_back_to_their_lines(void **state)
 {
     (void)state;
@@ -152,9 +155,9 @@ static void test_boundaries_come_back_to_their_lines(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
- * shortest edge. */
-static void test_nothing_stays_that_can_be_split(void **state)
+/* The loop leaves no subsegment that can be split encroached, and no split makes a part shorter than half the shortest
+ * edge. */
+static void test_no_splittable_subsegment_stays_encroached(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 60; seed++) {
@@ -181,8 +184,8 @@ static void test_nothing_stays_that_can_be_split(void **state)
     }
 }
 
-/* What -YY forbids is counted by its place. */
-static void test_what_stays_is_counted(void **state)
+/* Circles that are not empty because of -YY are counted under that reason. */
+static void test_protected_circles_are_counted(void **state)
 {
     (void)state;
     int64_t count[TRI_EXCUSES];
@@ -197,13 +200,13 @@ static void test_what_stays_is_counted(void **state)
     assert_int_equal(report.quality.inserted_on_segments, 0);
     options.quality.protect = 0;
     tri_count_encroached(&mesh, &options.quality, &report.quality, count);
-    assert_true(count[TRI_EXCUSE_PRECISION] > 0 && count[TRI_EXCUSE_PROTECTED] == 0); /* nobody says why not */
+    assert_true(count[TRI_EXCUSE_PRECISION] > 0 && count[TRI_EXCUSE_PROTECTED] == 0); /* no option forbids it now */
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
 
-/* Can the circle of s not be mended for the vertex on this side, as coordinates do not resolve it or rounding has left
- * no place? */
+/* Returns true if the circle of s cannot be emptied of the apex on this side, because coordinates do not resolve it or
+ * rounding has left no place. */
 static bool is_beyond_coordinates(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side)
 {
     struct tri_disk_split split;
@@ -211,7 +214,8 @@ static bool is_beyond_coordinates(const struct tri_mesh *mesh, const struct tri_
            tri_is_encroached_from(mesh, s, s->side[side], &split);
 }
 
-/* Slanted lines across a square, each drawn two or three times, 10^-14 to 10^-11 apart, and others across them. */
+/* Slanted lines across a square, each drawn two or three times at distances from 10^-14 to 10^-11, and lines that cross
+ * them. */
 static struct tri_pslg doubled_hatching(uint64_t seed)
 {
     enum { LINES = 8 };
@@ -237,8 +241,8 @@ static struct tri_pslg doubled_hatching(uint64_t seed)
     return pslg;
 }
 
-/* Adds the circles that stay, by reason, to total. Which side of a subsegment is called the left one makes no
- * difference. */
+/* Adds the remaining circles to total, by reason. The result does not depend on which side of a subsegment is called
+ * left. */
 static void count_by_place(const struct tri_pslg *pslg, int64_t total[TRI_EXCUSES])
 {
     int64_t count[TRI_EXCUSES], turned[TRI_EXCUSES], beyond = 0;
@@ -265,9 +269,9 @@ static void count_by_place(const struct tri_pslg *pslg, int64_t total[TRI_EXCUSE
     tri_mesh_free(&mesh);
 }
 
-/* In bundles of lines, and between lines that were computed twice: at small angles and between segments lies what would
- * take too many parts, and elsewhere what coordinates do not resolve. */
-static void test_what_would_take_too_many_parts_is_counted_by_place(void **state)
+/* In bundles of lines and between lines drawn twice, remaining circles are at small angles and between segments if they
+ * would need too many parts. Those elsewhere are not resolved by the coordinates. */
+static void test_circles_with_too_many_parts_are_counted_by_place(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -284,9 +288,9 @@ static void test_what_would_take_too_many_parts_is_counted_by_place(void **state
     assert_true(total[TRI_EXCUSE_INPUT_ANGLE] > 0 && total[TRI_EXCUSE_NARROW_GAP] > 0);
 }
 
-/* Segments a few units in the last place apart: it is for the coordinates that circles are not empty, not for what
- * filling the space would cost. */
-static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state)
+/* Segments a few units in the last place apart: the reason for circles that are not empty is the coordinates, not the
+ * cost of filling the space. */
+static void test_unresolved_circles_are_counted_as_such(void **state)
 {
     (void)state;
     int64_t count[TRI_EXCUSES];
@@ -302,7 +306,7 @@ static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state
     tri_pslg_free(&pslg);
 }
 
-/* Circles take at most so many times the triangles of the mesh without them. Stopped where they run away. */
+/* Asserts that circles multiply the number of triangles at most by `most`. Refinement stops if it does not end. */
 static void judge_growth(const struct tri_pslg *pslg, double angle, int64_t most)
 {
     struct tri_report report;
@@ -317,7 +321,7 @@ static void judge_growth(const struct tri_pslg *pslg, double angle, int64_t most
     tri_mesh_free(&plain);
 }
 
-/* Lines that were computed twice: the space between is not filled, and their circles take no 10^12 pieces. */
+/* Spaces between lines drawn twice are not filled, and their circles do not need 10^12 pieces. */
 static void test_circles_across_doubled_lines_end(void **state)
 {
     (void)state;
@@ -334,8 +338,8 @@ static void test_circles_across_doubled_lines_end(void **state)
     }
 }
 
-/* Above 36 degrees vertices run away beside circles: the mesh is that of 36. */
-static void test_a_larger_bound_is_worked_for_as_36(void **state)
+/* Above 36 degrees, refinement for circles may not end, so the mesh equals that for 36 degrees. */
+static void test_a_larger_bound_is_treated_as_36(void **state)
 {
     (void)state;
     struct tri_pslg pslg;
@@ -347,8 +351,8 @@ static void test_a_larger_bound_is_worked_for_as_36(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* On the circle is not inside it. */
-static void test_the_circle_is_not_inside(void **state)
+/* A vertex on the circle is not inside it. */
+static void test_a_vertex_on_the_circle_is_not_inside(void **state)
 {
     (void)state;
     static const struct {
@@ -367,18 +371,18 @@ static void test_the_circle_is_not_inside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_circle_is_not_inside),
-        cmocka_unit_test(test_needles_part),
-        cmocka_unit_test(test_bundles_part),
+        cmocka_unit_test(test_a_vertex_on_the_circle_is_not_inside),
+        cmocka_unit_test(test_needles_become_conforming),
+        cmocka_unit_test(test_bundles_become_conforming),
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_finer_coordinates_resolve_more),
         cmocka_unit_test(test_boundaries_come_back_to_their_lines),
-        cmocka_unit_test(test_nothing_stays_that_can_be_split),
-        cmocka_unit_test(test_what_stays_is_counted),
-        cmocka_unit_test(test_what_would_take_too_many_parts_is_counted_by_place),
-        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_counted_as_that),
+        cmocka_unit_test(test_no_splittable_subsegment_stays_encroached),
+        cmocka_unit_test(test_protected_circles_are_counted),
+        cmocka_unit_test(test_circles_with_too_many_parts_are_counted_by_place),
+        cmocka_unit_test(test_unresolved_circles_are_counted_as_such),
         cmocka_unit_test(test_circles_across_doubled_lines_end),
-        cmocka_unit_test(test_a_larger_bound_is_worked_for_as_36),
+        cmocka_unit_test(test_a_larger_bound_is_treated_as_36),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,10 @@
-/* Estimates against what refinement makes, and against themselves. */
+/* Estimates compared with refinement, and with each other. */
 #include "support.h"
 #include "triangle/base/grow.h"
 #include "triangle/size/estimate.h"
 #include "triangle/size/crowd.h"
 
-/* A square of side 1 with some points in it, not refined yet. */
+/* A square of side 1 with n points in it, before refinement. */
 static struct tri_mesh coarse_square(int32_t n)
 {
     struct tri_pslg pslg = support_square(1, n, 3);
@@ -22,7 +22,7 @@ static int wants_smaller(void *user, const double a[2], const double b[2], const
     return area > *bound;
 }
 
-/* What is promised of bounds on areas: to a few per cent. */
+/* Estimates for area bounds are accurate within a few per cent. */
 static void test_areas(void **state)
 {
     (void)state;
@@ -45,8 +45,8 @@ static double sure_work(const struct tri_mesh *mesh, const struct tri_quality *q
     return sure;
 }
 
-/* What bounds may ask for where they are met is no part of what is sure. */
-static void test_bounds_that_are_met(void **state)
+/* The sure part of an estimate excludes what satisfied bounds might still require. */
+static void test_satisfied_bounds_are_not_in_the_sure_part(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
@@ -57,7 +57,7 @@ static void test_bounds_that_are_met(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A size test that asks for the same as an area bound is probed for about as much. */
+/* A size test equivalent to an area bound gives about the same estimate. */
 static void test_size_test_is_probed(void **state)
 {
     (void)state;
@@ -68,14 +68,14 @@ static void test_size_test_is_probed(void **state)
     probed.unsuitable_user = &bound;
     double one = sure_work(&mesh, &areas), other = sure_work(&mesh, &probed);
     assert_true(other > one / 4 && other < one * 4);
-    bound = HUGE_VAL; /* asks for nothing */
+    bound = HUGE_VAL; /* requires nothing */
     assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
-    bound = -1; /* is never content: no test of size */
+    bound = -1; /* rejects every triangle, so it is not a test of size */
     assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
     tri_mesh_free(&mesh);
 }
 
-/* Fine at one place, which is amid a triangle of the input. */
+/* Short at one place, in the middle of an input triangle. */
 static double length_about(void *user, const double at[2])
 {
     (void)user;
@@ -89,7 +89,7 @@ static double size_about(const void *user, struct tri_point q)
     return length_about(NULL, at);
 }
 
-/* Against a sum over a million small squares, half of them in the triangle. */
+/* The integral compared with a sum over a million small squares, half of which are in the triangle. */
 static void test_integral(void **state)
 {
     (void)state;
@@ -110,7 +110,7 @@ static void test_integral(void **state)
     assert_true(fabs(found / sum - 1) < 0.1 && fabs(found_over / sum_over - 1) < 0.1);
 }
 
-/* A size function is integrated, at any scale. */
+/* A size function is integrated, in any unit. */
 static void test_size_function(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static void test_size_function(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A triangle's share; what is free has none. */
+/* The shares of triangles add up to the estimate. A free triangle has share 0. */
 static void test_shares(void **state)
 {
     (void)state;
@@ -142,7 +142,7 @@ static void test_shares(void **state)
         sum += work;
     }
     double all = support_estimate(&mesh, &quality);
-    assert_true(sum >= all && sum < 1.3 * all); /* each is taken for a bad one here */
+    assert_true(sum >= all && sum < 1.3 * all); /* each triangle counts as bad here */
     int32_t v = mesh.tri[0].v[0];
     mesh.tri[0].v[0] = TRI_NONE;
     assert_true(tri_work_of(&mesh, &quality, 0) == 0);
@@ -152,9 +152,9 @@ static void test_shares(void **state)
 }
 
 struct samples {
-    double work, most;
-    int32_t n, room; /* so many may come */
-    bool inside;
+    double work, most; /* sum and maximum over the samples */
+    int32_t n, room;   /* number of samples, and how many are accepted */
+    bool inside;       /* all samples are in the unit square */
 };
 
 static bool take(void *user, struct tri_point q, double work)
@@ -169,7 +169,8 @@ static bool take(void *user, struct tri_point q, double work)
     return true;
 }
 
-/* All work but what was too little for a last sample; smaller pieces are more; who cannot take one ends it. */
+/* The samples add up to the whole work, except for a rest that is too small for a sample. A smaller grain makes more
+ * samples. Sampling ends when the callback rejects a sample. */
 static void test_samples(void **state)
 {
     (void)state;
@@ -191,8 +192,8 @@ static void test_samples(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* To the last bit, whoever works on which share. */
-static void test_any_threads_say_the_same(void **state)
+/* The result is the same to the last bit, regardless of which thread does which share. */
+static void test_threads_do_not_change_estimates(void **state)
 {
     (void)state;
     struct tri_mesh mesh = coarse_square(40000);
@@ -211,8 +212,9 @@ static void test_any_threads_say_the_same(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Bounds that ask for more triangles than a mesh holds are refused before any work, unless points are limited. */
-static void test_check(void **state)
+/* Bounds that require more triangles than a mesh can hold are rejected before any work, unless new points are
+ * limited. */
+static void test_impossible_bounds_are_refused(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults();
@@ -221,7 +223,7 @@ static void test_check(void **state)
     struct tri_pslg square = support_square(1, 0, 1);
     struct tri_mesh mesh = support_generate(&square, &none, &report);
     struct tri_quality quality = tri_quality_defaults();
-    quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* no mesh fills more of its bound than that */
+    quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* a mesh fills at most 0.75 of its area bound */
     assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
     quality.max_area = 0.99 / 0.75 / TRI_MAX_TRIANGLES;
     assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_TOO_LARGE);
@@ -231,8 +233,8 @@ static void test_check(void **state)
     tri_pslg_free(&square);
 }
 
-/* Of two triangles of area 1/2 one meets its bound. */
-static void test_bounds_that_are_met_ask_for_nothing(void **state)
+/* One of two triangles of area 1/2 satisfies its bound. */
+static void test_satisfied_bounds_need_no_triangles(void **state)
 {
     (void)state;
     struct tri_options none = tri_defaults();
@@ -260,15 +262,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_bounds_that_are_met),
+        cmocka_unit_test(test_satisfied_bounds_are_not_in_the_sure_part),
         cmocka_unit_test(test_size_test_is_probed),
         cmocka_unit_test(test_integral),
         cmocka_unit_test(test_size_function),
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_any_threads_say_the_same),
-        cmocka_unit_test(test_check),
-        cmocka_unit_test(test_bounds_that_are_met_ask_for_nothing),
+        cmocka_unit_test(test_threads_do_not_change_estimates),
+        cmocka_unit_test(test_impossible_bounds_are_refused),
+        cmocka_unit_test(test_satisfied_bounds_need_no_triangles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

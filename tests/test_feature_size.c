@@ -1,5 +1,5 @@
-/* Nothing runs away: what vertices know of the features around them. tests/corpus/ tells how many triangles that
- * leaves. */
+/* Sizes of features that vertices store, which make refinement end. tests/corpus/ lists the numbers of triangles that
+ * result. */
 #include "support.h"
 
 #include "triangle/mesh/parents.h"
@@ -14,15 +14,15 @@ static void test_features_of_an_input(void **state)
     support_add_point(&pslg, 4, 1);
     struct tri_options options = {.use_segments = true};
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    static const double want[] = {4, 4, 8, 8, 1}; /* the last: its height over the lower side */
+    static const double want[] = {4, 4, 8, 8, 1}; /* the last one: its height above the lower side */
     for (int v = 0; v < 5; v++)
         assert_true(v < 2 ? mesh.feature[v] > 4 && mesh.feature[v] < 4.2 : mesh.feature[v] == want[v]);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
 
-/* A vertex less than an ulp off the hull, and two an ulp from each other. */
-static void test_what_coordinates_do_not_resolve_is_no_feature(void **state)
+/* A vertex less than an ulp from the hull, and two vertices an ulp apart. */
+static void test_unresolved_distances_are_no_features(void **state)
 {
     (void)state;
     static const double at[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {4, 0x1p-52}, {4, 3}, {4, 3 + 0x1p-51}};
@@ -55,8 +55,8 @@ static void test_sizes_are_inherited_and_grow(void **state)
     assert_false(tri_has_run_away(&mesh, 0, 1, 0.167 * 0.167));
 }
 
-/* F of the theorem, with all vertices on segments as sources: no vertex inside knows of a smaller size. And no edge is
- * shorter than a share of the sizes at its ends. */
+/* Asserts that no inner vertex has a smaller size than F of the theorem with all vertices on segments as sources, and
+ * that each edge has at least a certain share of the sizes at its ends. */
 static void check_sizes(const struct tri_mesh *mesh)
 {
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
@@ -74,7 +74,7 @@ static void check_sizes(const struct tri_mesh *mesh)
         }
 }
 
-static void test_no_vertex_forgets_its_sources(void **state)
+static void test_sizes_match_the_theorem(void **state)
 {
     (void)state;
     static const double angles[] = {20, 33, 34, 36, 45, 60};
@@ -93,9 +93,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_features_of_an_input),
-        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_no_feature),
+        cmocka_unit_test(test_unresolved_distances_are_no_features),
         cmocka_unit_test(test_sizes_are_inherited_and_grow),
-        cmocka_unit_test(test_no_vertex_forgets_its_sources),
+        cmocka_unit_test(test_sizes_match_the_theorem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

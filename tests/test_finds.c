@@ -1,4 +1,4 @@
-/* What shares find, row by row, as a naive list has it; and runs of ids. */
+/* Lists of ids that shares have found, row by row, compared with a naive list; and runs of ids. */
 #include "sched/tiles/finds.h"
 
 #include <setjmp.h>
@@ -12,7 +12,8 @@
 
 enum { IDS = 5000, ROWS = 7, EMPTY_ROW = 4 };
 
-/* Ids are found in runs of a row, one in eleven is not; no share finds any of EMPTY_ROW. -1: not found. */
+/* The row of an id: ids are found in runs of a row, and one in eleven is not found (-1). No share finds any id of
+ * EMPTY_ROW. */
 static int32_t row_of(int32_t id)
 {
     int32_t row = id / 13 * 5 % ROWS;
@@ -34,7 +35,7 @@ static void find_all(struct par_finds *finds)
     }
 }
 
-/* The ids of a row, ascending; returns how many. */
+/* Stores the ids of a row in increasing order and returns their number. */
 static int32_t list_row(int32_t row, int32_t list[IDS])
 {
     int32_t n = 0;
@@ -44,7 +45,7 @@ static int32_t list_row(int32_t row, int32_t list[IDS])
     return n;
 }
 
-static void test_deal(void **state)
+static void test_rows_equal_naive_lists(void **state)
 {
     (void)state;
     struct par_finds finds;
@@ -62,7 +63,7 @@ static void test_deal(void **state)
     par_finds_free(&finds);
 }
 
-/* Ids 0 .. 7, 20 .. 22, 30 .. 39: the second run is too short to be kept. */
+/* Ids 0 .. 7, 20 .. 22, 30 .. 39: the second run is too short and is discarded. */
 static void test_runs(void **state)
 {
     (void)state;
@@ -83,7 +84,7 @@ static void test_runs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_deal),
+        cmocka_unit_test(test_rows_equal_naive_lists),
         cmocka_unit_test(test_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,10 +1,10 @@
-/* Flips: from any triangulation to the Delaunay one, with a triangle known for each vertex. */
+/* Flips turn any triangulation into the Delaunay triangulation, with one triangle stored for each vertex. */
 #include "support.h"
 #include "triangle/cdt/delaunay.h"
 #include "triangle/cdt/flip.h"
 #include "triangle/cdt/reconstruct.h"
 
-/* A fan of all triangles from the first of n points in convex position, on an arc. */
+/* All triangles of n points in convex position on an arc, with the first point as common corner. */
 static struct tri_mesh fan(int32_t n, double height)
 {
     struct tri_mesh mesh;
@@ -51,7 +51,7 @@ static void test_fans_become_delaunay(void **state)
     }
 }
 
-/* Whoever wants to know a triangle for each vertex still knows one afterwards. */
+/* The triangle stored for each vertex is still one of its triangles after flips. */
 static void test_corners_are_kept(void **state)
 {
     (void)state;
@@ -72,9 +72,9 @@ static void test_corners_are_kept(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* Four points on a circle: both diagonals are Delaunay. One of them is that of the ties broken by coordinates, which
- * touching alone prefers; what is read keeps its own. */
-static void test_ties_stay_where_asked(void **state)
+/* Four points on a circle, so both diagonals are Delaunay. A mesh that is read keeps its diagonal. A touched edge gets
+ * the diagonal that ties by coordinates select. */
+static void test_ties_keep_the_diagonal_that_was_read(void **state)
 {
     (void)state;
     int changed = 0;
@@ -105,7 +105,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fans_become_delaunay),
         cmocka_unit_test(test_corners_are_kept),
-        cmocka_unit_test(test_ties_stay_where_asked),
+        cmocka_unit_test(test_ties_keep_the_diagonal_that_was_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,9 @@
-/* Regions across flips: they stay on their ground, and their history stays short. */
+/* Regions keep their area during flips, and the history of flips stays short. */
 #include "support.h"
 #include "triangle/cdt/flip.h"
 #include "triangle/cdt/reconstruct.h"
 
-/* A sliver over a triangle, with regions 1 and 2; edge 2 of triangle 0 is the one between them. */
+/* A sliver on top of a triangle, with regions 1 and 2. Edge 2 of triangle 0 lies between them. */
 static struct tri_mesh sliver(void)
 {
     struct tri_mesh mesh;
@@ -23,13 +23,13 @@ static struct tri_mesh sliver(void)
     return mesh;
 }
 
-/* Corners are all that the history looks at after a flip. */
+/* After a flip, the history reads only the corners. */
 static void set_corners(struct tri_mesh *mesh, tri_triangle_id t, int32_t a, int32_t b, int32_t c)
 {
     memcpy(mesh->tri[t].v, (int32_t[]){a, b, c}, sizeof mesh->tri[t].v);
 }
 
-static void test_regions_stay_on_their_ground(void **state)
+static void test_regions_keep_their_area(void **state)
 {
     (void)state;
     struct tri_mesh mesh = sliver();
@@ -44,13 +44,13 @@ static void test_regions_stay_on_their_ground(void **state)
     tri_flip_history_settle(&history, &mesh);
     assert_true(mesh.tri[0].region == 2 && mesh.tri[1].region == 2);
     mesh.tri[0].region = 1;
-    tri_flip_history_settle(&history, &mesh); /* has begun anew */
+    tri_flip_history_settle(&history, &mesh); /* the history has been cleared */
     assert_true(mesh.tri[0].region == 1 && mesh.tri[1].region == 2);
     tri_flip_history_free(&history);
     tri_mesh_free(&mesh);
 }
 
-/* As many flips as you like; where the history is cut nothing is lost. */
+/* After any number of flips, cutting the history loses nothing. */
 static void test_history_is_cut(void **state)
 {
     enum { MANY = 1200000 };
@@ -58,7 +58,7 @@ static void test_history_is_cut(void **state)
     struct tri_mesh mesh = sliver();
     struct tri_flip_history history;
     assert_true(tri_flip_history_begin(&history, &mesh));
-    for (int i = 0; i < MANY; i++) /* and back */
+    for (int i = 0; i < MANY; i++) /* and back again */
         assert_true(tri_flip_history_add(&history, &mesh, 0, 2));
     assert_true(history.n < MANY && history.capacity < 2 * MANY);
     tri_flip_history_settle(&history, &mesh);
@@ -70,7 +70,7 @@ static void test_history_is_cut(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_regions_stay_on_their_ground),
+        cmocka_unit_test(test_regions_keep_their_area),
         cmocka_unit_test(test_history_is_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Formats of other programs: bytes of small meshes, chains of the boundary, groups. What other programs read of them:
- * tests/clients/run_formats.sh. */
+/* Formats of other programs: bytes of small meshes, chains of the boundary, groups. tests/clients/run_formats.sh tests
+ * what other programs read from them. */
 #include "triangle/text/formats.h"
 
 #include <errno.h>
@@ -18,8 +18,8 @@
 #include "triangle/text/boundary.h"
 #include "triangle/text/parts.h"
 
-/* A square of 3 x 3 points less its upper right quarter; two regions; the marker 2 below, 0 left, else 1. Segment 6 is
- * inside. */
+/* A square of 3 x 3 points without its upper right quarter, with two regions. Markers are 2 at the bottom, 0 on the
+ * left, otherwise 1. Segment 6 is inside. */
 static const double points[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2};
 static const double depths[] = {1, 2, 3, 4, 5, 6, 7, 8};
 static const int32_t corners[] = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 3, 4, 7, 3, 7, 6};
@@ -36,7 +36,7 @@ static struct array_grid ell(void)
                                         .n_columns = 1, .n_segments = 9, .has_markers = true}};
 }
 
-/* The bytes that a writer makes, malloc'ed, with a final 0. */
+/* Returns the bytes that a writer makes, allocated with malloc, followed by a 0. */
 static char *bytes_of(tri_write_call *write, const struct tri_grid *grid, size_t *size)
 {
     const char *name = "test_formats.out";
@@ -79,8 +79,8 @@ static void test_boundary(void **state)
     static const int32_t same[16];
     struct array_grid arrays = ell();
     struct tri_boundary boundary;
-    assert_three_pieces(array_grid(&arrays)); /* the boundary is among the segments; one of them is inside */
-    arrays.segment_markers = same;            /* one loop */
+    assert_three_pieces(array_grid(&arrays)); /* the segments contain the boundary and one inner segment */
+    arrays.segment_markers = same;            /* a single loop */
     assert_int_equal(tri_boundary_make(&boundary, array_grid(&arrays), NULL), TRI_OK);
     assert_int_equal(boundary.n_pieces, 1);
     assert_true(boundary.pieces[0].closed && boundary.pieces[0].n == 8);
@@ -110,8 +110,8 @@ static void *no_extra(void *user, size_t bytes)
     return NULL;
 }
 
-/* What is missing need not be memory. */
-static void test_no_room_to_group(void **state)
+/* Storage may fail for other reasons than memory, such as too many open files. The message gives the reason. */
+static void test_storage_failures_are_reported(void **state)
 {
     (void)state;
     struct array_grid arrays = ell();
@@ -177,7 +177,7 @@ static void test_sizes_of_binary_files(void **state)
     char *vtu = bytes_of(tri_write_vtu, array_grid(&arrays), &size);
     const char *data = strstr(vtu, "<AppendedData encoding=\"raw\">\n_");
     assert_non_null(data);
-    /* sizes; markers, depths; markers and regions of 15 cells; places; 36 indices, 15 ends, 15 types */
+    /* sizes; markers and depths; markers and regions of 15 cells; coordinates; 36 indices, 15 ends, 15 types */
     size_t n = 8 * 8 + 8 * 4 + 8 * 8 + 15 * 4 + 15 * 8 + 8 * 24 + 36 * 4 + 15 * 4 + 15;
     const char *end = strchr(data, '_') + 1 + n;
     assert_string_equal(end, "\n</AppendedData>\n</VTKFile>\n");
@@ -199,7 +199,7 @@ static int times_in(const int64_t *list, int64_t first, int64_t end, int64_t ite
     return n;
 }
 
-/* Is the point in the part's file, once? */
+/* Returns true if the file of the part has the point exactly once. */
 static bool has_point(const struct tri_parts *p, int part, int64_t point)
 {
     int n = times_in(p->inner, p->first_inner[part], p->first_inner[part + 1], point);
@@ -210,7 +210,7 @@ static bool has_point(const struct tri_parts *p, int part, int64_t point)
     return n;
 }
 
-/* Each triangle and segment is in one part, which has its points, too, and no others. */
+/* Asserts that each triangle and segment is in one part, and that a part has exactly the points of its items. */
 static void assert_is_cut(const struct tri_grid *grid, int n)
 {
     struct tri_grouping surfaces, curves;
@@ -260,7 +260,7 @@ static void test_parts(void **state)
     struct array_grid arrays = ell();
     for (int n = 1; n <= 9; n++)
         assert_is_cut(array_grid(&arrays), n);
-    /* no edges; point 8 is unused */
+    /* segments that are no edges; point 8 is unused */
     static const int32_t loose[] = {0, 5, 0, 7, 2, 6, 6, 2, 6, 1, 5, 7, 1, 7, 8, 6, 8, 5};
     static const double more[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2, 2, 2};
     arrays.points = more;
@@ -272,12 +272,12 @@ static void test_parts(void **state)
     assert_is_cut(array_grid(&arrays), 2);
 }
 
-/* --- the files of parts, read again, beside that of the whole */
+/* --- files of parts, read again and compared with the file of the whole mesh */
 
 enum { COLUMNS = 9, ROWS = 7, SQUARES = (COLUMNS - 1) * (ROWS - 1), POINTS = COLUMNS * ROWS + 1 };
 
-/* Squares of two triangles, in three regions, with segments round them and down the middle, and a point that nothing
- * uses; with six nodes, if asked for, of which those amid edges are whatever points are near. */
+/* Squares of two triangles in three regions, with segments around them and down the middle, and an unused point. With
+ * six nodes for a triangle, the middle nodes are arbitrary nearby points. */
 struct lattice {
     double points[2 * POINTS], regions[2 * SQUARES];
     int32_t nodes[12 * SQUARES], segments[2 * (2 * COLUMNS + 3 * ROWS)], segment_markers[2 * COLUMNS + 3 * ROWS];
@@ -340,7 +340,7 @@ static const char *part_name(int part)
     return name;
 }
 
-/* The file of the whole, and those of n parts. */
+/* Writes and reads the file of the whole mesh and those of n parts. */
 static void write_and_read(const struct tri_grid *grid, int n, struct msh_file *whole, struct msh_file *parts)
 {
     static struct tri_output_set set;
@@ -357,7 +357,7 @@ static void write_and_read(const struct tri_grid *grid, int n, struct msh_file *
     }
 }
 
-/* By tag; NULL: it is not in the file. */
+/* Finds a node by its tag; NULL: not in the file. */
 static const struct msh_node *node_in(const struct msh_file *msh, int64_t tag)
 {
     for (int64_t i = 0; i < msh->n_nodes; i++)
@@ -366,8 +366,8 @@ static const struct msh_node *node_in(const struct msh_file *msh, int64_t tag)
     return NULL;
 }
 
-/* Elements of the part are those of the whole, by their tags: nodes, group and its tag; and lie on a piece of the
- * entity that they lie on there. */
+/* Asserts that elements with the same tag have the same nodes, group and group tag in the part as in the whole, and
+ * that their entity is a piece of the whole's entity. */
 static void assert_same_elements(const struct msh_file *whole, const struct msh_file *msh, int part, int *times)
 {
     for (int64_t i = 0; i < msh->n_elements; i++) {
@@ -385,7 +385,8 @@ static void assert_same_elements(const struct msh_file *whole, const struct msh_
     }
 }
 
-/* A node is where it is in the whole, once in a file, and its entity names all parts that have it. */
+/* Asserts that a node has the same place as in the whole, is in a file at most once, and that its entity lists all
+ * parts that have it. */
 static void assert_same_node(const struct msh_node *node, int n, const struct msh_file *parts)
 {
     int n_having = 0;
@@ -440,7 +441,7 @@ static void test_parts_are_the_whole(void **state)
     }
 }
 
-/* Across the longer side, at equal places by number. */
+/* The cut is across the longer side. Points at equal places are ordered by number. */
 static void test_where_parts_meet(void **state)
 {
     (void)state;
@@ -454,7 +455,7 @@ static void test_where_parts_meet(void **state)
     bool lower[6] = {false};
     for (int64_t i = 0; i < p.first_triangle[1]; i++)
         lower[tri_grouped(&surfaces, p.triangle[i])] = true;
-    assert_true(lower[1] && lower[5] && p.first_triangle[1] == 3); /* those in the middle: 0 and 4 */
+    assert_true(lower[1] && lower[5] && p.first_triangle[1] == 3); /* the two in the middle: 0 and 4 */
     assert_true(lower[0] != lower[4] && !lower[2] && !lower[3]);
     tri_parts_free(&p);
     tri_grouping_free(&surfaces);
@@ -494,14 +495,14 @@ static void test_names(void **state)
     (void)state;
     assert_ptr_equal(tri_format_of("a.b/x.vtu")->write, tri_write_vtu);
     assert_ptr_equal(tri_format_of("fort.14")->write, tri_write_14);
-    assert_ptr_equal(tri_format_of("X.MSH")->write, tri_write_msh); /* capitals are as good */
+    assert_ptr_equal(tri_format_of("X.MSH")->write, tri_write_msh); /* upper case is accepted */
     assert_ptr_equal(tri_format_of("x.Vtu")->write, tri_write_vtu);
     assert_null(tri_format_of("x.1"));
     assert_null(tri_format_of("vtu"));
     assert_null(tri_format_of(""));
 }
 
-/* What looks like a format and is none; numbers of versions and runs do not. */
+/* Names that look like a format but are none are rejected. Names with version or run numbers are not. */
 static void test_missing_formats(void **state)
 {
     (void)state;
@@ -524,7 +525,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_boundary),
         cmocka_unit_test(test_groups),
-        cmocka_unit_test(test_no_room_to_group),
+        cmocka_unit_test(test_storage_failures_are_reported),
         cmocka_unit_test(test_too_many_groups_are_one),
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_sizes_of_binary_files),

@@ -1,4 +1,4 @@
-/* Edges over a front (front.c): against the lengths that are asked for, in one call and by the schedule. */
+/* Edges made by an advancing front (front.c), compared with the given lengths, in one call and by the schedule. */
 #include "support.h"
 
 #include "sched/schedule/schedule.h"
@@ -7,12 +7,13 @@
 
 static const double ANGLE = 25;
 
-/* What became of the lengths: of the triangles, and of the edges, each of which counts once for each of its sides. */
+/* The lengths of a mesh compared with the given ones. Each edge counts once for each of its sides. */
 struct found {
     double quality; /* mean of 4 sqrt(3) area / sum of squared edges */
-    double share;   /* of edges with 0.7 to 1.4 of the length at their middle */
-    double over;    /* triangles over the integral of 1 / (sqrt(3) / 4 h^2) */
-    double shortest, widest; /* edge, over h at its middle; circumradius, over the mean h of the corners */
+    double share;   /* share of edges that have 0.7 to 1.4 times the length at their middle */
+    double over;    /* number of triangles over the integral of 1 / (sqrt(3) / 4 h^2) */
+    double shortest, widest; /* shortest edge over h at its middle; largest circumradius over the mean h of the
+                              * corners */
 };
 
 static struct found look_at(const struct tri_mesh *m, const struct tri_lengths *lengths)
@@ -42,8 +43,8 @@ static struct found look_at(const struct tri_mesh *m, const struct tri_lengths *
 
 static struct tri_check_options kept(void) { return (struct tri_check_options){.min_angle = ANGLE, .max_bad = -1}; }
 
-/* A square of the side 1 with this field, refined by one call. way 0: at the usual places, 1: over a front, 2: in a
- * lattice, too. */
+/* A square of side 1 with this field, refined by one call. way 0: classic placement, 1: with a front, 2: with a front
+ * and the lattice. */
 static struct tri_mesh square_of(const struct tri_size_field *field, int way, struct tri_lengths **lengths)
 {
     struct tri_pslg pslg = support_square(1, 0, 1);
@@ -63,7 +64,7 @@ static struct tri_mesh square_of(const struct tri_size_field *field, int way, st
     return mesh;
 }
 
-static void test_edges_are_as_long_as_asked(void **state)
+static void test_edges_have_the_given_lengths(void **state)
 {
     (void)state;
     for (int way = 0; way < 3; way++) {
@@ -82,7 +83,7 @@ static void test_edges_are_as_long_as_asked(void **state)
     }
 }
 
-/* h = 0.01 + 0.1 x: the integral of dx / h is a logarithm. */
+/* With h = 0.01 + 0.1 x the integral of dx / h is a logarithm. */
 static void test_sides_are_divided_by_the_integral(void **state)
 {
     (void)state;
@@ -110,7 +111,7 @@ static void test_sides_are_divided_by_the_integral(void **state)
     tri_lengths_free(lengths);
 }
 
-/* Made by 1 and by 3 threads, and judged. */
+/* Makes the mesh with 1 and with 3 threads, and checks it. */
 static struct found look_at_blocks(struct trial trial)
 {
     struct start start = trials_start_of(&trial);
@@ -137,8 +138,9 @@ static struct found look_at_blocks(struct trial trial)
     return f;
 }
 
-/* As one call makes it, but for seams: coarse vertices have gone, and no triangle of their stars was forgotten. */
-static void test_blocks_do_as_well(void **state)
+/* Except at seams, the mesh is as good as that of one call: coarse vertices have been removed, and no triangle of their
+ * stars was forgotten. */
+static void test_blocks_are_as_good_as_one_call(void **state)
 {
     (void)state;
     const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
@@ -148,8 +150,8 @@ static void test_blocks_do_as_well(void **state)
     assert_true(coast.quality > 0.9);
 }
 
-/* A mesh that is refined again, without lengths, has none. */
-static void test_lengths_go_when_nobody_asks_for_them(void **state)
+/* A mesh refined again without lengths stores none. */
+static void test_refining_without_lengths_removes_them(void **state)
 {
     (void)state;
     const struct tri_size_field field = {.kind = TRI_SIZE_NUMBER, .length = 0.3};
@@ -170,10 +172,10 @@ static void test_lengths_go_when_nobody_asks_for_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edges_are_as_long_as_asked),
+        cmocka_unit_test(test_edges_have_the_given_lengths),
         cmocka_unit_test(test_sides_are_divided_by_the_integral),
-        cmocka_unit_test(test_blocks_do_as_well),
-        cmocka_unit_test(test_lengths_go_when_nobody_asks_for_them),
+        cmocka_unit_test(test_blocks_are_as_good_as_one_call),
+        cmocka_unit_test(test_refining_without_lengths_removes_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

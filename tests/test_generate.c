@@ -1,5 +1,4 @@
-/* The whole way from a PSLG to a mesh: stages, units, attributes, markers, refusals, and every allocation that can
- * fail.
+/* From a PSLG to a mesh: stages, units, attributes, markers, rejected inputs, and every allocation that can fail.
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include "allocations.h"
@@ -12,7 +11,7 @@ static void assert_legal_failure(enum tri_status status, struct tri_mesh *mesh, 
     assert_int_equal(status, TRI_NO_MEMORY);
     assert_int_equal(error->status, TRI_NO_MEMORY);
     assert_true(error->text[0] != 0);
-    if (mesh->n_triangles > 0) { /* ran out in the quality stage: a valid mesh, as far as it got */
+    if (mesh->n_triangles > 0) { /* memory ran out during refinement: the mesh is valid but unfinished */
         struct tri_error fault = {0};
         if (tri_mesh_validate(mesh, &fault) != TRI_OK)
             fail_msg("%s", fault.text);
@@ -20,7 +19,7 @@ static void assert_legal_failure(enum tri_status status, struct tri_mesh *mesh, 
     }
 }
 
-/* Fails the k-th allocation for k = 1, 2, ... (alone, or it and all that follow) until one run needs fewer. */
+/* Fails the k-th allocation for k = 1, 2, ... (only this one, or all from this one on) until a run needs fewer. */
 static void fail_each(const struct tri_pslg *pslg, const struct tri_options *options, bool ever_after, int64_t step)
 {
     enum tri_status status = TRI_NO_MEMORY;
@@ -44,7 +43,7 @@ static void fail_each(const struct tri_pslg *pslg, const struct tri_options *opt
         tri_mesh_free(&mesh);
         assert_int_equal(support_held, before); /* no leak */
         if (status == TRI_OK && failed)
-            status = TRI_NO_MEMORY; /* that one could do without; go on */
+            status = TRI_NO_MEMORY; /* that allocation was optional; continue */
     }
     assert_true(k > 10);
 }
@@ -85,7 +84,7 @@ static void test_every_allocation_may_fail_on_points(void **state)
     }
 }
 
-/* Enough entries for the queue's stack and lists to grow. */
+/* The mesh is large enough that the queue's stack and lists grow. */
 static void test_allocation_fails_in_a_large_refinement(void **state)
 {
     (void)state;
@@ -108,8 +107,8 @@ static void test_nothing_leaks_on_success(void **state)
 }
 #endif
 
-/* Left and right of a segment are meant by people. Of segments along each other the first tells. */
-static void test_pieces_run_their_segments_way(void **state)
+/* Users rely on the left and right side of a segment. If segments overlap, the direction of the first counts. */
+static void test_pieces_have_the_direction_of_their_segment(void **state)
 {
     (void)state;
     int32_t pieces = 0;
@@ -159,7 +158,7 @@ static void test_bad_input_is_refused(void **state)
     }
 }
 
-/* A function that is linear stays so at all new vertices, crossings included. */
+/* A linear function stays linear at all new vertices, including crossings. */
 static void test_attributes_are_interpolated(void **state)
 {
     (void)state;
@@ -183,7 +182,7 @@ static void test_attributes_are_interpolated(void **state)
     }
 }
 
-/* New vertices on a segment carry its marker; on the boundary 1 where it has none; in the interior 0. */
+/* New vertices on a segment get its marker. On the boundary they get 1 if it has none, and inside they get 0. */
 static void test_markers_of_new_vertices(void **state)
 {
     (void)state;
@@ -222,8 +221,8 @@ static void scale(struct tri_pslg *pslg, double by)
     }
 }
 
-/* Scaling by a power of two scales the mesh, as far as doubles go: the same triangles, the same vertices times the
- * factor. */
+/* Scaling by a power of two scales the mesh, within the range of doubles: the same triangles, and vertices multiplied
+ * by the factor. */
 static void test_scaling_scales_the_mesh(void **state)
 {
     (void)state;
@@ -266,7 +265,7 @@ static double any_length(void *user, const double at[2])
     return HUGE_VAL;
 }
 
-/* Gates and size functions get the caller's coordinates, whatever the unit inside. */
+/* Gates and size functions get the caller's coordinates, regardless of the internal unit. */
 static void test_gate_gets_callers_coordinates(void **state)
 {
     (void)state;
@@ -290,7 +289,7 @@ static void test_gate_gets_callers_coordinates(void **state)
 static void note_stage(void *user, enum tri_stage begins)
 {
     int *last = user;
-    assert_int_equal(*last + 1 + (begins == TRI_STAGE_QUALITY), (int)begins); /* nothing is rebuilt */
+    assert_int_equal(*last + 1 + (begins == TRI_STAGE_QUALITY), (int)begins); /* no stage is repeated */
     *last = (int)begins;
 }
 
@@ -327,7 +326,7 @@ static void test_report_counts(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The first vertices of a mesh are the caller's, bit for bit, in the caller's order. */
+/* The first vertices of a mesh are those of the caller, bit for bit, in the caller's order. */
 static void test_input_vertices_stay(void **state)
 {
     (void)state;
@@ -340,7 +339,7 @@ static void test_input_vertices_stay(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Everything is carved, or there is nothing: an empty mesh is a result. */
+/* If everything is carved, or the input is empty, the result is an empty mesh. */
 static void test_empty_meshes(void **state)
 {
     (void)state;
@@ -366,7 +365,7 @@ int main(void)
         cmocka_unit_test(test_allocation_fails_in_a_large_refinement),
         cmocka_unit_test(test_nothing_leaks_on_success),
 #endif
-        cmocka_unit_test(test_pieces_run_their_segments_way),
+        cmocka_unit_test(test_pieces_have_the_direction_of_their_segment),
         cmocka_unit_test(test_bad_input_is_refused),
         cmocka_unit_test(test_attributes_are_interpolated),
         cmocka_unit_test(test_markers_of_new_vertices),

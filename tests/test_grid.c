@@ -1,9 +1,9 @@
-/* A mesh as it is handed out, item by item, against the mesh itself. */
+/* A mesh handed out item by item, compared with the mesh itself. */
 #include "support.h"
 #include "triangle/mesh/grid.h"
 #include "triangle/mesh/topology.h"
 
-/* A refined square with attributes, of which one corner is cut off: vertex 4, outside, is no corner of a triangle. */
+/* A refined square with attributes and one corner cut off. Vertex 4, which is outside, is no corner of a triangle. */
 static struct tri_mesh cut_square(struct tri_pslg *pslg)
 {
     *pslg = support_pslg(5, 4, 0, 0);
@@ -50,7 +50,7 @@ static void test_points(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* What of a triangle names points names the same ones when vertices are left out. */
+/* If vertices are left out, all numbers in a triangle still refer to the same points. */
 static void test_vertices_left_out(void **state)
 {
     (void)state;
@@ -83,7 +83,7 @@ static void test_vertices_left_out(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Segments of the mesh, then those of the input that are said to be no edges. */
+/* First the segments of the mesh, then those of the input that are reported as not being edges. */
 static void test_segments(void **state)
 {
     (void)state;
@@ -104,7 +104,8 @@ static void test_segments(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The nodes of a triangle behind its corners lie amid the edges opposite to them, and have what lies between. */
+/* The nodes after the corners of a triangle are the midpoints of the opposite edges, and have interpolated
+ * attributes. */
 static void test_second_order(void **state)
 {
     (void)state;
@@ -134,7 +135,8 @@ static void test_second_order(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Voronoi vertices are as far from all corners of their triangles; edges go where their duals' neighbours are. */
+/* Voronoi vertices have the same distance from all corners of their triangles. Their edges lead to the vertices of
+ * neighbouring triangles. */
 static void test_voronoi(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* What refinement knows of the input: parents at each vertex, acute vertices, against naive lists. */
+/* Facts about the input that refinement computes first (parents at each vertex, acute vertices), compared with naive
+ * lists. */
 #include "support.h"
 #include "triangle/mesh/parents.h"
 
@@ -21,7 +22,7 @@ static void test_turns_before_is_the_order_of_angles(void **state)
             assert_int_equal(tri_turns_before(o, ring[i], ring[k]), angle[i] < angle[k] - 1e-9);
 }
 
-/* A wheel: `spokes` segments from the middle, which is vertex 0, to a ring. */
+/* A wheel: `spokes` segments from vertex 0 in the middle to a ring. */
 static struct tri_mesh wheel(int32_t spokes)
 {
     struct tri_pslg pslg = support_pslg(spokes + 1, 2 * spokes, 0, 0);
@@ -39,7 +40,8 @@ static struct tri_mesh wheel(int32_t spokes)
     return mesh;
 }
 
-/* Each parent stands once at each of its ends, and nowhere else; at a hub they stand in order of direction. */
+/* Asserts that each parent is listed once at each of its ends and nowhere else, and that the parents of a hub are
+ * sorted by direction. */
 static void assert_incidence(const struct tri_mesh *mesh)
 {
     const struct tri_incidence *at = &mesh->incidence;
@@ -66,7 +68,7 @@ static void assert_incidence(const struct tri_mesh *mesh)
 static void test_parents_at_each_vertex(void **state)
 {
     (void)state;
-    static const int32_t spokes[] = {3, 16, 17, 60, 2500}; /* the last: by merging */
+    static const int32_t spokes[] = {3, 16, 17, 60, 2500}; /* the last one is sorted by merging */
     for (int k = 0; k < 5; k++) {
         struct tri_mesh mesh = wheel(spokes[k]);
         assert_int_equal(mesh.n_parents, 2 * spokes[k]);
@@ -75,22 +77,23 @@ static void test_parents_at_each_vertex(void **state)
     }
 }
 
-/* Spokes meet at less than 60 degrees if they are more than six; a ring's corners are wide. */
+/* Spokes meet at less than 60 degrees if there are more than six. Corners of the ring have large angles. */
 static void test_acute_vertices(void **state)
 {
     (void)state;
     for (int32_t spokes = 3; spokes <= 12; spokes++) {
         if (spokes == 6)
-            continue; /* 60 degrees up to rounding */
+            continue; /* 60 degrees within rounding */
         struct tri_mesh mesh = wheel(spokes);
         assert_int_equal(mesh.on[0], spokes > 6 ? TRI_VERTEX_ACUTE : TRI_VERTEX_INPUT);
-        for (int32_t v = 1; v <= spokes; v++) /* between spoke and ring: 90 - 180 / spokes degrees */
+        for (int32_t v = 1; v <= spokes; v++) /* the angle between spoke and ring is 90 - 180 / spokes degrees */
             assert_int_equal(mesh.on[v], spokes < 6 ? TRI_VERTEX_ACUTE : TRI_VERTEX_INPUT);
         tri_mesh_free(&mesh);
     }
 }
 
-/* Distances below this are no features, in a square with `pairs` segments and a vertex 64 resolutions beside each. */
+/* Returns the distance below which there are no features, in a square with `pairs` segments that each have a vertex at
+ * a distance of 64 resolutions. */
 static double rounding_beside(int pairs)
 {
     struct tri_pslg pslg = support_pslg(4 + 3 * pairs, 4 + pairs, 0, 0);
@@ -113,8 +116,8 @@ static double rounding_beside(int pairs)
     return rounding;
 }
 
-/* 32 resolutions of the largest coordinate; 256 if more than four vertices have something nearer than that. */
-static void test_what_is_rounding(void **state)
+/* 32 resolutions of the largest coordinate, or 256 if more than four vertices have a nearer neighbour than that. */
+static void test_distances_below_rounding_are_no_features(void **state)
 {
     (void)state;
     assert_true(rounding_beside(0) == 0x1p-47);
@@ -128,7 +131,7 @@ int main(void)
         cmocka_unit_test(test_turns_before_is_the_order_of_angles),
         cmocka_unit_test(test_parents_at_each_vertex),
         cmocka_unit_test(test_acute_vertices),
-        cmocka_unit_test(test_what_is_rounding),
+        cmocka_unit_test(test_distances_below_rounding_are_no_features),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* HDF5 files: what is written is what is read, in chunks and without, narrow and wide; the same tiles give the same
- * bytes; whatever fails, nothing remains. */
+/* HDF5 files: the data that is read equals the data written, with and without chunks, narrow and wide. The same tiles
+ * give the same bytes. After a failure no file remains. */
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -26,7 +26,7 @@
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
                             PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
 
-/* Writes it to x.h5 and x.xdmf. */
+/* Writes the lattice to x.h5 and x.xdmf. */
 static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t most_narrow,
                                      struct tri_error *error)
 {
@@ -46,7 +46,7 @@ static enum tri_status write_lattice(const struct lattice *lattice, bool markers
     return status;
 }
 
-/* --- reading again */
+/* --- reading back */
 
 static void compare_points(struct tri_h5 *h5, const struct lattice *l, bool markers, int64_t first, int64_t n)
 {
@@ -111,7 +111,7 @@ static void compare_counts(const struct tri_h5_counts *found, const struct latti
     assert_int_equal(found->segment_markers, markers);
 }
 
-/* Opens x.h5, looks at all of it in slices, and removes it. */
+/* Opens x.h5, compares all of it in slices, and removes it. */
 static void compare(const struct lattice *l, bool markers)
 {
     struct tri_h5 *h5;
@@ -138,7 +138,7 @@ static int remove_files(void **state)
     return 0;
 }
 
-static void test_what_is_written_is_read(void **state)
+static void test_data_read_equals_data_written(void **state)
 {
     (void)state;
     const struct lattice *all[] = {&SMALL, &WHOLE, &PLAIN, &LARGE};
@@ -149,7 +149,7 @@ static void test_what_is_written_is_read(void **state)
     }
 }
 
-/* Wherever it happens: before, in and behind the first chunk, at its end. */
+/* Numbers become wide before, in or after the first chunk, or at its end. */
 static void test_wide_numbers(void **state)
 {
     (void)state;
@@ -161,7 +161,7 @@ static void test_wide_numbers(void **state)
     }
 }
 
-/* Where cells end, in all kinds of chunks. */
+/* Cells end at any place, in all kinds of chunks. */
 static void test_ends_of_cells(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void test_small_files_are_small(void **state)
     assert_true(n < 20000);
 }
 
-/* However it is cut into tiles; with numbers that become wide on the way, and without. */
+/* Any division into tiles gives the same bytes, also if numbers become wide meanwhile. */
 static void test_same_mesh_same_bytes(void **state)
 {
     (void)state;
@@ -217,7 +217,7 @@ static void test_same_mesh_same_bytes(void **state)
     }
 }
 
-/* Rows that several write, tile by tile in turn, into the places that the writer has given. */
+/* Several writers write rows, taking turns by tile, to the offsets that the writer of the file returned. */
 enum { PARTS = 3 };
 struct parts {
     const struct lattice *lattice;
@@ -225,7 +225,7 @@ struct parts {
     struct tri_h5_writer *writer;
     struct tri_sink whole;
     struct tri_h5_part *part[PARTS];
-    int turn;
+    int turn; /* the part that writes next */
     double bounds[4];
 };
 
@@ -289,7 +289,7 @@ static enum tri_status write_parts(const struct lattice *lattice, bool markers, 
 static void test_parts_make_the_same_bytes(void **state)
 {
     (void)state;
-    static const struct lattice larger = {1101, 37, 0, 0, false, false}; /* chunks that have been written become wide */
+    static const struct lattice larger = {1101, 37, 0, 0, false, false}; /* chunks already written become wide */
     const struct lattice *all[] = {&LARGE, &larger, &PLAIN, &LARGE, &SMALL, &larger, &WHOLE};
     const int64_t narrow[] = {0, 786432, 0, 262144, 3, 1100000, 0};
     for (int i = 0; i < 7; i += every(2)) {
@@ -307,7 +307,7 @@ static void test_parts_make_the_same_bytes(void **state)
     }
 }
 
-/* Whatever the machine's order of bytes; places in a file need not be aligned in memory. */
+/* Works for any byte order of the machine, and for unaligned memory. */
 static void test_rows_as_bytes(void **state)
 {
     (void)state;
@@ -343,8 +343,8 @@ static void test_rows_as_bytes(void **state)
     }
 }
 
-/* As many points as fit in one chunk, one less, one more; and chunks of segments. */
-static void test_around_a_chunk(void **state)
+/* As many points as fit in one chunk, one less, and one more. The same for chunks of segments. */
+static void test_sizes_around_a_chunk(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -375,7 +375,7 @@ static herr_t has_no_time(hid_t object, const char *name, const H5O_info_t *info
     return info->atime == 0 && info->mtime == 0 && info->ctime == 0 && info->btime == 0 ? 0 : -1;
 }
 
-static void test_no_times(void **state)
+static void test_objects_have_no_time_stamps(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -389,7 +389,7 @@ static void test_no_times(void **state)
 
 /* --- failures */
 
-/* A disk that is full after some bytes, whatever is being written then. */
+/* The disk becomes full after a certain number of bytes, during any write. */
 static void test_full_disk(void **state)
 {
     (void)state;
@@ -409,7 +409,7 @@ static void test_full_disk(void **state)
     }
 }
 
-/* Our own allocations, one after the other. */
+/* Each of the library's own allocations fails in turn. */
 static void test_no_memory(void **state)
 {
     (void)state;
@@ -454,7 +454,7 @@ static void test_stop(void **state)
     assert_int_equal(files_here(), 0);
 }
 
-/* --- files that are no meshes */
+/* --- files without a mesh */
 
 static void write_words(const char *name, const char *words, size_t n)
 {
@@ -474,7 +474,7 @@ static void refuse(const char *path, enum tri_status wanted, const char *words)
     assert_non_null(strstr(error.text, words));
 }
 
-static void test_no_such_mesh(void **state)
+static void test_files_without_a_mesh_are_refused(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -498,7 +498,7 @@ static void test_no_such_mesh(void **state)
     refuse("x.h5", TRI_BAD_INPUT, "no array /points");
 }
 
-/* x.h5 with another /points, which somebody has made as only HDF5 can; then it is refused with these words. */
+/* Replaces /points in x.h5 by a data set made with HDF5. The file must then be rejected with these words. */
 static void replace_points(void (*make)(hid_t file), const char *words)
 {
     struct tri_error error;
@@ -511,7 +511,7 @@ static void replace_points(void (*make)(hid_t file), const char *words)
     assert_int_equal(files_here(), 2);
 }
 
-/* Without rows of data: size rows are made, and none is written. */
+/* Makes `size` rows without writing any. */
 static void make_dataset(hid_t file, const char *name, hid_t creation, hid_t type, hsize_t rows, hsize_t width)
 {
     const hsize_t size[2] = {rows, width}, most[2] = {H5S_UNLIMITED, width};
@@ -579,7 +579,7 @@ static void make_floats(hid_t file)
     make_dataset(file, "points", H5Pcreate(H5P_DATASET_CREATE), H5T_IEEE_F32LE, small_rows(), 2);
 }
 
-static void test_not_in_this_file(void **state)
+static void test_unsupported_layouts_are_refused(void **state)
 {
     (void)state;
     replace_points(make_external, "/points is stored in another file");
@@ -594,8 +594,8 @@ static void test_not_in_this_file(void **state)
     refuse("y", TRI_CANNOT_READ, "not a regular file");
 }
 
-/* A small file may say that it holds very much. */
-static void test_more_than_can_be(void **state)
+/* A small file may claim to hold a large amount of data. */
+static void test_impossible_row_counts_are_refused(void **state)
 {
     (void)state;
     struct tri_error error;
@@ -612,22 +612,22 @@ static void test_more_than_can_be(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
+        cmocka_unit_test_teardown(test_data_read_equals_data_written, remove_files),
         cmocka_unit_test_teardown(test_wide_numbers, remove_files),
         cmocka_unit_test_teardown(test_ends_of_cells, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
         cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_parts_make_the_same_bytes, remove_files),
         cmocka_unit_test(test_rows_as_bytes),
-        cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
-        cmocka_unit_test_teardown(test_no_times, remove_files),
+        cmocka_unit_test_teardown(test_sizes_around_a_chunk, remove_files),
+        cmocka_unit_test_teardown(test_objects_have_no_time_stamps, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),
         cmocka_unit_test_teardown(test_no_memory, remove_files),
         cmocka_unit_test_teardown(test_stop, remove_files),
-        cmocka_unit_test_teardown(test_no_such_mesh, remove_files),
-        cmocka_unit_test_teardown(test_not_in_this_file, remove_files),
-        cmocka_unit_test_teardown(test_more_than_can_be, remove_files),
+        cmocka_unit_test_teardown(test_files_without_a_mesh_are_refused, remove_files),
+        cmocka_unit_test_teardown(test_unsupported_layouts_are_refused, remove_files),
+        cmocka_unit_test_teardown(test_impossible_row_counts_are_refused, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,8 @@
-/* Points come in the order of the curve: neighbours in it are neighbours in the plane. */
+/* Points sorted along the curve: neighbours in the order are near each other in the plane. */
 #include "support.h"
 #include "triangle/geometry/hilbert.h"
 
-/* All n points along the curve. */
+/* Orders all n points along the curve. */
 static void order_all(const struct tri_point *xy, int32_t n, int32_t *order)
 {
     uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
@@ -24,7 +24,8 @@ static void assert_permutation(const int32_t *order, int32_t n)
     free(seen);
 }
 
-/* A grid of 2^bits x 2^bits points, one in each cell of that level of the curve, which goes from each to one beside. */
+/* A grid of 2^bits x 2^bits points, one in each cell of that level of the curve. The curve goes from each cell to an
+ * adjacent one. */
 static void assert_path(int bits)
 {
     const int32_t side = 1 << bits, n = side * side;
@@ -69,7 +70,8 @@ static void test_equal_points_are_neighbours_in_increasing_index(void **state)
     }
 }
 
-/* Different points in one cell (the box is 2^60 times larger): equal ones must still be neighbours. */
+/* Different points in one cell, because the box is 2^60 times larger. Equal points must still be neighbours in the
+ * order. */
 static void test_dense_cells_are_sorted(void **state)
 {
     (void)state;
@@ -86,10 +88,10 @@ static void test_dense_cells_are_sorted(void **state)
     assert_int_equal(places, 22);
 }
 
-/* The order of the points, not of their ids: any permutation of the ids comes out the same. Squares within squares,
- * each a million times smaller, fill a cell with cells; and every third point has a near neighbour, mostly in its
- * cell. */
-static void test_any_order_comes_out_the_same(void **state)
+/* The order depends on the points, not on their ids: any permutation of the ids gives the same order. Squares within
+ * squares, each a million times smaller, fill a cell with smaller cells. Every third point has a near neighbour,
+ * usually in its cell. */
+static void test_initial_order_does_not_matter(void **state)
 {
     (void)state;
     enum { N = 3000 };
@@ -116,7 +118,7 @@ static void test_any_order_comes_out_the_same(void **state)
         tri_hilbert_order(xy, order, N, scratch, NULL);
         assert_memory_equal(order, first, sizeof order);
     }
-    double length = 0; /* along the innermost rings as well: a curve of their own */
+    double length = 0; /* points of the innermost rings have a curve of their own as well */
     int inner = 0;
     struct tri_point last = {0, 0};
     for (int i = 0; i < N; i++)
@@ -138,7 +140,8 @@ static double length_of(const struct tri_point *xy, const int32_t *order, int32_
     return length;
 }
 
-/* Through fewer cells: whatever order the ids are in, and nearly as short; dense corners have a curve of their own. */
+/* The coarse order does not depend on the order of the ids, and its curve is nearly as short although it has fewer
+ * cells. Dense corners have a curve of their own. */
 static void test_coarse_order(void **state)
 {
     (void)state;
@@ -192,7 +195,7 @@ int main(void)
         cmocka_unit_test(test_order_of_a_grid_is_a_path),
         cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
         cmocka_unit_test(test_dense_cells_are_sorted),
-        cmocka_unit_test(test_any_order_comes_out_the_same),
+        cmocka_unit_test(test_initial_order_does_not_matter),
         cmocka_unit_test(test_coarse_order),
         cmocka_unit_test(test_degenerate_boxes),
     };

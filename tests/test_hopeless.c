@@ -1,4 +1,4 @@
-/* Where refinement stops: narrow spaces, flat triangles, hubs of many segments. */
+/* Where refinement gives up: narrow spaces, flat triangles, hubs of many segments. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +9,8 @@
 #include "tests/support.h"
 #include "triangle/size/gap.h"
 
-/* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as
- * narrow gaps. */
+/* Refines a rectangle of length 1 and this height to 20 degrees. Returns the number of triangles; *in_narrow_gap: how
+ * many stay bad in narrow gaps. */
 static int32_t refine_rectangle(double height, int64_t *in_narrow_gap)
 {
     struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
@@ -46,8 +46,8 @@ static void test_thin_rectangles_are_filled_while_that_is_cheap(void **state)
     assert_true(in_narrow_gap > 0);
 }
 
-/* Two segments of length 1, `width` apart where they begin and `spread` more where they end: what filling the space
- * between them costs, seen from there, over the integral of 1 / width. */
+/* Two segments of length 1 are `width` apart at their start and `width + spread` apart at their end. Returns the cost
+ * of filling the space between them, computed at the start, over the integral of 1 / width. */
 static double cost_over_integral(double width, double spread)
 {
     struct tri_point xy[] = {{0, 0}, {1, 0}, {0, width}, {1, width + spread}};
@@ -57,7 +57,7 @@ static double cost_over_integral(double width, double spread)
     return cost / (spread > 0 ? log1p(spread / width) / spread : 1 / width);
 }
 
-static void test_filling_costs_what_the_width_takes_all_along(void **state)
+static void test_filling_cost_matches_the_integral(void **state)
 {
     (void)state;
     const double WIDTHS[] = {1e-9, 1e-6, 1e-3, 0.1}, SPREADS[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -68,7 +68,7 @@ static void test_filling_costs_what_the_width_takes_all_along(void **state)
         }
 }
 
-/* Split points that rounding puts beside their segment, next to a triangle flatter than that: the mesh stays
+/* Rounding puts split points off their segment, next to a triangle that is even flatter. The mesh must stay
  * Delaunay. */
 static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
 {
@@ -89,7 +89,7 @@ static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The many parents at one vertex are listed in the order in which they go around it, however they were given. */
+/* Many parents at one vertex are sorted by direction, regardless of their order in the input. */
 static void test_spokes_of_a_hub_are_in_order(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thin_rectangles_are_filled_while_that_is_cheap),
-        cmocka_unit_test(test_filling_costs_what_the_width_takes_all_along),
+        cmocka_unit_test(test_filling_cost_matches_the_integral),
         cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),
         cmocka_unit_test(test_spokes_of_a_hub_are_in_order),
     };

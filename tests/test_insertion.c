@@ -1,9 +1,10 @@
-/* Insertion into stretches of vertices: what a stretch owns it inserts, what it does not own stays untouched. */
+/* Insertion of a range of vertices (a stretch): a call inserts the vertices whose cavity it owns, and changes nothing
+ * else. */
 #include "support.h"
 
 #include "triangle/cdt/delaunay.h"
 
-/* A triangulation with ghosts of points of which only the first three corners are in it yet. */
+/* A triangulation with ghost triangles, which at first contains only the first three corners. */
 struct trial {
     struct tri_pslg pslg;
     struct tri_point *xy;
@@ -11,7 +12,7 @@ struct trial {
     int32_t n, first[3];
 };
 
-/* Is there an earlier vertex at the same place? Nobody may insert that. */
+/* Returns true if an earlier vertex has the same place. Such a vertex must not be inserted. */
 static bool is_twin(const struct trial *t, int32_t v)
 {
     for (int32_t w = 0; w < v; w++)
@@ -48,7 +49,7 @@ static void end(struct trial *t)
 
 static bool is_free(const struct tri_triangle *t) { return t->v[0] == TRI_NONE; }
 
-/* Every edge of every triangle, ghosts too, has a neighbour that sees it the other way round. */
+/* Asserts that every edge of every triangle, including ghosts, has a neighbour with the reversed edge. */
 static void assert_linked(const struct trial *t)
 {
     for (int32_t i = 0; i < 2 * t->n + 4; i++)
@@ -63,7 +64,7 @@ static void assert_linked(const struct trial *t)
         }
 }
 
-/* No vertex that has been inserted is in the disk of a triangle, or beyond a hull edge. */
+/* Asserts that no inserted vertex is in the disk of a triangle or beyond a hull edge. */
 static void assert_delaunay(const struct trial *t, const bool *inserted)
 {
     for (int32_t i = 0; i < 2 * t->n + 4; i++) {
@@ -82,7 +83,7 @@ static void assert_delaunay(const struct trial *t, const bool *inserted)
     }
 }
 
-/* Inserts what the stretch owns, from triangle `entry`; returns how many of its vertices it did not own. */
+/* Inserts the vertices of the stretch that it owns, starting at triangle `entry`. Returns how many it did not own. */
 static int32_t insert_stretch(struct trial *t, struct tri_range stretch, int32_t entry, bool *inserted)
 {
     struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .stretch = stretch, .last = entry};
@@ -102,7 +103,7 @@ static int32_t insert_stretch(struct trial *t, struct tri_range stretch, int32_t
             if (done == TRI_NOT_OWNED)
                 assert_memory_equal(&t->tri[i], &before[i], sizeof before[i]);
             else if (memcmp(t->tri[i].v, before[i].v, sizeof before[i].v) != 0)
-                assert_true(tri_inserter_owns(&inserter, &t->tri[i])); /* and had owned it, or it was free */
+                assert_true(tri_inserter_owns(&inserter, &t->tri[i])); /* and it was owned before, or free */
         }
     }
     free(before);
@@ -110,7 +111,7 @@ static int32_t insert_stretch(struct trial *t, struct tri_range stretch, int32_t
     return not_owned;
 }
 
-/* A triangle that a stretch owns; TRI_NONE: there is none. */
+/* Returns a triangle that the stretch owns, or TRI_NONE. */
 static int32_t any_owned(const struct trial *t, struct tri_range stretch)
 {
     const struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .stretch = stretch};
@@ -137,7 +138,8 @@ static void test_one_block_inserts_all(void **state)
     }
 }
 
-/* Points sorted by x, in two halves: each leaves to whoever has all what reaches over the border, and nothing else. */
+/* Points sorted by x, in two halves. Each half leaves exactly the vertices whose cavity crosses the border to a final
+ * call that owns everything. */
 static void test_two_blocks_and_the_rest(void **state)
 {
     (void)state;
@@ -156,7 +158,7 @@ static void test_two_blocks_and_the_rest(void **state)
     }
     tri_insert_first(t.xy, t.tri, 2 * N, t.first);
     const struct tri_range all = {0, N}, half[2] = {{0, N / 2}, {N / 2, N}};
-    for (int32_t v = 5; v < N; v += 5) { /* a few first, so that there is something to own */
+    for (int32_t v = 5; v < N; v += 5) { /* inserts a few first, so that each half owns triangles */
         struct tri_inserter inserter = {.xy = t.xy, .tri = t.tri, .stretch = all, .last = any_owned(&t, all)};
         if (!inserted[v])
             assert_int_equal(tri_insert(&inserter, v, 2 * v), TRI_INSERTED);

@@ -1,4 +1,5 @@
-/* Sizes where the usual point cannot be had: beside slivers, protected segments, at small angles. */
+/* Size bounds at places where the usual point cannot be used: beside slivers, at protected segments, at small
+ * angles. */
 #include "support.h"
 
 #include "triangle/refine/place.h"
@@ -29,7 +30,7 @@ static void test_areas_are_kept_beside_slivers(void **state)
         }
 }
 
-/* Refuses what is large near the origin. */
+/* Rejects large triangles near the origin. */
 static int is_too_wide(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     double x = (a[0] + b[0] + c[0]) / 3, y = (a[1] + b[1] + c[1]) / 3;
@@ -37,7 +38,7 @@ static int is_too_wide(void *user, const double a[2], const double b[2], const d
     return area > 1e-6 + 1e-3 * (x * x + y * y);
 }
 
-/* Between needles all angles are small: the size test is asked there, too. */
+/* Between needles all angles are small. The size test must be called there as well. */
 static void test_a_size_test_is_kept_at_small_angles(void **state)
 {
     (void)state;
@@ -63,7 +64,7 @@ static void test_a_size_test_is_kept_at_small_angles(void **state)
     }
 }
 
-/* Refuses edges above this length, of which a protected side may be one. */
+/* Rejects edges above this length, even if they are protected. */
 static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     const double *p[] = {a, b, c, a}, most = *(const double *)user;
@@ -74,9 +75,9 @@ static int is_too_long(void *user, const double a[2], const double b[2], const d
     return 0;
 }
 
-/* What is refused for a side that stays long gets no centroids down to what coordinates resolve (16,755 triangles), and
- * covers next to no ground. */
-static void test_walls_that_are_refused_end_it(void **state)
+/* A triangle rejected only because of a protected long side must not get centroids down to the resolution (16,755
+ * triangles). Rejected triangles cover almost no area. */
+static void test_protected_walls_get_few_centroids(void **state)
 {
     (void)state;
     struct tri_pslg pslg = load("letter.poly");
@@ -102,7 +103,8 @@ static void test_walls_that_are_refused_end_it(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The theorem: a centroid is no nearer to any edge than a third of the least height, however flat the triangle. */
+/* The theorem: the distance of a centroid from any edge is at least a third of the smallest height, even in a flat
+ * triangle. */
 static void test_centroids_are_inside(void **state)
 {
     (void)state;
@@ -129,7 +131,7 @@ static void test_centroids_are_inside(void **state)
     }
 }
 
-/* Only a subsegment among the two longer edges, and none that is protected. */
+/* Selects only subsegments among the two longer edges, and only unprotected ones. */
 static void test_long_walls(void **state)
 {
     (void)state;
@@ -140,7 +142,7 @@ static void test_long_walls(void **state)
     struct tri_quality options = tri_quality_defaults();
     struct tri_shape shape = tri_shape_of(xy, t.v);
     assert_int_equal(tri_long_wall(&mesh, &options, 0, &shape), TRI_NONE);
-    t.n[1] = ~1; /* the short edge */
+    t.n[1] = ~1; /* on the short edge */
     assert_int_equal(tri_long_wall(&mesh, &options, 0, &shape), TRI_NONE);
     t.n[2] = ~0;
     assert_int_equal(tri_long_wall(&mesh, &options, 0, &shape), 0);
@@ -153,7 +155,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas_are_kept_beside_slivers),
         cmocka_unit_test(test_a_size_test_is_kept_at_small_angles),
-        cmocka_unit_test(test_walls_that_are_refused_end_it),
+        cmocka_unit_test(test_protected_walls_get_few_centroids),
         cmocka_unit_test(test_centroids_are_inside),
         cmocka_unit_test(test_long_walls),
     };

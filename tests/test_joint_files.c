@@ -1,5 +1,5 @@
-/* Files that ranks write together, which here are threads: byte for byte those of one process; nobody writes where one
- * does not see them; and a write that fails on one rank fails on all. */
+/* Files written jointly by ranks, which are threads here. They have the same bytes as those of one process. If one rank
+ * does not see the files, no rank writes them directly. A failed write on one rank fails on all ranks. */
 #include "fake_ranks.h"
 #include "full.h"
 #include "support.h"
@@ -17,14 +17,14 @@ static const struct trial trials[] = {
     {"section.poly", 28, 20000, 400, false, true, 0},
     {"square_random1000.poly", 20, 20000, 700, false, false, 0},
     {"letter.poly", 30, 20000, 500, false, false, 1},
-    {"section.poly", 35, 10000, 500, true, true, 0}, /* rank 0 owns all */
+    {"section.poly", 35, 10000, 500, true, true, 0}, /* rank 0 owns all tiles */
 };
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 6, FILES = 5 };
 
 static const char *const names[FILES] = {"x.node", "x.ele", "x.poly", "x.h5", "x.xdmf"};
 
-/* What happens to a rank. */
+/* Faults of one rank. */
 enum mishap { NONE, SEES_ANOTHER_FILE, CANNOT_WRITE };
 
 /* --- the files of rank 0 */
@@ -70,9 +70,9 @@ struct member {
     struct par_options options;
     struct par_carrier carrier;
     struct tri_mesh mesh;
-    struct opened opened; /* of rank 0 */
+    struct opened opened; /* copied from rank 0 */
     enum mishap mishap;
-    bool together;
+    bool together; /* the ranks write jointly */
     enum tri_status status;
     struct tri_error error;
 };
@@ -82,7 +82,7 @@ static struct tri_text_options text_options(const struct member *m)
     return (struct tri_text_options){.base = 1, .markers = true, .figure = &m->start->pslg};
 }
 
-/* What a rank has that is on a machine of its own, where a file of that name is another one. */
+/* Simulates a rank on another machine, where the same name is another file. */
 static bool spread_of_another(void *self, void *bytes, size_t n)
 {
     struct par_carrier carrier = fake_carrier(((struct fake_rank *)self)->world, ((struct fake_rank *)self)->self);
@@ -103,7 +103,7 @@ static void refine_to(struct member *m, const struct tri_sink *sink)
     par_report_free(&report);
 }
 
-/* From now on it may only be read. */
+/* Makes the file read-only. */
 static void lose_permission(struct joint_files *joint)
 {
     const int file = open(joint->ticket[2].temporary, O_RDONLY);
@@ -150,7 +150,7 @@ static struct par_options small_blocks(const struct trial *trial)
     return options;
 }
 
-/* unlucky: to whom something happens. */
+/* unlucky: the rank with the fault. */
 static void run_ranks(struct member *member, const struct trial *trial, const struct start *start, int n_ranks,
                       int unlucky, enum mishap mishap)
 {
@@ -225,7 +225,7 @@ static void take_files(char *bytes[FILES], size_t n[FILES])
     }
 }
 
-static void test_the_bytes_of_one_process(void **state)
+static void test_bytes_equal_those_of_one_process(void **state)
 {
     (void)state;
     struct member member[MOST_RANKS];
@@ -252,7 +252,7 @@ static void test_the_bytes_of_one_process(void **state)
         }
 }
 
-static void test_one_sees_another_file(void **state)
+static void test_ranks_that_see_different_files_do_not_write_them(void **state)
 {
     (void)state;
     struct member member[4];
@@ -265,7 +265,7 @@ static void test_one_sees_another_file(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-static void test_one_cannot_write(void **state)
+static void test_a_failed_write_fails_on_all_ranks(void **state)
 {
     (void)state;
     struct member member[3];
@@ -285,9 +285,9 @@ static void test_one_cannot_write(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_the_bytes_of_one_process, remove_files),
-        cmocka_unit_test_teardown(test_one_sees_another_file, remove_files),
-        cmocka_unit_test_teardown(test_one_cannot_write, remove_files),
+        cmocka_unit_test_teardown(test_bytes_equal_those_of_one_process, remove_files),
+        cmocka_unit_test_teardown(test_ranks_that_see_different_files_do_not_write_them, remove_files),
+        cmocka_unit_test_teardown(test_a_failed_write_fails_on_all_ranks, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

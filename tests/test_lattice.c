@@ -1,4 +1,4 @@
-/* The lattice point for a bad triangle, against a search through the lattice points around the circumcentre. */
+/* The lattice point for a bad triangle, compared with a search of the lattice points around the circumcentre. */
 #include "support.h"
 
 #include "triangle/refine/lattice.h"
@@ -8,14 +8,14 @@ enum { TRIALS = 20000, AROUND = 3 };
 
 static const double ROW = 0.86602540378443864676; /* sqrt(3) / 2, the height of an equilateral triangle with edges 1 */
 
-/* A lattice of equilateral triangles whose edges have the length `edge`, with a point at the origin. */
+/* A point of the lattice of equilateral triangles with edges of length `edge` and a point at the origin. */
 static struct tri_point lattice_point(double edge, int64_t column, int64_t row)
 {
     const double shift = row % 2 != 0 ? 0.5 : 0;
     return (struct tri_point){((double)column + shift) * edge, (double)row * ROW * edge};
 }
 
-/* The function under test, for a triangle and a bound on areas: the length of the lattice's edges, or 0. */
+/* Calls the tested function for a triangle and an area bound. Returns the length of the lattice's edges, or 0. */
 static double chosen(const struct tri_point corner[3], double bound, struct tri_point *p)
 {
     static const tri_vertex_id v[3] = {0, 1, 2};
@@ -24,7 +24,7 @@ static double chosen(const struct tri_point corner[3], double bound, struct tri_
     return tri_lattice_point(&lattice, corner, v, &shape, p) ? lattice.edge : 0;
 }
 
-/* The place as far from all three corners, from the equations of two bisectors. */
+/* The point with the same distance from all three corners, from the equations of two bisectors. */
 static struct tri_point circumcentre(const struct tri_point c[3])
 {
     const long double x = c[1].x - c[0].x, y = c[1].y - c[0].y, u = c[2].x - c[0].x, w = c[2].y - c[0].y;
@@ -32,7 +32,7 @@ static struct tri_point circumcentre(const struct tri_point c[3])
     return (struct tri_point){(double)(c[0].x + (l * w - m * y) / twice), (double)(c[0].y + (m * x - l * u) / twice)};
 }
 
-/* Of the lattice points around a place: the nearest one in the row that is nearest to it. */
+/* The nearest lattice point in the row nearest to `at`. */
 static struct tri_point nearest_in_row(double edge, struct tri_point at)
 {
     const int64_t row = llround(at.y / (ROW * edge)), column = llround(at.x / edge);
@@ -62,7 +62,7 @@ static double least_distance(const struct tri_point corner[3], struct tri_point 
     return least;
 }
 
-/* A triangle that is not flat, of about this size, with corners in counter-clockwise order. */
+/* A random triangle of about this size that is not flat, with corners in counter-clockwise order. */
 static void draw_triangle(struct support_random *random, double size, struct tri_point corner[3])
 {
     const struct tri_point at = {20 * support_unit(random) - 10, 20 * support_unit(random) - 10};
@@ -72,7 +72,7 @@ static void draw_triangle(struct support_random *random, double size, struct tri
     } while (tri_area_of(corner[0], corner[1], corner[2]) < 0.01 * size * size);
 }
 
-/* The lattice's triangles are nearly as large as the bound allows, and none is larger. */
+/* Lattice triangles are nearly as large as the bound allows, and not larger. */
 static double edge_for(double bound)
 {
     const double most = sqrt(bound / TRI_EQUILATERAL);
@@ -82,7 +82,7 @@ static double edge_for(double bound)
 static void test_nearest(void **state)
 {
     (void)state;
-    const double farthest = sqrt(7) / 4; /* half an edge along the row, half a row across */
+    const double farthest = sqrt(7) / 4; /* half an edge along the row, half a row across it */
     struct support_random random = {1};
     int n_found = 0;
     for (int i = 0; i < TRIALS; i++) {
@@ -93,7 +93,7 @@ static void test_nearest(void **state)
         const struct tri_point centre = circumcentre(corner), wanted = nearest_in_row(expected, centre);
         const double from_corners = least_distance(corner, wanted) / expected;
         if (fabs(from_corners - TRI_LATTICE_APART) < 1e-6 || sqrt(tri_distance2(centre, corner[0])) > 100 * expected)
-            continue; /* rounding may decide either way */
+            continue; /* rounding may give either result */
         const struct tri_shape shape = tri_shape_of(corner, (const tri_vertex_id[]){0, 1, 2});
         const double reach2 = TRI_LATTICE_REACH * tri_longest2(&shape), far2 = tri_distance2(corner[0], wanted);
         if (fabs(far2 - reach2) < 1e-6 * reach2)
@@ -105,13 +105,14 @@ static void test_nearest(void **state)
         assert_true(fabs(edge - expected) < 1e-12 * expected && TRI_EQUILATERAL * edge * edge < bound);
         assert_true(is_lattice_point(edge, p));
         assert_true(sqrt(tri_distance2(p, centre)) < farthest * edge * (1 + 1e-9));
-        /* in the middle between two points either may be chosen */
+        /* in the middle between two points, either point is fine */
         assert_true(fabs(tri_distance2(p, centre) - tri_distance2(wanted, centre)) < 1e-7 * edge * edge);
     }
     assert_in_range(n_found, TRIALS / 4, TRIALS * 9 / 10);
 }
 
-/* Two triangles with corners of the lattice, and one that is shifted until a corner is too near to a lattice point. */
+/* Two triangles whose corners are lattice points, and one that is shifted until a corner is too close to a lattice
+ * point. */
 static void test_corners_too_near(void **state)
 {
     (void)state;
@@ -119,8 +120,8 @@ static void test_corners_too_near(void **state)
     const struct tri_point small[3] = {lattice_point(edge, 0, 0), lattice_point(edge, 1, 0), lattice_point(edge, 0, 1)};
     const struct tri_point large[3] = {lattice_point(edge, 0, 0), lattice_point(edge, 2, 0), lattice_point(edge, 1, 2)};
     struct tri_point p;
-    assert_true(chosen(small, bound, &p) == 0); /* its corners are the nearest points */
-    assert_true(chosen(large, bound, &p) > 0);  /* the middle of its longest edge, or a point as far from all */
+    assert_true(chosen(small, bound, &p) == 0); /* its corners are the nearest lattice points */
+    assert_true(chosen(large, bound, &p) > 0);  /* the middle of its longest edge, or as far away */
     for (int k = 0; k < 2; k++) {
         const double away = TRI_LATTICE_APART + (k == 0 ? -1e-3 : 1e-3);
         const struct tri_point centre = lattice_point(edge, 3, 5);
@@ -140,7 +141,7 @@ static void test_no_bound(void **state)
     assert_true(chosen(corner, 0.1, &p) > 0);
 }
 
-/* Far from the origin, on both sides of it, and for any unit of length. */
+/* The lattice is the same far from the origin, on both sides of it, and in any unit of length. */
 static void test_same_lattice_everywhere(void **state)
 {
     (void)state;
@@ -150,7 +151,7 @@ static void test_same_lattice_everywhere(void **state)
         for (int64_t row = -5; row <= 5; row++)
             for (int64_t column = -5; column <= 5; column++) {
                 const struct tri_point centre = lattice_point(edge, column, row);
-                struct tri_point corner[3] = {{2, -1}, {-1, 2}, {-2, -1}}, p; /* on a circle about 0 */
+                struct tri_point corner[3] = {{2, -1}, {-1, 2}, {-2, -1}}, p; /* on a circle around 0 */
                 for (int k = 0; k < 3; k++) {
                     corner[k].x = ldexp(corner[k].x + centre.x, scale);
                     corner[k].y = ldexp(corner[k].y + centre.y, scale);

@@ -1,5 +1,5 @@
-/* Cells of the lattice that are made at once: the mesh keeps all that refinement promises, wherever the call pauses,
- * fails or stops, and whatever fence is around it. Every mesh goes to the judge. */
+/* Insertion of whole lattice cells. The mesh keeps all guarantees, wherever the call pauses, fails or stops, and with
+ * any fence. The checker verifies every mesh. */
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
@@ -42,7 +42,7 @@ static struct tri_options in_lattice(double min_angle, double max_area)
     return options;
 }
 
-/* Judges a mesh for these options; max_bad as in tri_check_options. */
+/* Checks a mesh for these options; max_bad as in tri_check_options. */
 static void judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                   int64_t max_bad)
 {
@@ -52,7 +52,7 @@ static void judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, cons
     support_judge(mesh, pslg, &check, options->quality.region_areas, NULL);
 }
 
-/* Bad triangles with a reason: segments that meet at small angles in a fence may let vertices run away. */
+/* Number of bad triangles, for any reason. If segments meet at small angles inside a fence, some may stay bad. */
 static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *options,
                          const struct tri_refine_report *report)
 {
@@ -63,7 +63,7 @@ static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *
     return sum;
 }
 
-/* A mesh that is valid, and perhaps not ready. */
+/* Checks that a mesh is valid, although it may be unfinished. */
 static void judge_as_far_as_it_got(const struct tri_mesh *mesh, const struct tri_pslg *pslg)
 {
     support_judge(mesh, pslg, &(struct tri_check_options){.max_bad = mesh->n_triangles, .min_angle = 30}, false, NULL);
@@ -71,7 +71,7 @@ static void judge_as_far_as_it_got(const struct tri_mesh *mesh, const struct tri
 
 /* --- bounds */
 
-/* With the lattice the mesh keeps all bounds, and has hardly more triangles than without. */
+/* With the lattice the mesh satisfies all bounds and has hardly more triangles than without it. */
 static void compare_with_classic(const struct tri_pslg *pslg, struct tri_options options, int64_t max_bad)
 {
     options.quality.lattice = false;
@@ -87,7 +87,7 @@ static void compare_with_classic(const struct tri_pslg *pslg, struct tri_options
     tri_mesh_free(&mesh);
 }
 
-/* The bound that makes about so many triangles. */
+/* The area bound for about this many triangles. */
 static double bound_for(const struct tri_pslg *pslg, int32_t triangles)
 {
     const struct tri_options plain = support_quality(0, 0);
@@ -131,7 +131,7 @@ static void test_coasts(void **state)
     }
 }
 
-/* Segments that must not be split: sizes are kept all the same. */
+/* Segments that must not be split. Size bounds hold nevertheless. */
 static void test_protected_segments(void **state)
 {
     (void)state;
@@ -162,8 +162,7 @@ static void test_tangles(void **state)
         }
 }
 
-/* A square of side 3 with n points in it, in three columns, each of them a region with a bound of its own; 0: of
- * none. */
+/* A square of side 3 with n points and three columns. Each column is a region with its own bound; 0: no bound. */
 static struct tri_pslg columns(double first, double second, double third, int32_t n)
 {
     struct support_random random = {11};
@@ -226,7 +225,7 @@ static void test_regions_without_walls(void **state)
     }
 }
 
-/* Far from the sides of a square there are lattice points alone, and equilateral triangles. */
+/* Far from the sides of a square there are only lattice points and equilateral triangles. */
 static void test_middle_of_a_square(void **state)
 {
     (void)state;
@@ -263,7 +262,7 @@ static void test_middle_of_a_square(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A figure that is larger by a power of two has the same mesh, larger by that. */
+/* A figure scaled by a power of two has the same mesh, scaled by that factor. */
 static void test_scaled(void **state)
 {
     (void)state;
@@ -298,19 +297,19 @@ static const struct tri_refine_hooks no_hooks;
 
 enum { MANY = 100 };
 
-/* A caller who has no room at first. */
+/* A caller that has no room at first. */
 struct host {
-    int32_t asked;  /* points that room was asked for last */
-    int32_t most;   /* of all calls for room */
-    int32_t cells;  /* triangles that were made more than MANY at once */
+    int32_t asked;  /* number of points of the last request for room */
+    int32_t most;   /* maximum over all requests */
+    int32_t cells;  /* triangles inserted in batches of more than MANY */
     int32_t calls;
-    struct tri_part part; /* to be told of triangles that are made */
-    int32_t grants; /* so many calls get what they ask for */
-    enum tri_status refusal; /* of the later ones */
-    int32_t vertices, triangles, subs; /* that the mesh's arrays have room for; the mesh knows of less */
+    struct tri_part part; /* receives the list of new triangles */
+    int32_t grants; /* this many requests succeed */
+    enum tri_status refusal; /* status of the later requests */
+    int32_t vertices, triangles, subs; /* room in the mesh's arrays; the limits in the mesh are lower */
 };
 
-/* The mesh has room for exactly so many points, of which one may be on a subsegment. */
+/* Gives the mesh room for exactly this number of points, of which one may be on a subsegment. */
 static void make_room(struct host *host, struct tri_mesh *mesh, int32_t points)
 {
     mesh->vertex_capacity = host->vertices;
@@ -362,7 +361,7 @@ static struct host host_for(struct tri_mesh *mesh, int32_t grants, enum tri_stat
     return host;
 }
 
-/* The hooks, and those to the host. */
+/* Returns the hooks with those to the host added. */
 static struct tri_refine_hooks hooks_to(struct host *host, struct tri_refine_hooks hooks)
 {
     host->part = (struct tri_part){note_changes, lacks_nothing, host};
@@ -387,8 +386,8 @@ static void assert_valid(const struct tri_mesh *mesh)
         fail_msg("%s", fault.text);
 }
 
-/* Refines, with a pause before each point that needs room, and whenever the refiner asks whether to stop. Returns how
- * many triangles were made at once. */
+/* Refines with a pause before each point that needs room, and at each question whether to stop. Returns the number of
+ * triangles inserted in batches. */
 static int32_t refine_with_pauses(struct tri_mesh *mesh, const struct tri_options *options,
                                   struct tri_refine_hooks hooks, struct tri_refine_report *report)
 {
@@ -415,7 +414,8 @@ static int32_t refine_with_pauses(struct tri_mesh *mesh, const struct tri_option
     return host.cells;
 }
 
-/* Two calls, one with pauses, on meshes of the same input. Returns how many triangles were made at once. */
+/* Makes two meshes of the same input, one with pauses, and compares them. Returns the number of triangles inserted in
+ * batches. */
 static int32_t compare_pauses(const struct tri_pslg *pslg, const struct tri_options *options,
                            const struct tri_refine_hooks *hooks)
 {
@@ -447,7 +447,7 @@ static void test_pauses_change_nothing(void **state)
         }
 }
 
-/* Points on edges, and splits in between. */
+/* Points on edges, with splits in between. */
 static void test_pauses_in_tangles(void **state)
 {
     (void)state;
@@ -464,7 +464,7 @@ static void test_pauses_in_tangles(void **state)
     assert_true(cells > 20000);
 }
 
-/* Two regions have cells, one after the other. */
+/* Two regions get cells, one after the other. */
 static void test_pauses_between_bounds(void **state)
 {
     (void)state;
@@ -515,7 +515,7 @@ static void test_room_may_fail(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* The mesh is valid, and another call makes it ready. */
+/* After a failed allocation the mesh is valid, and another call completes it. */
 static void test_allocations_may_fail(void **state)
 {
     (void)state;
@@ -548,7 +548,7 @@ static void test_allocations_may_fail(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Once it has said yes, it is not asked again. */
+/* Must not be called again after it has returned true. */
 static bool counts_down(void *user)
 {
     int *left = user;
@@ -556,7 +556,7 @@ static bool counts_down(void *user)
     return --*left == 0;
 }
 
-/* Whenever it is stopped, the mesh is valid, and another call makes it ready. */
+/* After a stop at any time the mesh is valid, and another call completes it. */
 static void test_stops(void **state)
 {
     (void)state;
@@ -590,7 +590,7 @@ static void test_stops(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* --- what a call must leave alone */
+/* --- parts of the mesh that a call must not change */
 
 static struct tri_mesh coarse_square(struct tri_pslg *pslg)
 {
@@ -607,7 +607,7 @@ static bool is_owned(const struct tri_fence *f, const double at[6])
     return true;
 }
 
-/* Returns how many triangles were made at once. */
+/* Returns the number of triangles inserted in batches. */
 static int32_t refine_within(struct tri_mesh *mesh, const struct tri_fence *fence, const struct tri_options *options,
                              struct tri_refine_report *report)
 {
@@ -619,7 +619,7 @@ static int32_t refine_within(struct tri_mesh *mesh, const struct tri_fence *fenc
     return host.cells;
 }
 
-/* Each triangle with a corner outside the box is there before and after. */
+/* Each triangle with a corner outside the box is unchanged. */
 static void test_fence_protects_the_outside(void **state)
 {
     (void)state;
@@ -645,7 +645,7 @@ static void test_fence_protects_the_outside(void **state)
     }
 }
 
-/* Disjoint boxes do not know of each other: any order gives the same set of triangles. */
+/* Disjoint boxes are independent: any order gives the same set of triangles. */
 static void test_disjoint_fences_commute(void **state)
 {
     (void)state;
@@ -680,14 +680,14 @@ static void test_disjoint_fences_commute(void **state)
     }
 }
 
-/* The four quarters around a place. */
+/* One of the four quarters around a point. */
 static struct tri_fence quarter(struct tri_point at, int k)
 {
     return (struct tri_fence){k % 2 ? at.x : -HUGE_VAL, k / 2 ? at.y : -HUGE_VAL, k % 2 ? HUGE_VAL : at.x,
                               k / 2 ? HUGE_VAL : at.y};
 }
 
-/* Fences through tangles, some of them through vertices and along rows. */
+/* Fences through tangles, some through vertices and along rows. */
 static void test_quarters_commute(void **state)
 {
     (void)state;
@@ -750,8 +750,8 @@ static void note_left(void *user, tri_triangle_id triangle)
     left->calls++;
 }
 
-/* Whatever is still bad has been told to the caller, who does it later. */
-static void test_what_is_left_is_told(void **state)
+/* Every triangle that is still bad has been reported to the caller, who refines it later. */
+static void test_remaining_bad_triangles_are_reported(void **state)
 {
     (void)state;
     static const struct tri_fence fences[] = {{1, 1, 5, 6}, {-1, -1, 4, 9}, {2.5, -1, 9, 3.25}, {-1, -1, 9, 9}};
@@ -798,7 +798,7 @@ static void add_lattice_point(struct tri_pslg *pslg, const struct tri_lattice *l
     support_add_point(pslg, p.x, p.y);
 }
 
-/* A vertex in the middle of a cell whose corners are there, and whose triangles are small enough to stay. */
+/* A vertex in the middle of a cell whose corners exist already, with triangles small enough to stay. */
 static void test_vertex_in_a_cell(void **state)
 {
     (void)state;
@@ -820,7 +820,7 @@ static void test_vertex_in_a_cell(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Lists of some triangles of a coarser lattice, whose vertices are points of the finer one, and then of all. */
+/* Worklists of some triangles of a coarser lattice, whose vertices are points of the finer one. Then all triangles. */
 static void test_worklists(void **state)
 {
     (void)state;
@@ -849,7 +849,7 @@ static void test_worklists(void **state)
         assert_int_equal(tri_refine_with(&mesh, &fine.quality, &hooks, &report, NULL), TRI_OK);
         cells += host.cells;
         judge_as_far_as_it_got(&mesh, &pslg);
-        for (int32_t t = 0; t < before; t++) /* another triangle has another life */
+        for (int32_t t = 0; t < before; t++) /* a changed triangle has another generation */
             assert_true(memcmp(old[t].v, mesh.tri[t].v, sizeof old[t].v) == 0 || mesh.tri[t].life != old[t].life);
         assert_int_equal(tri_refine(&mesh, &fine.quality, &report, NULL), TRI_OK);
         judge(&mesh, &pslg, &fine, 0);
@@ -865,7 +865,7 @@ static void test_worklists(void **state)
 
 static bool left_of(void *user, const double p[2]) { return p[0] < *(double *)user; }
 
-/* Where points are counted or must pass a gate, no cells are made at once. */
+/* If points are limited or must pass a gate, no cells are inserted. */
 static void test_limits_and_gates(void **state)
 {
     (void)state;
@@ -911,7 +911,7 @@ int main(void)
         cmocka_unit_test(test_fence_protects_the_outside),
         cmocka_unit_test(test_disjoint_fences_commute),
         cmocka_unit_test(test_quarters_commute),
-        cmocka_unit_test(test_what_is_left_is_told),
+        cmocka_unit_test(test_remaining_bad_triangles_are_reported),
         cmocka_unit_test(test_vertex_in_a_cell),
         cmocka_unit_test(test_worklists),
         cmocka_unit_test(test_limits_and_gates),

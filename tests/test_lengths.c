@@ -1,11 +1,11 @@
-/* How long edges shall be, against naive twins: all segments, all nodes, all vertices are asked. */
+/* The target lengths of edges, compared with naive twins that examine all segments, nodes or vertices. */
 #include <stdio.h>
 
 #include "support.h"
 #include "triangle/size/lengths.h"
 #include "triangle/size/sources.h"
 
-/* A triangulation of the square from 0 to `side`, with n random points, and segments of markers 2 and 3 between. */
+/* A triangulation of a square of this side, with n random points and segments with markers 2 and 3 between them. */
 static struct tri_mesh square_mesh(double side, int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -54,7 +54,7 @@ static double distance(struct tri_point a, struct tri_point b, struct tri_point 
     return hypot(p.x - a.x - t * x, p.y - a.y - t * y);
 }
 
-/* Random segments, points among them, and n_equal copies of the last. */
+/* Random segments, some of length 0, and n_equal copies of the last one. */
 static void check_items(int32_t n, int32_t n_equal, double length, double growth, bool same, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -91,11 +91,11 @@ static void check_items(int32_t n, int32_t n_equal, double length, double growth
     }
     print_message("  %d items: %.4f exact, else within %.4f, %d numbers in lists\n", near.n, (double)exact / all, worst,
                   near.candidates.n);
-    
+
     tri_near_clear(&near);
 }
 
-static void test_near_items_are_as_all_of_them_say(void **state)
+static void test_near_items_equal_naive_twin(void **state)
 {
     (void)state;
     check_items(1, 1, 0.01, 0.2, true, 1);
@@ -107,7 +107,8 @@ static void test_near_items_are_as_all_of_them_say(void **state)
     check_items(300, 10, 0.02, 0, false, 7);
 }
 
-/* The centre of a circle is as far from all of it; a fan has many segments at one place. */
+/* The centre of a circle has the same distance from all its segments, and a fan has many segments at one point. The
+ * search must end. */
 static void test_ties_end(void **state)
 {
     (void)state;
@@ -133,7 +134,7 @@ static void test_ties_end(void **state)
     }
 }
 
-/* Of many items parts are made by tasks: in any order they come to the same. */
+/* Many items are divided into tasks. Their order does not change the result. */
 static void test_tasks_make_the_same_lists(void **state)
 {
     (void)state;
@@ -169,7 +170,7 @@ static void test_segments_with_a_marker(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 60, 8);
-    static const double growth[4] = {0, -1, 0.05, 3}; /* the last is limited */
+    static const double growth[4] = {0, -1, 0.05, 3}; /* the last value is limited */
     for (int32_t marker = 1; marker <= 3; marker++) {
         const struct tri_size_field fields[] = {
             {.kind = TRI_SIZE_NEAR, .length = 0.01 * marker, .growth = growth[marker], .marker = marker},
@@ -205,7 +206,7 @@ static void test_segments_with_a_marker(void **state)
 
 /* --- rasters */
 
-/* The values, limited, by asking all nodes for each; gaps have those of the nearest node. */
+/* The limited values, from all nodes for each node. Gaps get the value of the nearest node. */
 static void limit_naively(const struct tri_size_field *f, double gradation, double *out)
 {
     const int64_t w = f->values.width, n = w * f->values.n;
@@ -271,7 +272,7 @@ static void check_raster(int64_t w, int64_t h, double gaps, double gradation, ui
     tri_mesh_free(&mesh);
 }
 
-static void test_rasters_are_as_all_nodes_say(void **state)
+static void test_rasters_equal_naive_twin(void **state)
 {
     (void)state;
     check_raster(1, 1, 0, 0.2, 1);
@@ -285,7 +286,7 @@ static void test_rasters_are_as_all_nodes_say(void **state)
 
 /* --- background meshes */
 
-/* The value at the nearest place of all triangles, of all places asked naively. */
+/* The value at the nearest point of all triangles, found naively. */
 static double linear_naively(const struct tri_size_field *f, const double *value, struct tri_point p)
 {
     double nearest = HUGE_VAL, found = 0;
@@ -317,7 +318,7 @@ static double linear_naively(const struct tri_size_field *f, const double *value
     return found;
 }
 
-/* Points that are there twice are corners once. */
+/* Points given twice are corners once. */
 static bool is_corner(const struct tri_size_field *f, int32_t v)
 {
     for (int64_t i = 0; i < 3 * f->triangles.n; i++)
@@ -326,7 +327,8 @@ static bool is_corner(const struct tri_size_field *f, int32_t v)
     return false;
 }
 
-/* n points in a part of the mesh and their triangulation; some without data, all lengths limited by all others. */
+/* Checks n points in a part of the mesh with their triangulation. Some have no data, and each length is limited by all
+ * others. */
 static void check_background(int32_t n, double gaps, double gradation, enum support_kind kind, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -350,7 +352,7 @@ static void check_background(int32_t n, double gaps, double gradation, enum supp
     }
     int32_t n_triangles = 0;
     for (int32_t t = 0; t < own.n_triangles; t++)
-        for (int k = 0; k < 3; k++) /* every other one turned around */
+        for (int k = 0; k < 3; k++) /* every other triangle is reversed */
             corner[3 * n_triangles + (t % 2 ? k : 2 - k)] = own.tri[t].v[k], n_triangles += k == 2;
     const struct tri_size_field f = {.kind = TRI_SIZE_MESH, .points = tri_reals_of(at, own.n_vertices, 2),
                                      .values = tri_reals_of(value, own.n_vertices, 1),
@@ -370,13 +372,13 @@ static void check_background(int32_t n, double gaps, double gradation, enum supp
         const struct tri_point p = place(&random, 4), q = {p.x / mesh.unit, p.y / mesh.unit};
         worst = fmax(worst, fabs(tri_lengths_at(lengths, q) * mesh.unit / linear_naively(&f, limited, p) - 1));
     }
-    for (int32_t v = 0; kind == SUPPORT_RANDOM && v < own.n_vertices; v++) { /* gaps have some other's */
+    for (int32_t v = 0; kind == SUPPORT_RANDOM && v < own.n_vertices; v++) { /* gaps get the value of another point */
         const struct tri_point q = {at[2 * v] / mesh.unit, at[2 * v + 1] / mesh.unit};
         const double h = tri_lengths_at(lengths, q) * mesh.unit;
         assert_true(h > 0.0099 && h < 0.3001 && (isnan(value[v]) || h < value[v] * (1 + 1e-6)));
     }
     print_message("  %d triangles: %g\n", n_triangles, worst);
-    assert_true(worst < 0.01 || kind == SUPPORT_NEAR_LINE); /* where triangles are all but flat, any edge will do */
+    assert_true(worst < 0.01 || kind == SUPPORT_NEAR_LINE); /* nearly flat: any edge may be nearest */
     tri_lengths_free(lengths);
     free(at);
     free(value);
@@ -387,7 +389,7 @@ static void check_background(int32_t n, double gaps, double gradation, enum supp
     tri_mesh_free(&mesh);
 }
 
-static void test_meshes_are_as_all_triangles_say(void **state)
+static void test_meshes_equal_naive_twin(void **state)
 {
     (void)state;
     check_background(3, 0, 0.2, SUPPORT_RANDOM, 1);
@@ -399,7 +401,7 @@ static void test_meshes_are_as_all_triangles_say(void **state)
     check_background(60, 0, 0.2, SUPPORT_NEAR_LINE, 7);
 }
 
-/* Points alone, and triangles that share no corners. */
+/* Points without triangles, and triangles without common corners. */
 static void test_loose_points_and_triangles(void **state)
 {
     (void)state;
@@ -428,7 +430,7 @@ static void test_loose_points_and_triangles(void **state)
                              fmin(h, least) - 1) < 0.02);
     }
     tri_lengths_free(lengths);
-    /* Two triangles on the square, the short length at a corner of one: it reaches the far corner of the other. */
+    /* Two triangles cover the square. The short length at a corner of one reaches the far corner of the other. */
     const double square[] = {0, 0, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4}, given[] = {0.1, 9, 9, 9, 9, 9};
     const int32_t corners[] = {0, 1, 2, 3, 4, 5};
     f = (struct tri_size_field){.kind = TRI_SIZE_MESH, .points = tri_reals_of(square, 6, 2),
@@ -437,7 +439,7 @@ static void test_loose_points_and_triangles(void **state)
     const double far = tri_lengths_at(lengths, (struct tri_point){4 / mesh.unit, 4 / mesh.unit}) * mesh.unit;
     assert_true(fabs(far - (0.1 + 0.2 * sqrt(32))) < 1e-9);
     tri_lengths_free(lengths);
-    /* Values far apart: what is between them stays above 0. */
+    /* Values of very different size: interpolated values stay above 0. */
     const double apart[] = {5.5e-17, 9.6e8, 1.8e31, 5.5e-17, 1, 2};
     f = (struct tri_size_field){.kind = TRI_SIZE_RASTER, .values = tri_reals_of(apart, 3, 2), .step = {4, 2}};
     lengths = lengths_of(&mesh, &(struct tri_sizes){.fields = &f, .n = 1, .gradation = HUGE_VAL});
@@ -453,10 +455,10 @@ static void test_loose_points_and_triangles(void **state)
 /* --- functions */
 
 struct asked {
-    int which;
-    int calls;
-    int64_t places;
-    double at[20][3]; /* places and lengths that others grow from */
+    int which;        /* which function, 0 .. 3 */
+    int calls;        /* number of calls */
+    int64_t places;   /* number of points in all calls */
+    double at[20][3]; /* points and lengths from which other lengths grow */
 };
 
 static double function_at(const struct asked *a, double x, double y)
@@ -467,7 +469,7 @@ static double function_at(const struct asked *a, double x, double y)
     switch (a->which) {
     case 0: return h;
     case 1: return 0.05 + 0.04 * sin(3 * x) * cos(5 * y);
-    case 2: return x < 2 ? 0.02 : HUGE_VAL; /* limited afterwards */
+    case 2: return x < 2 ? 0.02 : HUGE_VAL; /* will be limited */
     case 3: return x < 2 ? 0.02 + 0.01 * y : NAN;
     default: return -1;
     }
@@ -484,7 +486,7 @@ static void ask_function(void *user, int64_t n, const double (*at)[2], double *l
     }
 }
 
-/* What it is once limited. */
+/* The value after limiting. */
 static double limited_function(const struct asked *a, double x, double y)
 {
     if (a->which == 2)
@@ -494,7 +496,7 @@ static double limited_function(const struct asked *a, double x, double y)
 
 static bool is_asked_thrice(void *user) { return ((struct asked *)user)->calls >= 3; }
 
-static void test_functions_are_kept(void **state)
+static void test_sampled_functions_are_accurate(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 10, 1);
@@ -535,7 +537,7 @@ static void test_functions_are_kept(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* --- what the figure asks for */
+/* --- lengths derived from the figure */
 
 static struct tri_mesh mesh_of(struct tri_pslg *pslg, bool spread_regions)
 {
@@ -592,12 +594,12 @@ static void test_lengths_grow_from_regions(void **state)
     tri_mesh_free(&mesh);
 }
 
-static void test_circles_have_so_many(void **state)
+static void test_circles_have_the_given_number_of_edges(void **state)
 {
     (void)state;
     struct tri_pslg pslg = support_pslg(68, 68, 0, 0);
     add_ring(&pslg, 64, 3, 0);
-    for (int k = 0; k < 4; k++) { /* corners are no curve */
+    for (int k = 0; k < 4; k++) { /* corners are not curves */
         support_add_point(&pslg, k == 0 || k == 3 ? -1 : 1, k < 2 ? -1 : 1);
         support_add_segment(&pslg, 64 + k, 64 + (k + 1) % 4);
     }
@@ -611,7 +613,8 @@ static void test_circles_have_so_many(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* The lengths that are asked for over those that shall be, at places that `across` gives with the width there. */
+/* Compares the computed lengths with the expected ones, at points that `across` returns together with the width
+ * there. */
 static void check_channel(struct tri_pslg *pslg, void (*across)(double s, double t, double out[3]), double least,
                           double most)
 {
@@ -646,8 +649,8 @@ static void in_annulus(double s, double t, double out[3])
     out[2] = 1;
 }
 
-/* Between lines that meet at 20 degrees, from 1 to 10 away from where they would: the ball that touches both in s has
- * the diameter 2 s tan(10 degrees). */
+/* Between lines that meet at 20 degrees, at 1 to 10 from their intersection. The circle that touches both at distance s
+ * has the diameter 2 s tan(10 degrees). */
 static void in_funnel(double s, double t, double out[3])
 {
     const double from = 1.4 + 8 * s, angle = (20 * t - 10) * 3.141592653589793 / 180;
@@ -656,7 +659,7 @@ static void in_funnel(double s, double t, double out[3])
     out[2] = 2 * from * tan(10 * 3.141592653589793 / 180);
 }
 
-static void test_channels_have_so_many_across(void **state)
+static void test_channels_have_the_given_number_of_edges_across(void **state)
 {
     (void)state;
     static const double corners[2][4][2] = {{{0, 0}, {20, 0}, {20, 1}, {0, 1}},
@@ -674,10 +677,10 @@ static void test_channels_have_so_many_across(void **state)
         struct tri_pslg pslg = support_pslg(1000, 1000, 1, 0);
         add_ring(&pslg, 600, 3, rough ? 0.01 : 0);
         add_ring(&pslg, 400, 2, rough ? 0.01 : 0);
-        pslg.n_holes = 1; /* at the origin */
+        pslg.n_holes = 1; /* the hole point is the origin */
         check_channel(&pslg, in_annulus, rough ? 0.85 : 0.99, rough ? 1.15 : 1.05);
     }
-    /* A square has no walls that face each other closer than its side. */
+    /* In a square no walls face each other at less than its side. */
     struct tri_mesh mesh = square_mesh(2, 0, 1);
     struct tri_lengths *lengths = lengths_of(&mesh, &(struct tri_sizes){.elements_across = 4});
     assert_true(at_place(lengths, &mesh, 0, 0) >= 0.49);
@@ -685,7 +688,7 @@ static void test_channels_have_so_many_across(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* --- the number of a field */
+/* --- hashes that identify fields */
 
 static void ask_constant(void *user, int64_t n, const double (*at)[2], double *length)
 {
@@ -694,7 +697,7 @@ static void ask_constant(void *user, int64_t n, const double (*at)[2], double *l
         length[i] = *(const double *)user;
 }
 
-static void test_other_fields_have_other_numbers(void **state)
+static void test_different_fields_have_different_hashes(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(4, 10, 1);
@@ -727,7 +730,7 @@ static void test_other_fields_have_other_numbers(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* --- what is refused */
+/* --- rejected inputs */
 
 static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, const char *text)
 {
@@ -738,7 +741,7 @@ static void refuse(const struct tri_mesh *mesh, const struct tri_sizes *sizes, c
     assert_string_equal(error.text, text);
 }
 
-static void test_what_is_no_field_is_refused(void **state)
+static void test_invalid_fields_are_refused(void **state)
 {
     (void)state;
     struct tri_mesh mesh = square_mesh(1, 10, 1);
@@ -785,7 +788,7 @@ static void test_what_is_no_field_is_refused(void **state)
 
 /* --- through the public header */
 
-static void test_settings_take_fields(void **state)
+static void test_settings_accept_fields(void **state)
 {
     (void)state;
     const double xy[] = {0, 0, 1, 0, 1, 1, 0, 1}, values[] = {0.1, 0.2};
@@ -816,14 +819,14 @@ static void test_settings_take_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_near_items_are_as_all_of_them_say), cmocka_unit_test(test_ties_end),
+        cmocka_unit_test(test_near_items_equal_naive_twin), cmocka_unit_test(test_ties_end),
         cmocka_unit_test(test_tasks_make_the_same_lists),
-        cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_are_as_all_nodes_say),
-        cmocka_unit_test(test_meshes_are_as_all_triangles_say), cmocka_unit_test(test_loose_points_and_triangles),
-        cmocka_unit_test(test_functions_are_kept),
-        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_so_many),
-        cmocka_unit_test(test_channels_have_so_many_across),
-        cmocka_unit_test(test_other_fields_have_other_numbers),
-        cmocka_unit_test(test_what_is_no_field_is_refused), cmocka_unit_test(test_settings_take_fields)};
+        cmocka_unit_test(test_segments_with_a_marker), cmocka_unit_test(test_rasters_equal_naive_twin),
+        cmocka_unit_test(test_meshes_equal_naive_twin), cmocka_unit_test(test_loose_points_and_triangles),
+        cmocka_unit_test(test_sampled_functions_are_accurate),
+        cmocka_unit_test(test_lengths_grow_from_regions), cmocka_unit_test(test_circles_have_the_given_number_of_edges),
+        cmocka_unit_test(test_channels_have_the_given_number_of_edges_across),
+        cmocka_unit_test(test_different_fields_have_different_hashes),
+        cmocka_unit_test(test_invalid_fields_are_refused), cmocka_unit_test(test_settings_accept_fields)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Faces against a naive twin: all triangles that hold a point, and what floods from them. */
+/* Faces of points, compared with a naive twin: all triangles that contain a point, and a flood from them. */
 #include "support.h"
 #include "triangle/mesh/locate.h"
 
@@ -9,7 +9,7 @@ static int32_t face_of(int32_t *root, int32_t t)
     return t;
 }
 
-/* face[t]: one triangle that stands for all that are reached from t without crossing a subsegment. */
+/* face[t]: one triangle that represents all triangles reachable from t without crossing a subsegment. */
 static int32_t *faces_of(const struct tri_mesh *mesh)
 {
     int32_t *root = malloc(((size_t)mesh->n_triangles + 1) * sizeof *root);
@@ -22,7 +22,7 @@ static int32_t *faces_of(const struct tri_mesh *mesh)
     return root;
 }
 
-/* Does the triangle, with its edges, hold q? */
+/* Returns true if the closed triangle contains q. */
 static bool holds(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
 {
     const int32_t *v = mesh->tri[t].v;
@@ -48,7 +48,7 @@ static void assert_faces(const struct tri_mesh *mesh, const struct tri_point *po
     free(faces);
 }
 
-/* Points everywhere: at random, on vertices, on segments, outside, beyond all range. */
+/* Random points everywhere: in the figure, on vertices, on segments, outside, and out of range. */
 static void fill(const struct tri_mesh *mesh, struct tri_point *points, int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};
@@ -79,7 +79,7 @@ static void test_tangles(void **state)
             struct tri_constrain_report report;
             struct tri_pslg pslg = support_tangle((enum support_kind)kind, 30, 15, seed);
             struct tri_mesh mesh = support_constrained(&pslg, &report);
-            int32_t n = seed % 2 ? 1000 : 5; /* many: the sweep is needed */
+            int32_t n = seed % 2 ? 1000 : 5; /* with many points the sweep is used */
             fill(&mesh, points, n, seed);
             assert_faces(&mesh, points, n);
             tri_mesh_free(&mesh);
@@ -87,7 +87,7 @@ static void test_tangles(void **state)
         }
 }
 
-/* k high and narrow rooms side by side, turned by a quarter where so wished; a point in each, in any order. */
+/* k high and narrow rooms side by side, optionally turned by a quarter. There is a point in each, in any order. */
 static void test_narrow_rooms(void **state)
 {
     (void)state;

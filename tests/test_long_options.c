@@ -1,4 +1,4 @@
-/* Words that begin with two dashes. */
+/* Options that begin with two dashes. */
 #include "drivers/mesh/long_options.h"
 
 #include <setjmp.h>
@@ -13,10 +13,10 @@ struct taken {
     struct long_options options;
     struct tri_switches switches;
     struct tri_error error;
-    int at;
+    int at; /* number of the word that follows */
 };
 
-/* Takes one option, which stands at word 1. second NULL: there is no further word. */
+/* Parses one option, which is word 1. second NULL: there is no other word. */
 static enum tri_status take(struct taken *t, char *first, char *second)
 {
     char program[] = "ptriangle";
@@ -81,7 +81,7 @@ static void test_memory(void **state)
     assert_string_equal(t.options.scratch, "/tmp");
 }
 
-/* A batch system's number counts where nobody asked for another. */
+/* The number of threads of a batch system is used unless the user gives a number. */
 static void test_threads_of_a_batch_system(void **state)
 {
     (void)state;
@@ -105,7 +105,7 @@ static void test_threads_of_a_batch_system(void **state)
     unsetenv("SLURM_CPUS_PER_TASK");
 }
 
-/* Bounds become switches, exponents and all. */
+/* Bounds become switches, also if they have exponents. */
 static void test_bounds(void **state)
 {
     (void)state;

@@ -4,27 +4,27 @@
 
 #include "support.h"
 
-/* An input and bounds; `target` triangles to the order, from which the area bound is drawn (0: none); below 0: lengths
- * ask for -target, threefold ones on the right. */
+/* An input and its bounds. target > 0: about this many triangles, from which the area bound is computed. 0: no bound.
+ * Below 0: edge lengths for about -target triangles, three times as long on the right. */
 struct trial {
-    const char *file;
+    const char *file; /* name of an input in the data folder */
     double angle, target, block;
     bool conforming, regions;
     int protect;
 };
 
-/* What a trial starts from: the constrained triangulation and the options of refinement. */
+/* The start of a trial: the constrained triangulation and the options of refinement. */
 struct start {
     struct tri_pslg pslg;
     struct tri_options options;
 };
 
-/* To be freed by trials_free, or start.pslg where there are no lengths. */
+/* The caller frees the result with trials_free, or only start.pslg if there are no edge lengths. */
 struct start trials_start_of(const struct trial *trial);
 
 void trials_free(struct start *start);
 
-/* The mesh before refinement. */
+/* Returns the mesh before refinement. */
 struct tri_mesh trials_coarse_mesh(const struct start *start);
 
 #endif

@@ -1,9 +1,8 @@
 #!/bin/sh
-# Python wheels for the systems for which a Linux machine can build. One wheel per system serves all versions of Python
-# from 3.9 on. For Linux the compiler is zig from PyPI, which includes the C libraries; for Windows it is mingw-w64
-# (tools/setup.sh windows). Wheels for macOS are built by .github/workflows/wheels.yml on macOS machines.
+# Python wheels. One wheel per system serves all versions of Python from 3.9 on. For Linux and macOS the compiler is zig
+# from PyPI, which includes their C libraries; for Windows it is mingw-w64 (tools/setup.sh windows).
 # Usage: tools/wheels.sh [FOLDER] [SYSTEM...]     default: build/wheels and all systems
-#   Systems: manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
+#   Systems: manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 macos_x86_64 macos_arm64 win_amd64
 # The wheels are written to FOLDER/dist. The first build for a system compiles its C and C++ libraries, which takes some
 # minutes on one core. Later builds take one minute each.
 set -eu
@@ -11,17 +10,21 @@ cd "$(dirname "$0")/.."
 root=$PWD
 work=$root/build/wheels
 case ${1:-} in
-'' | manylinux* | musllinux* | win*) ;;
+'' | manylinux* | musllinux* | macos* | win*) ;;
 *) work=$1; shift ;;
 esac
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
-[ $# -gt 0 ] || set -- manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 win_amd64
+systems="manylinux_x86_64 manylinux_aarch64 musllinux_x86_64 musllinux_aarch64 macos_x86_64 macos_arm64 win_amd64"
+# shellcheck disable=SC2086 # words
+[ $# -gt 0 ] || set -- $systems
 
 triple() { # zig's name of the system, with the oldest C library that the wheel supports
     case $1 in
     manylinux_*) echo "${1#manylinux_}-linux-gnu.2.17" ;;
     musllinux_*) echo "${1#musllinux_}-linux-musl" ;;
+    macos_arm64) echo aarch64-macos.11.0 ;;
+    macos_x86_64) echo x86_64-macos.11.0 ;;
     win_amd64) ;;
     *) echo "wheels: no system $1" >&2; return 2 ;;
     esac
@@ -31,6 +34,7 @@ tag() { # the wheel's platform tag (PEP 600 and 656)
     case $1 in
     manylinux_*) echo "manylinux_2_17_${1#manylinux_}" ;;
     musllinux_*) echo "musllinux_1_1_${1#musllinux_}" ;;
+    macos_*) echo "macosx_11_0_${1#macos_}" ;;
     win_*) echo "$1" ;;
     esac
 }
@@ -44,8 +48,10 @@ toolchain() { # toolchain SYSTEM FOLDER: writes CMake's description of the compi
         printf '#!/bin/sh\nexec "%s" -m ziglang %s %s "$@"\n' "$python" "$driver" "$target" >"$2/$driver"
         chmod +x "$2/$driver"
     done
+    kernel=Linux
+    case $1 in macos_*) kernel=Darwin ;; esac
     cat >"$2/toolchain.cmake" <<END
-set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_NAME $kernel)
 set(CMAKE_SYSTEM_PROCESSOR ${1#*_})
 set(CMAKE_C_COMPILER "$2/cc")
 set(CMAKE_CXX_COMPILER "$2/c++")
@@ -57,6 +63,8 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_EXE_LINKER_FLAGS_INIT -s)
 set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
 END
+    # No file is installed whose paths must be changed.
+    [ $kernel = Linux ] || echo "set(CMAKE_INSTALL_NAME_TOOL true)" >>"$2/toolchain.cmake"
 }
 
 python=$work/venv/bin/python

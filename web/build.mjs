@@ -7,7 +7,7 @@ import { buildSync } from "esbuild";
 const bundle = (entry, define = {}) =>
   buildSync({ entryPoints: [entry], bundle: true, minify: true, write: false, format: "iife", target: "es2022", define,
     charset: "utf8", legalComments: "none" }).outputFiles[0].text;
-/** Comments of a .poly file are not needed. */
+/** Removes comments of a .poly file. */
 const figure = (name) => readFileSync(join(process.env.DATA, name), "utf8").split("\n")
   .map((line) => line.replace(/#.*/, "").trim().replace(/\s+/g, " ")).filter(Boolean).join("\n") + "\n";
 const examples = [

@@ -1,5 +1,5 @@
 # Toolchain: programs for Windows 10 and newer on x86-64, made on Linux by mingw-w64 (Debian:
-# g++-mingw-w64-x86-64-posix). They need no library beside those of the system.
+# g++-mingw-w64-x86-64-posix). They need only libraries of the system.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

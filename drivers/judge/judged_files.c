@@ -1,4 +1,4 @@
-/* The files of a mesh on trial. */
+/* Reads the files of a mesh to check. */
 #include "drivers/judge/judged_files.h"
 
 #include <inttypes.h>
@@ -12,10 +12,10 @@
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
 
-/* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
+/* Bytes of memory for each byte of text: the text, its arrays, and the memory of the checker. */
 #define TEXT_SHARE 5.0
-#define UNLISTED_SHARE 14.0 /* without a .poly file, should the mesh be full of holes */
-#define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
+#define UNLISTED_SHARE 14.0 /* without a .poly file, if the mesh is full of holes */
+#define BOUNDARY_SHARE 10.0 /* for a .poly file, if all subsegments bound the mesh */
 
 static bool ends_in(const char *path, const char *suffix)
 {
@@ -40,7 +40,7 @@ static double size_of(const char *path)
     return path != NULL && tri_path_look(path, &facts) ? (double)facts.size : 0;
 }
 
-/* The input's text is read into memory. */
+/* Reads the text of the input into memory. */
 static enum tri_status check_input_size(const struct judged_ask *ask, struct tri_error *error)
 {
     const double size = size_of(ask->input);
@@ -95,8 +95,8 @@ static int64_t least_extra(const struct tri_elements *e)
     return least;
 }
 
-/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last.
- * Of the input's points fewer may be there (-j). */
+/* Leaves out the midpoints of six-node triangles, which have the highest numbers. The remaining points can be corners.
+ * There may be fewer than the input has (-j). */
 static void leave_out_nodes(struct judged_files *f)
 {
     const int64_t first_node = f->text.given != 0 ? f->text.least_middle : least_extra(&f->elements);
@@ -107,12 +107,12 @@ static void leave_out_nodes(struct judged_files *f)
             n = f->elements.corners[i] >= n ? f->elements.corners[i] + 1 : n;
         f->arrays.n_points = (int32_t)n;
         f->source.n_points = n;
-    } else if (f->source.n_points < n) { /* of scratch files */
+    } else if (f->source.n_points < n) { /* for points in scratch files */
         f->source.n_points = n;
     }
 }
 
-/* Would the text files, and what works on them, fit into so many bytes of memory? */
+/* Returns true if the text files, with the memory for checking them, fit into this number of bytes. */
 static bool fits(const char *base, double memory)
 {
     enum { POLY, NODE, ELE, NEIGH, N_SUFFIXES };
@@ -160,7 +160,7 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
 
 /* --- an HDF5 file, in slices */
 
-/* The last one of each triangle. */
+/* Reads the last attribute of each triangle. */
 static enum tri_status read_attributes(const struct tri_h5 *h5, int64_t first, int64_t n, double *out,
                                        struct tri_error *error)
 {
@@ -184,7 +184,7 @@ static enum tri_status read_slice(void *user, enum tri_check_array array, int64_
         [TRI_CHECK_SEGMENT_ENDS] = TRI_H5_OF_SEGMENTS,
         [TRI_CHECK_SEGMENT_MARKERS] = TRI_H5_OF_SEGMENT_MARKERS,
         [TRI_CHECK_POINT_ATTRIBUTES] = TRI_H5_OF_POINT_ATTRIBUTES,
-    }; /* of others there are none */
+    }; /* other formats have none */
     const struct tri_h5 *h5 = user;
     return array == TRI_CHECK_ATTRIBUTES ? read_attributes(h5, first, n, out, error)
                                          : tri_h5_read(h5, kinds[array], first, n, out, error);
@@ -216,12 +216,12 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     return TRI_OK;
 }
 
-/* --- whatever it is */
+/* --- any format */
 
 static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
 
-/* NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is the base of these where mesh.14.node is
- * there, but no mesh.14. */
+/* Returns the format of the file; NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is a base
+ * name if mesh.14.node exists and mesh.14 does not. */
 static const struct tri_format *format_of(const struct judged_ask *ask)
 {
     const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
@@ -233,7 +233,7 @@ static const struct tri_format *format_of(const struct judged_ask *ask)
     return is_base ? NULL : format;
 }
 
-/* May a file that is read whole, with what works on it, take so much? */
+/* Checks that a file that is read as a whole fits into memory, with the memory for checking it. */
 static enum tri_status check_size(const char *path, double memory, struct tri_error *error)
 {
     const double size = size_of(path);
@@ -244,7 +244,7 @@ static enum tri_status check_size(const char *path, double memory, struct tri_er
                     tri_size_text(size).text, tri_size_text(TEXT_SHARE * size).text, tri_size_text(memory).text);
 }
 
-/* Where a format keeps the boundary alone, which segments there are is not known. */
+/* If a format stores only the boundary, the segments inside are not known. */
 static enum tri_status read_format(struct judged_files *f, const struct judged_ask *ask,
                                    const struct tri_format *format, struct tri_error *error)
 {

@@ -9,11 +9,11 @@
 #include "triangle/base/system.h"
 #include "triangle/text/text.h"
 
-enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows of them at most */
+enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text in a stretch; most rows in it */
 
-/* --- rows of numbers, one after the other, with nothing between */
+/* --- rows of numbers, one after the other without gaps */
 
-/* In that folder; NULL: in memory. */
+/* Opens rows in a file of that folder; NULL: in memory. */
 static enum tri_status open_rows(struct scratch *s, const char *folder, size_t width, struct tri_error *error)
 {
     *s = (struct scratch){.file = folder ? tri_scratch_file(folder) : TRI_NO_FILE, .width = width};
@@ -22,7 +22,7 @@ static enum tri_status open_rows(struct scratch *s, const char *folder, size_t w
     return TRI_OK;
 }
 
-/* At the end, any number of times; then they are read. */
+/* Appends rows, any number of times; then they are read. */
 static enum tri_status append_rows(struct scratch *s, const void *rows, int64_t n, struct tri_error *error)
 {
     const int64_t at = s->n * (int64_t)s->width, size = n * (int64_t)s->width;
@@ -55,7 +55,7 @@ static void close_rows(struct scratch *s)
 
 /* --- text */
 
-/* Rows of the stretch in hand: of one table, in the arrays that it has. */
+/* Rows of one table in the current stretch of text, in the arrays that the table has. */
 struct rows {
     struct judged_text *text;
     struct tri_window *window;
@@ -63,10 +63,10 @@ struct rows {
     double *reals;    /* points, or attributes */
     double *further;  /* attributes of points */
     int64_t *numbers; /* corners, neighbours or ends */
-    int64_t *middles; /* nodes amid edges */
+    int64_t *middles; /* midpoints of edges */
     int32_t *markers;
-    int64_t fields[N_FIELDS]; /* of the header */
-    int64_t largest;  /* corner so far */
+    int64_t fields[N_FIELDS]; /* numbers of the header */
+    int64_t largest;  /* largest corner so far */
     enum tri_check_array array;
 };
 
@@ -77,7 +77,7 @@ static enum tri_status read_header(struct rows *r, int n, const char *nouns, str
     enum tri_status status = tri_window_next(r->window, &fields, &found, error);
     const char *name = r->window->text.name;
     int64_t line = r->window->cursor.line;
-    if (!status && !found) /* in an empty file, too, on a line */
+    if (!status && !found) /* errors have a line number, also in an empty file */
         return tri_fail(error, TRI_BAD_INPUT, name, line > 0 ? line : 1,
                         "unexpected end of file: the number of %s is missing", nouns);
     for (int i = 0; i < n && !status; i++) {
@@ -99,7 +99,7 @@ static enum tri_status read_header(struct rows *r, int n, const char *nouns, str
 
 /* --- rows */
 
-/* The last one stays; or all do, in n places. */
+/* Keeps the last field, or all of them, in n places. */
 static const char *parse_attributes(struct tri_fields *fields, int64_t n, double *last, bool all)
 {
     for (int64_t i = 0; i < n; i++)
@@ -117,7 +117,7 @@ static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
     return fault || r->fields[3] <= 0 ? fault : tri_fields_marker(fields, &r->markers[i]);
 }
 
-/* A number that counts from the base; beyond the vertices it stays so. */
+/* Reads a number that counts from the base. A number beyond the vertices is kept. */
 static enum tri_field parse_number(struct tri_fields *fields, int64_t base, int64_t *out)
 {
     const enum tri_field field = tri_fields_integer(fields, out);
@@ -129,7 +129,7 @@ static const char *parse_element(void *user, size_t i, struct tri_fields *fields
 {
     struct rows *r = user;
     int64_t *corner = r->numbers + 3 * i, *middle = r->middles + 3 * i, extra;
-    tri_fields_skip(fields); /* its number */
+    tri_fields_skip(fields); /* the row's own number */
     for (int k = 0; k < 3; k++) {
         const enum tri_field field = parse_number(fields, r->text->base, &corner[k]);
         if (field != TRI_FIELD_GOOD)
@@ -152,7 +152,7 @@ static const char *parse_element(void *user, size_t i, struct tri_fields *fields
 static const char *parse_segment(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
-    tri_fields_skip(fields); /* its number */
+    tri_fields_skip(fields); /* the row's own number */
     for (size_t end = 0; end < 2; end++) {
         const enum tri_field field = parse_number(fields, r->text->base, &r->numbers[2 * i + end]);
         if (field == TRI_FIELD_BAD)
@@ -167,7 +167,7 @@ static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fiel
 {
     struct rows *r = user;
     int64_t value;
-    tri_fields_skip(fields); /* its number */
+    tri_fields_skip(fields); /* the row's own number */
     for (size_t k = 0; k < 3; k++) {
         if (tri_fields_integer(fields, &value) != TRI_FIELD_GOOD)
             return "lacks a neighbor";
@@ -224,7 +224,7 @@ static enum tri_status read_table(struct rows *r, enum tri_check_array array, co
     return tri_window_table(r->window, &table, nouns, ROWS, flush, error);
 }
 
-/* Notes that the array is there, and opens its file. */
+/* Marks the array as given, and opens its file. */
 static enum tri_status open_array(struct judged_text *t, enum tri_check_array array, size_t width, const char *folder,
                                   struct tri_error *error)
 {
@@ -245,7 +245,7 @@ static enum tri_status detect_base(struct rows *r, struct tri_error *error)
     return status;
 }
 
-/* A few may be missing from every record. */
+/* A few fields may be missing in every record. */
 static enum tri_status check_attributes(const struct rows *r, struct tri_error *error)
 {
     enum { FREE_ATTRIBUTES = 64 };
@@ -262,7 +262,7 @@ static enum tri_status check_attributes(const struct rows *r, struct tri_error *
     return TRI_OK;
 }
 
-/* Room for those of as many points as may be in hand. */
+/* Makes room for the points of the current stretch. */
 static enum tri_status open_attributes(struct rows *r, const char *folder, struct tri_error *error)
 {
     const int64_t n = r->fields[2], rows = r->fields[0] < ROWS ? r->fields[0] : ROWS;
@@ -278,7 +278,7 @@ static enum tri_status open_attributes(struct rows *r, const char *folder, struc
     return n == 0 ? TRI_OK : open_array(r->text, TRI_CHECK_POINT_ATTRIBUTES, (size_t)n * sizeof(double), folder, error);
 }
 
-/* The header has been read: count, dimension, attributes, markers. */
+/* Handles the header of points: count, dimension, attributes, markers. */
 static enum tri_status read_vertices(struct rows *r, const char *folder, struct tri_error *error)
 {
     struct judged_text *t = r->text;
@@ -332,7 +332,7 @@ static enum tri_status read_ele(struct rows *r, const char *folder, struct tri_e
         status = open_array(t, TRI_CHECK_MIDDLES, 3 * sizeof(int64_t), folder, error);
     if (!status)
         status = read_table(r, TRI_CHECK_CORNERS, "triangle", "triangles", parse_element, error);
-    if (r->fields[1] > 3) /* nodes amid edges are made last */
+    if (r->fields[1] > 3) /* midpoints of edges have the highest numbers */
         t->n_points = r->largest + 1;
     return status;
 }
@@ -341,14 +341,15 @@ static enum tri_status read_neigh(struct rows *r, const char *folder, struct tri
 {
     struct judged_text *t = r->text;
     enum tri_status status = read_header(r, 1, "triangles", error);
-    t->stale_neighbors = !status && r->fields[0] != t->array[TRI_CHECK_CORNERS].n; /* left there by an earlier run */
+    t->stale_neighbors = !status && r->fields[0] != t->array[TRI_CHECK_CORNERS].n; /* the file remains from an
+                                                                                      earlier run */
     if (status || t->stale_neighbors)
         return status;
     status = open_array(t, TRI_CHECK_NEIGHBORS_GIVEN, 3 * sizeof(int64_t), folder, error);
     return status ? status : read_table(r, TRI_CHECK_NEIGHBORS_GIVEN, "triangle", "triangles", parse_neighbors, error);
 }
 
-/* Reads one file, if there is one. */
+/* Reads one file, if it exists. */
 static enum tri_status read_file(struct rows *r, const char *path, const char *folder,
                                  enum tri_status (*take)(struct rows *r, const char *folder, struct tri_error *error),
                                  struct tri_error *error)
@@ -365,7 +366,7 @@ static enum tri_status read_file(struct rows *r, const char *path, const char *f
     return status;
 }
 
-/* A .poly file, up to its segments, with vertices of its own if it has some. */
+/* Reads a .poly file up to its segments, with its own vertices if it has any. */
 static enum tri_status read_poly(struct rows *r, const char *folder, struct tri_error *error)
 {
     memcpy(r->fields, (int64_t[N_FIELDS]){0, 2, 0, 0}, sizeof r->fields);
@@ -373,7 +374,7 @@ static enum tri_status read_poly(struct rows *r, const char *folder, struct tri_
     if (!status && r->fields[0] > 0)
         status = read_vertices(r, folder, error);
     else if (!status && r->text->given == 0)
-        return TRI_OK; /* once more, when the .node file has been read */
+        return TRI_OK; /* read again, after the .node file */
     return status ? status : read_segments(r, folder, error);
 }
 

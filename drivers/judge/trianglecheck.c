@@ -1,5 +1,5 @@
-/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
- * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
+/* trianglecheck: checks a mesh in files, made by any program. triangle/check/check.h does the checking; this file
+ * handles arguments, files and printing. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -20,66 +20,69 @@ enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 
 static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 
-static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+static const char help[] = /* cmake/help.awk turns it into a manual page */
     "\n"
-    "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
-    "that in one file that ptriangle has written, .h5, .vtkhdf, .vtu, .msh, .2dm, .14 or .grd, where BASE is its\n"
-    "name. The last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared.\n"
-    "Vertices in no triangle are a warning, not a fault. Of triangles with six nodes each edge has one node, half\n"
-    "the way along it, with its subsegment's marker and half the way between the attributes of its ends.\n"
+    "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh if they exist. BASE can\n"
+    "also be the name of one file that ptriangle has written: .h5, .vtkhdf, .vtu, .msh, .2dm, .14 or .grd. The last\n"
+    "three contain only the boundary. For them subsegments and regions are not compared, and circles only with -D.\n"
+    "Vertices in no triangle cause a warning, not a fault. In triangles with six nodes each edge must have one node\n"
+    "at its midpoint. This node has the marker of the edge's subsegment and the mean of the attributes at both ends.\n"
     "\n"
-    "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
-    "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
-    "                       they are outside the mesh, or within rounding of its boundary; its hole points lie\n"
-    "                       outside, no vertex is lost. Its vertices keep their attributes, if the mesh has some;\n"
-    "                       those of others lie in the range of the input's\n"
-    "  -q, --min-angle Q    angle bound in degrees; smaller angles are faults unless a small input angle explains\n"
-    "                       them: the triangle touches a vertex where two subsegments meet at less than 60\n"
-    "                       degrees (or a triangle next to it does), or has corners on both of them\n"
-    "      --small-input-angle X  what is small there, instead of 60\n"
-    "  -b, --max-bad N      instead: up to N triangles may be below the angle bound, for whatever reason\n"
+    "  -p, --poly FILE      compare with the input of the mesh, a .poly or .node file. Its vertices must come first,\n"
+    "                       unmoved, and none may be lost. Its segments must be chains of subsegments, except\n"
+    "                       outside the mesh or within rounding error of its boundary. Its hole points must lie\n"
+    "                       outside. Its vertices keep their attributes, if the mesh has any; attributes of new\n"
+    "                       vertices lie in the range of the input's\n"
+    "  -q, --min-angle Q    angle bound in degrees. A smaller angle is a fault unless a small input angle explains\n"
+    "                       it. It does if the triangle, or one next to it, touches a vertex where two subsegments\n"
+    "                       meet at less than 60 degrees, or if the triangle has corners on both subsegments\n"
+    "      --small-input-angle X  limit for small input angles, instead of 60 degrees\n"
+    "  -b, --max-bad N      allow up to N triangles below the angle bound, instead of looking for reasons\n"
     "  -a, --max-area A     area bound\n"
-    "  -D, --conforming     all triangles truly Delaunay, diametral circles of subsegments empty (default:\n"
-    "                       constrained)\n"
-    "      --no-delaunay    no check of circles\n"
-    "  -c, --convex         the mesh fills the convex hull of the vertices, within 16 units in the last place of\n"
-    "                       the largest coordinate: vertices on the hull's edges are rounded\n"
-    "      --keep-hull      made with -c: the mesh may end at the convex hull of the vertices, not at segments alone\n"
-    "  -j, --jettisoned     unused input vertices were dropped: know input vertices by their coordinates\n"
+    "  -D, --conforming     all triangles must be Delaunay, and diametral circles of subsegments empty (default:\n"
+    "                       constrained Delaunay)\n"
+    "      --no-delaunay    do not check circles\n"
+    "  -c, --convex         the mesh must fill the convex hull of the vertices, within 16 units in the last place of\n"
+    "                       the largest coordinate, because vertices on edges of the hull are rounded\n"
+    "      --keep-hull      the mesh was made with -c: it may end at the convex hull of the vertices, not only at\n"
+    "                       segments\n"
+    "  -j, --jettisoned     unused input vertices were left out: find input vertices by their coordinates\n"
     "      --keep-holes     hole points were ignored\n"
-    "      --any-holes      faces may be empty without a hole point: found otherwise\n"
-    "  -r, --refined        made by refining a mesh: hole points were ignored, unused vertices inside are no fault,\n"
-    "                       and the mesh may end anywhere\n"
+    "      --any-holes      faces may be empty without a hole point: another rule selected the holes\n"
+    "  -r, --refined        the mesh was made by refining a mesh: hole points were ignored, unused vertices inside\n"
+    "                       are no fault, and the mesh may end anywhere\n"
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
     "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
-    "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
-    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1000), or 60% of what is free (default:\n"
-    "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
-    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory:\n"
-    "                       what takes too much of that is refused\n"
-    "      --scratch DIR    folder for what does not fit then (default: TMPDIR, else /tmp): text files as numbers,\n"
-    "                       20 bytes a vertex and 24 a triangle, more with attributes, neighbours, six nodes\n"
-    "      --json           report in JSON on standard output, instead of lines\n"
+    "      --threads N      use at most N threads (default: OMP_NUM_THREADS, otherwise all cores). The result is the\n"
+    "                       same\n"
+    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1000), or 60% of the free memory\n"
+    "                       (default: 80%). A larger mesh is checked part by part, with the same result. The\n"
+    "                       boundary, segments and input, and a byte for each vertex, always stay in memory. If\n"
+    "                       these do not fit, the program reports an error\n"
+    "      --scratch DIR    folder for data that do not fit into memory (default: TMPDIR, otherwise /tmp): the\n"
+    "                       numbers of text files, 20 bytes per vertex and 24 per triangle, more with attributes,\n"
+    "                       neighbours or six nodes\n"
+    "      --json           print the report as JSON instead of lines\n"
     "      --quiet          print faults only\n"
-    "      --version, --help  name and version; this help\n"
+    "      --version, --help  print name and version; print this help\n"
     "\n"
-    "Exit code: 0 no fault, 1 faults, 2 wrong usage or unreadable files (vertex numbers in BASE.ele that do not\n"
-    "exist are found on reading). Numbers printed count as the files do.\n";
+    "Exit code: 0 for no fault, 1 for faults, 2 for wrong usage or unreadable files (including vertex numbers in\n"
+    "BASE.ele that do not exist). Printed numbers count from 0 or 1, as the files do.\n";
 
 struct settings {
-    const char *base; /* name without suffix, or of one file */
-    bool is_base;     /* a suffix has been cut off */
+    const char *base; /* base name, or name of one file */
+    bool is_base;     /* a suffix was removed */
     const char *input;
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
     int64_t threads; /* 0: not given */
-    double memory, memory_share; /* one of them, or 0: not given */
-    const char *scratch;         /* NULL: not given */
+    double memory, memory_share; /* bytes, or a share of the free memory; 0: not given */
+    const char *scratch;         /* folder; NULL: not given */
 };
 
-/* --- judging */
+/* --- checking */
 
-/* Bytes that the process may use: the number asked for, or the share of what there is; by default most of that. */
+/* Returns the bytes that the process may use: the requested number, or a share of the free memory. */
 static double memory_to_use(const struct settings *s)
 {
     enum { USUAL_PERCENT = 80 };
@@ -88,10 +91,10 @@ static double memory_to_use(const struct settings *s)
     return tri_memory_left() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
-/* Of the program itself: code, stacks, what allocators keep. */
+/* Bytes for the program itself: code, stacks, reserves of allocators. */
 static const double TO_COME = 4e6;
 
-/* What stays in memory beside the parts leaves room for them, and for the program itself, or the trial is refused. */
+/* Checks that the data that stay in memory leave room for the parts and for the program itself. */
 static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
 {
     const double needed = tri_check_bound(&f->source, tri_check_least_bytes(&f->source, input));
@@ -117,7 +120,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     options.base = f->base;
     options.renumbered = options.renumbered || f->for_solvers;
     if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
-        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
+        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* it is not known which edges inside are segments */
     if (f->source.n_triangles >= WORTH_THREADS) {
         options.executor = executor;
         options.n_threads = threads;
@@ -128,7 +131,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
 }
 
-/* --- what the report says, in lines or in JSON */
+/* --- the report as lines or JSON */
 
 static void print_items(const struct tri_check_report *r, bool quiet)
 {
@@ -167,7 +170,7 @@ static void print_summary(const struct settings *s, const struct judged_files *f
     }
 }
 
-/* Points that no triangle uses, which make a solver's matrix singular. 0 without triangles. */
+/* Returns the number of unused points, which make the matrix of a solver singular; 0 without triangles. */
 static int64_t unused_points(const struct judged_files *f, const struct tri_check_report *r)
 {
     return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;
@@ -197,7 +200,7 @@ static void print_json_string(const char *text)
     putchar('"');
 }
 
-/* JSON has no infinities. */
+/* JSON has no infinity. */
 static void print_json_real(const char *key, double value)
 {
     printf(isfinite(value) ? ", \"%s\": %.17g" : ", \"%s\": null", key, value);
@@ -274,7 +277,7 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-/* A whole number from 0 on. */
+/* Reads a whole number >= 0. */
 static bool take_count(const char *text, int64_t *value)
 {
     const char *end = text + strlen(text);
@@ -286,7 +289,7 @@ static bool take_real(const char *text, double *value)
     return words_take_real(text, "", NULL, 0, DBL_MAX, value);
 }
 
-/* Applies an option without value; false: it is none. */
+/* Applies an option without value. Returns false if there is no such option. */
 static bool apply_flag(struct settings *s, int option)
 {
     switch (option) {
@@ -310,7 +313,7 @@ static bool apply_flag(struct settings *s, int option)
     return true;
 }
 
-/* Applies one option; false: not an option, or no value for it. */
+/* Applies one option. Returns false if the option or its value is invalid. */
 static bool apply(void *settings, int option)
 {
     struct settings *s = settings;
@@ -327,7 +330,7 @@ static bool apply(void *settings, int option)
     }
 }
 
-/* 0: go on; < 0: done, with success; > 0: exit code. */
+/* Returns 0 to go on, < 0 if the program is done, > 0: the exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,

@@ -1,4 +1,4 @@
-/* The command line, word by word, and the rules of file names. */
+/* Parses the command line word by word, and derives the names of input and output files. */
 #include "drivers/mesh/arguments.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ char *next_iteration(const char *name)
         return tri_joined(name, ".1");
     for (; n > 1 && *digits == '0'; n--)
         digits++;
-    size_t kept = n; /* but for nines at the end, which become zeros */
+    size_t kept = n; /* digits before trailing nines, which become zeros */
     while (kept > 0 && digits[kept - 1] == '9')
         kept--;
     char *next = malloc(strlen(name) + 2), *at = next;
@@ -55,7 +55,8 @@ static bool cut_suffix(char *name, const char *suffix)
     return true;
 }
 
-/* A suffix says what the input is; mesh.14, if there is no such file, is a base. */
+/* Removes the suffix of the input file and sets the switches that it implies. If there is no file mesh.14, the name
+ * mesh.14 is a base name. */
 static void apply_suffix(struct arguments *arguments)
 {
     char *name = arguments->input;
@@ -100,100 +101,102 @@ void arguments_free(struct arguments *arguments)
     arguments->input = arguments->output = NULL;
 }
 
-/* --- Texts of help, in the form that cmake/help.awk makes manual pages of. Kept in paragraphs, since a compiler need
- * not take strings of any length. */
+/* --- Help texts. cmake/help.awk turns them into manual pages, and its head describes the format. The text is split
+ * into paragraphs because compilers may limit the length of a string. */
 
 static const char *const paragraphs[] = {
-    "Switches may be joined (-pq30a0.5e) and may stand before or behind the file.\n",
+    "Switches may be joined (-pq30a0.5e). They may stand before or after the input file.\n",
 
     "Input\n"
     "  file.node  points\n"
-    "  file.poly  points, segments, holes, regions (sets -p)\n"
+    "  file.poly  points, segments, holes and regions (sets -p)\n"
     "  file.ele   triangles (sets -r)\n"
-    "  file.area  area bound of each triangle (sets -r and -a)\n"
+    "  file.area  the largest area allowed for each triangle (sets -r and -a)\n"
     "  file.msh   a mesh and its segments, as ptriangle writes them (sets -r and -p); also .vtu, .2dm, .14, .grd\n"
-    "Output goes to file.1.node, file.1.ele and so on; the next run of file.1 writes file.2.\n",
+    "The results are written to file.1.node, file.1.ele and so on. A run with file.1 as input writes file.2.\n",
 
     "What to make\n"
-    "  -p      the input is a planar straight line graph (.poly): keep its segments, empty its holes\n"
-    "  -r      the input is a mesh (.node, .ele): refine it; with -p, keep the segments of its .poly\n"
-    "  -c      keep everything inside the convex hull; its edges become segments\n"
+    "  -p      read a planar straight line graph (.poly): keep its segments, empty its holes\n"
+    "  -r      read a mesh (.node, .ele) and refine it; with -p, keep the segments of its .poly file\n"
+    "  -c      keep all triangles inside the convex hull; the edges of the hull become segments\n"
     "  -D      conforming: every triangle is Delaunay, not only constrained Delaunay\n"
     "  -O      ignore the holes\n"
-    "  -A      give triangles the attribute of the region they lie in\n"
-    "  -s      accepted; segments are recovered without further vertices in any case\n",
+    "  -A      give each triangle the attribute of its region\n"
+    "  -s      accepted without effect: recovering a segment never needs extra vertices\n",
 
     "Bounds\n"
-    "  -q      no angle below 20 degrees; -q30: below 30. Up to 28 is always reached except next to\n"
-    "          small angles of the input and to what is finer than 512 units in the last place of its\n"
-    "          largest coordinate. Of 133 real inputs 101 (76%) keep 36, 31 (23%) keep 38.\n"
-    "          A bound above 38 is treated as 38, with -D above 36 as 36\n"
-    "  -a0.5   no triangle larger than 0.5. The number has no exponent: -a1e-3 means -a1 -e\n"
-    "  -a      areas are bounded by the regions of the .poly file or, with -r, by the .area file\n"
+    "  -q      no angle below 20 degrees; -q30: below 30. Bounds up to 28 are always reached, except near small\n"
+    "          angles of the input and near details finer than 512 units in the last place of the largest\n"
+    "          coordinate. Of 133 real inputs, 101 (76%) reach 36 degrees and 31 (23%) reach 38.\n"
+    "          A bound above 38 is treated as 38. With -D, a bound above 36 is treated as 36\n"
+    "  -a0.5   no triangle larger than 0.5. The number must not have an exponent: -a1e-3 means -a1 -e\n"
+    "  -a      read area bounds from the regions of the .poly file or, with -r, from the .area file\n"
     "  --placement lattice|front|classic\n"
-    "          lattice (the default): if an area bound alone sets the size and the angle bound is at most 30\n"
-    "          degrees, new vertices lie in a hexagonal lattice, which takes a third fewer triangles. Above 30\n"
-    "          degrees, and with -r, as classic; with lengths (below) that vary, as front: new vertices grow over\n"
-    "          a front from the segments inwards, near-equilateral, at most for 30 degrees. classic leaves both out\n"
-    "  -u      a test of the caller's own; without effect on the command line\n"
-    "  -Y      do not put vertices on the boundary; -YY: nor on any segment\n"
-    "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",
+    "          where new vertices are placed. lattice (the default): in a hexagonal lattice, which needs a third\n"
+    "          fewer triangles. It applies if only an area bound sets the size and the angle bound is at most 30\n"
+    "          degrees. With lengths (below) that vary, lattice means front. With -r or above 30 degrees it means\n"
+    "          classic. front: vertices advance from the segments inwards and form nearly equilateral triangles,\n"
+    "          for angle bounds up to 30 degrees. classic: neither lattice nor front\n"
+    "  -u      a size test of the calling program; without effect on the command line\n"
+    "  -Y      insert no vertices on the boundary; -YY: on no segment\n"
+    "  -S100   insert at most 100 new vertices. Vertices where segments cross are not counted\n",
 
-    "Sizes (both forms: --size 500 and --size=500; up to 8 times --size and --size-near: the least length counts)\n"
+    "Sizes (--size 500 or --size=500; at most 8 sources by --size and --size-near, the least length counts)\n"
     "  --size H | FILE\n"
-    "          edges shall have about the length H, or at each place that of a field: a raster (.asc; .npy as\n"
-    "          FILE.npy@XMIN,YMIN,XMAX,YMAX, the places of its first and its last value) or a mesh with a length\n"
-    "          at each point (.node and .ele; .msh of Gmsh and of JIGSAW; .pos; .vtu, .2dm, .14, .grd). Beyond the\n"
-    "          field the nearest length counts. Without -q the angle bound is 20 degrees, as for -q\n"
+    "          make edges about as long as H, or as the length that FILE gives at each place. FILE is a raster\n"
+    "          (.asc; or .npy as FILE.npy@XMIN,YMIN,XMAX,YMAX, the positions of its first and last value) or a mesh\n"
+    "          with a length at each point (.node and .ele; .msh of Gmsh and of JIGSAW; .pos; .vtu, .2dm, .14,\n"
+    "          .grd). Outside the field the nearest length counts. Without -q the angle bound is 20 degrees\n"
     "  --size-near MARKER:H[,GROWTH]\n"
-    "          edges of length H at segments with this marker, growing by GROWTH for a distance of 1 (default:\n"
-    "          that of --gradation)\n"
+    "          make edges of length H at the segments with this marker. Away from them the length grows by GROWTH\n"
+    "          per unit of distance (default: the value of --gradation)\n"
     "  --elements-across N\n"
-    "          room for N lengths between boundaries, or borders of regions, that face each other: channels\n"
+    "          fit N edge lengths across channels: between boundaries, or borders of regions, that face each other\n"
     "  --per-circle N\n"
-    "          where segments follow a curve, N lengths go around a circle of its curvature\n"
+    "          on curved boundaries, fit N edge lengths around a circle of the same curvature\n"
     "  --gradation G\n"
-    "          lengths of all sources grow by no more than G for a distance of 1 (0.2; inf: no limit).\n"
+    "          let the lengths of all sources grow by at most G per unit of distance (default 0.2; inf: no limit).\n"
     "          The default does not limit a GROWTH\n"
     "  --min-size H, --max-size H\n"
-    "          no length that is asked for is below, or above H. --max-size alone holds everywhere\n"
+    "          raise shorter lengths to H, or reduce longer ones to H. --max-size alone applies everywhere\n"
     "  --optimise N\n"
-    "          N passes of smoothing, which move new vertices inside regions to where triangles are best\n"
-    "          (default: 1 with lengths, else 0). Not beside -a, -D or -S\n",
+    "          run N passes of smoothing, which move new vertices inside regions to improve the triangles\n"
+    "          (default: 1 with lengths, otherwise 0). Cannot be combined with -a, -D or -S\n",
 
     "Output\n"
-    "  -e      also edges (.edge)\n"
-    "  -n      also neighbours of triangles (.neigh)\n"
-    "  -v      also the Voronoi diagram (.v.node, .v.edge)\n"
-    "  -g      also an Object File Format file (.off)\n"
-    "  -o2     six nodes a triangle: the corners and the middles of the edges\n"
-    "  -z      count from 0 where the input file does not say\n"
+    "  -e      also write the edges (.edge)\n"
+    "  -n      also write the neighbours of triangles (.neigh)\n"
+    "  -v      also write the Voronoi diagram (.v.node, .v.edge)\n"
+    "  -g      also write an Object File Format file (.off)\n"
+    "  -o2     six nodes per triangle: the corners and the midpoints of the edges\n"
+    "  -z      count from 0 if the input file does not say where it starts\n"
     "  -j      leave out vertices that no triangle uses\n"
     "  -B      no boundary markers\n"
-    "  -P -N -E  no .poly, .node, .ele file\n"
-    "  -I      no iteration number: results are called like the input, which is never overwritten\n",
+    "  -P -N -E  write no .poly, .node, .ele file\n"
+    "  -I      no iteration number: name the results like the input. The input file is never overwritten\n",
 
     "Other\n"
-    "  -Q      print nothing but errors\n"
+    "  -Q      print errors only\n"
     "  -V      print more; -VV: the same\n"
-    "  -C      check the mesh, and say what came of it\n"
-    "  -h, --help  this help\n"
-    "  --version   name and version\n"
+    "  -C      check the mesh and print the result\n"
+    "  -h, --help  print this help\n"
+    "  --version   print name and version\n"
     "  -i -F -l -X -w -W   accepted; the result does not depend on them\n",
 };
 
 static const char exit_codes[] =
-    "Exit code: 0; 1 after an error; 128 + n after signal n (one that would end a program: it ends within a\n"
-    "second and says how far it got). Files appear together, when all are complete and nothing can fail any\n"
-    "more: with any other code than 0 no file has been touched, but devices and pipes.\n";
+    "Exit code: 0 for success; 1 after an error; 128 + n after signal n. A signal that would end a program ends\n"
+    "the run within a second, and the run reports how far it got. All output files appear together once every\n"
+    "one is complete and nothing can fail any more. With any exit code other than 0 no file has changed. Devices\n"
+    "and pipes are the exception.\n";
 
-/* Where there are long options. */
+/* For programs with long options. */
 static const char further_exit_codes[] =
-    "Exit code: 0; 1 after an error; 124 when --time-limit is over; 128 + n after signal n (one that would end\n"
-    "a program: it ends within a second, with --checkpoint within five, and says how far it got, and what is\n"
-    "kept). Files appear together, when all are complete and nothing can fail any more: with any other code\n"
-    "than 0 no file has been touched, but partial meshes and checkpoints where they are asked for, and devices\n"
-    "and pipes.\n";
+    "Exit code: 0 for success; 1 after an error; 124 when --time-limit is over; 128 + n after signal n. A signal\n"
+    "that would end a program ends the run within a second, or within five with --checkpoint. The run then\n"
+    "reports how far it got and what is kept. All output files appear together once every one is complete and\n"
+    "nothing can fail any more. With any exit code other than 0 no file has changed. Exceptions are partial\n"
+    "meshes and checkpoints, if requested, and devices and pipes.\n";
 
 static void print_usage(const char *program)
 {
@@ -209,14 +212,14 @@ void help_usage(const char *program)
          "  -Q  quiet   -V  verbose                -h  all switches");
 }
 
-void help_full(const char *program, const char *where, const char *further)
+void help_full(const char *program, const char *where, const char *const *further)
 {
     print_usage(program);
     printf("\nMakes triangle meshes of plane figures %s: Delaunay triangulations of points, constrained\n"
-           "Delaunay triangulations of points and segments, and meshes whose angles and areas keep bounds.\n", where);
+           "Delaunay triangulations of points and segments, and meshes with bounds on angles and areas.\n", where);
     for (size_t i = 0; i < sizeof paragraphs / sizeof *paragraphs; i++)
         printf("\n%s", paragraphs[i]);
-    if (further)
-        printf("\n%s", further);
+    for (const char *const *part = further; part && *part; part++)
+        printf("%s%s", part == further ? "\n" : "", *part);
     printf("\n%s", further ? further_exit_codes : exit_codes);
 }

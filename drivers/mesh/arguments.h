@@ -1,4 +1,4 @@
-/* The command line of Triangle: words of switches, one input file, and what files are called because of them. */
+/* The command line of Triangle: arguments with switches, one input file, and the names of input and output files. */
 #ifndef DRIVERS_MESH_ARGUMENTS_H
 #define DRIVERS_MESH_ARGUMENTS_H
 
@@ -8,34 +8,36 @@
 #include "triangle/text/formats.h"
 
 struct arguments {
-    int argc; /* the words as given, for the comment in every file */
+    int argc; /* all arguments, for the comment in every output file */
     char **argv;
     struct tri_switches switches;
-    struct size_options sizes; /* --size and so on; all 0: nothing */
-    const char *file, *further; /* the first word that is no switch, and the last of several; NULL: there was none */
-    const struct tri_format *format; /* of the file, a mesh that another program reads as well; NULL: Triangle's */
+    struct size_options sizes; /* --size and related options; all 0: none */
+    const char *file, *further; /* the first argument that is no switch, and the last further one; NULL: none */
+    const struct tri_format *format; /* format of the file if other programs use it as well; NULL: Triangle's formats */
     char *input;      /* file without its suffix; suffixes are appended to this */
-    char *output;     /* the same for what is written */
+    char *output;     /* the same for output files */
 };
 
 struct arguments arguments_begin(int argc, char **argv);
 
-/* Takes one word: switches if it begins with a dash, otherwise the input file. */
+/* Reads one argument: switches if it begins with a dash, otherwise the input file. */
 void arguments_word(struct arguments *arguments, const char *word);
 
-/* Once all words are in: lets the file's suffix set its switches, and makes the names. TRI_BAD_INPUT: a second file, or
- * a number apart from its switch. TRI_NO_MEMORY. */
+/* Completes the arguments: the suffix of the file sets its switches, and the file names are made. TRI_BAD_INPUT: a
+ * second file, or a number that is separated from its switch. TRI_NO_MEMORY. */
 enum tri_status arguments_end(struct arguments *arguments, struct tri_error *error);
 
 void arguments_free(struct arguments *arguments);
 
-/* The name of the next iteration, malloc'ed; NULL: no memory. box -> box.1, box.9 -> box.10, d.1/box -> d.1/box.1. */
+/* Returns the name of the next iteration, malloc'ed; NULL: no memory. box -> box.1, box.9 -> box.10, d.1/box ->
+ * d.1/box.1. */
 char *next_iteration(const char *name);
 
-/* --- What -h prints, and what is printed where no input file is named. */
+/* --- Print the text of -h (help_full), or the short text for a command line without input file (help_usage). */
 
 void help_usage(const char *program);
-/* where it works: "on one core"; further: a paragraph about more options, or NULL. */
-void help_full(const char *program, const char *where, const char *further);
+/* where: completes "Makes triangle meshes ...", such as "on one core". further: a paragraph about more options, as
+ * parts that end with NULL; or NULL if there are none. */
+void help_full(const char *program, const char *where, const char *const *further);
 
 #endif

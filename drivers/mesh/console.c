@@ -1,4 +1,4 @@
-/* Printing to people and to scripts that search for lines. */
+/* Prints for people, and for scripts that search for lines. */
 #include "drivers/mesh/console.h"
 
 #include <inttypes.h>
@@ -21,7 +21,7 @@ void console_print(const struct console *console, const char *before, const char
     va_start(arguments, format);
     fputs(before, stdout);
     one_line_print(stdout, format, arguments);
-    fflush(stdout); /* whoever reads it from a pipe or a log sees each line at once */
+    fflush(stdout); /* readers of a pipe or a log see each line at once */
     va_end(arguments);
 }
 
@@ -41,7 +41,7 @@ void console_remark(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
-/* An error has been told, or that standard output is lost: nothing more is said of that. */
+/* An error has been printed, or the loss of standard output: no further message about output follows. */
 static bool told;
 
 void console_error(const struct console *console, const struct tri_error *error)

@@ -1,5 +1,5 @@
-/* All that the executables say. Lines, warnings and errors go to standard output, as Triangle's do; errors also to
- * standard error, once more and with file and line in front, unless that is the same place. */
+/* All output of the programs. Lines, warnings and errors go to standard output, as in Triangle. Errors also go to
+ * standard error, with file and line in front, unless both are the same place. */
 #ifndef DRIVERS_MESH_CONSOLE_H
 #define DRIVERS_MESH_CONSOLE_H
 
@@ -9,12 +9,12 @@
 #include "triangle/base/status.h"
 
 struct console {
-    const char *program; /* name, for errors */
-    bool quiet;          /* errors alone are printed */
+    const char *program; /* name of the program, for errors */
+    bool quiet;          /* print errors only */
     int verbosity;
 };
 
-enum { CONSOLE_SERIES_LINES = 10 }; /* of the warnings of one kind only the first few are worth a line */
+enum { CONSOLE_SERIES_LINES = 10 }; /* number of warnings of one kind that are printed */
 
 #if defined(__GNUC__)
 #define CONSOLE_FORMAT(text, first) __attribute__((format(printf, text, first)))
@@ -22,28 +22,29 @@ enum { CONSOLE_SERIES_LINES = 10 }; /* of the warnings of one kind only the firs
 #define CONSOLE_FORMAT(text, first)
 #endif
 
-/* Opens /dev/null in place of standard input, output or error where the caller left them closed: else the first file
- * that is opened would receive what is printed. To be called before anything else. */
+/* Opens /dev/null for standard input, output or error if the caller has closed them. Otherwise the first opened file
+ * would receive the output. To be called first. */
 void console_open(void);
 
-/* A line or a part of one behind some words, unless quiet; the caller ends the line. */
+/* Prints `before` and a line, or a part of one, unless quiet. The caller ends the line. */
 void console_print(const struct console *console, const char *before, const char *format, ...) CONSOLE_FORMAT(3, 4);
 #define console_say(console, ...) console_print(console, "", __VA_ARGS__)
 #define console_warn(console, ...) console_print(console, "Warning:  ", __VA_ARGS__)
 
-/* Of n warnings of a kind: a last line that tells how many were not said. */
+/* Prints how many of n warnings of a kind were not printed. */
 void console_series_end(const struct console *console, int64_t n, const char *what);
 
-/* A remark on standard error, also if quiet. */
+/* Prints a remark on standard error, also if quiet. */
 void console_remark(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 
 void console_error(const struct console *console, const struct tri_error *error);
 
-/* Flushes standard output. TRI_CANNOT_WRITE: some of it could not be written. A reader who went away before the end is
- * no error: he has seen what he wanted to see. */
+/* Flushes standard output. TRI_CANNOT_WRITE: a part could not be written. It is no error if the reader has closed the
+ * pipe. */
 enum tri_status console_flush(struct tri_error *error);
 
-/* The same as the last act of the program. False, after a word on standard error: output could not be written. */
+/* Flushes standard output as the last action of the program. Returns false, after a message on standard error, if a
+ * part could not be written. */
 bool console_close(const struct console *console);
 
 #endif

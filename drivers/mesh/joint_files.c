@@ -1,5 +1,5 @@
-/* Each exchange begins with an agreement, so that a rank that has failed is noticed at the next one; whoever has been
- * told of an error goes on to the end of its step. */
+/* Each exchange begins with an agreement, so a rank that has failed is noticed at the next one. A rank that learns of
+ * an error completes its current step. */
 #include "drivers/mesh/joint_files.h"
 
 #include <assert.h>
@@ -9,13 +9,13 @@
 
 #include "triangle/base/system.h"
 
-static char spooled[] = ""; /* no name, but places */
+static char spooled[] = ""; /* only positions, no names */
 
 static bool is_first(const struct joint_files *j) { return j->carrier->rank == 0; }
 
 static bool has(const struct joint_files *j, int i) { return j->ticket[i].path[0] != 0; }
 
-/* What this rank writes file i to. */
+/* Returns the output of this rank for file i. */
 static struct tri_output *output_of(struct joint_files *j, int i)
 {
     struct tri_output *const first[JOINT_TEXTS] = {j->text_options.node, j->text_options.ele, j->text_options.poly};
@@ -31,7 +31,7 @@ static enum tri_status no_memory(struct tri_error *error)
 
 /* --- opening */
 
-/* Tickets for all files that there are; false: for one there is none. */
+/* Makes tickets for all existing files. Returns false if one has no ticket. */
 static bool make_tickets(struct joint_files *j)
 {
     bool made = true;
@@ -61,7 +61,7 @@ static bool join_all(struct joint_files *j)
     return joined;
 }
 
-/* Tickets are void from now on. */
+/* Makes all tickets invalid. */
 static enum tri_status begin_files_again(struct joint_files *j, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -71,7 +71,7 @@ static enum tri_status begin_files_again(struct joint_files *j, struct tri_error
     return status;
 }
 
-/* Do all say yes? */
+/* Returns true if it is true on all ranks. */
 static enum tri_status ask_all(struct joint_files *j, bool yes, bool *all, enum tri_status status,
                                struct tri_error *error)
 {
@@ -130,7 +130,7 @@ static enum tri_status begin_first(struct joint_files *j, const struct tri_strea
     return status;
 }
 
-/* Where the rows of an HDF5 file belong. Collective. */
+/* Shares the places of the rows of an HDF5 file. Collective. */
 static enum tri_status share_layout(struct joint_files *j, int i, const struct tri_stream *stream,
                                     enum tri_status status, struct tri_error *error)
 {
@@ -139,7 +139,7 @@ static enum tri_status share_layout(struct joint_files *j, int i, const struct t
     for (int kind = 0; kind < TRI_H5_KINDS; kind++) {
         struct tri_h5_laid *laid = &h->layout.array[kind];
         const size_t bytes = (size_t)laid->n * sizeof *laid->place;
-        if (!is_first(j)) /* it is the first rank's that has come */
+        if (!is_first(j)) /* received from the first rank */
             laid->place = status ? NULL : malloc(bytes + 1);
         status = !status && !laid->place && bytes > 0 ? no_memory(error) : status;
         status = par_spread(j->carrier, PAR_MOVE_TILES, laid->place, bytes, status, error);
@@ -190,7 +190,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 
 /* --- ending */
 
-/* The own lines of text i, of which the ranks have so many bytes, to where they belong. */
+/* Copies the own lines of text i to their place, which follows from the number of bytes of each rank. */
 static enum tri_status put_lines(struct joint_files *j, int i, const int64_t *bytes, struct tri_error *error)
 {
     uint64_t before = 0, all = 0;
@@ -204,7 +204,7 @@ static enum tri_status put_lines(struct joint_files *j, int i, const int64_t *by
     return TRI_OK;
 }
 
-/* Collective. */
+/* Copies all texts to their places. Collective. */
 static enum tri_status put_texts(struct joint_files *j, enum tri_status status, struct tri_error *error)
 {
     int64_t mine[JOINT_TEXTS], *bytes = malloc((size_t)j->carrier->n_ranks * sizeof mine);
@@ -219,10 +219,10 @@ static enum tri_status put_texts(struct joint_files *j, enum tri_status status, 
     return status;
 }
 
-/* What may be waited for when files get their names is on the disk before: each machine writes back its own rows. */
+/* Writes the data to the disk before files get their names: each machine flushes its own rows. */
 static enum tri_status leave_all(struct joint_files *j, struct tri_error *error)
 {
-    enum { MOST_BYTES = 128 }; /* of a triangle and its share of vertices, without attributes */
+    enum { MOST_BYTES = 128 }; /* bytes of a triangle with its share of vertices, without attributes */
     const bool on_disk = !j->no_sync && j->total[1] >= TRI_WAITED_FOR / MOST_BYTES;
     enum tri_status status = TRI_OK;
     for (int i = 0; i < JOINT_FILES && !status; i++)
@@ -230,7 +230,7 @@ static enum tri_status leave_all(struct joint_files *j, struct tri_error *error)
     return status;
 }
 
-/* Of all points. Collective; afterwards all rows have been written. */
+/* Finds the bounds of all points. Collective; afterwards all rows have been written. */
 static enum tri_status gather_bounds(struct joint_files *j, double bounds[4], enum tri_status status,
                                      struct tri_error *error)
 {

@@ -1,15 +1,15 @@
-/* Files that all ranks write together, each the rows that it owns: a sink on each rank, and on rank 0 the files, opened
- * there and committed there. They are byte for byte those of one process. Nothing of them moves between ranks.
+/* Files that all ranks write together. Each rank has a sink and writes the rows that it owns. Rank 0 opens and commits
+ * the files. They have the same bytes as those of one process. No rows move between ranks.
  *
- * WHO WRITES WHAT WHERE. Before the first tile all know how many vertices, triangles and segments each rank owns.
- *   HDF5  Rank 0 lays the file out, and tells all where each array lies (triangle/hdf5/rows.h); a row's place follows
- *         from its number. At the end rank 0 adds what describes the arrays.
- *   text  Lines have different lengths: each rank keeps its own in a file of its scratch folder, until all have told
- *         how many bytes they have; then it copies them behind those of the ranks before it. The first line, whose
- *         numbers are known, and what follows the last rows are rank 0's.
- * What a rank has to write it writes through a descriptor of its own, by the temporary name that rank 0 has given the
- * file. Where not all ranks see that file (triangle/text/output.h), none of them writes: then, as for formats that need
- * the whole mesh, tiles go to rank 0 (sched/ranks/relay.h). */
+ * PLACES. Before the first tile all ranks know how many vertices, triangles and segments each rank owns.
+ *   HDF5  Rank 0 lays out the file, and sends the place of each array to all (triangle/hdf5/rows.h). The place of a row
+ *         follows from its number. At the end rank 0 adds the description of the arrays.
+ *   text  Lines have different lengths. Each rank keeps its lines in a file of its scratch folder until all ranks have
+ *         exchanged their numbers of bytes. Then it copies them after those of the ranks before it. Rank 0 writes the
+ *         first line, whose numbers are known, and the lines after the last row.
+ * Each rank opens the file by the temporary name that rank 0 has chosen, and writes through its own descriptor. If not
+ * all ranks see that file (triangle/text/output.h), tiles go to rank 0 (sched/ranks/relay.h), and only rank 0 writes.
+ * The same holds for formats that need the whole mesh. */
 #ifndef DRIVERS_MESH_JOINT_FILES_H
 #define DRIVERS_MESH_JOINT_FILES_H
 
@@ -22,46 +22,48 @@
 
 enum { JOINT_TEXTS = 3, JOINT_H5 = 4, JOINT_FILES = JOINT_TEXTS + JOINT_H5 };
 
-struct joint_h5 {                 /* an HDF5 file: the first three on rank 0 alone, the rest on all ranks */
+struct joint_h5 {                 /* an HDF5 file: the first three members on rank 0 only, the others on all ranks */
     struct tri_h5_writer *writer; /* NULL: there is no such file, or this is not rank 0 */
-    struct tri_sink sink;         /* of the writer */
-    struct tri_output *output;    /* of the writer */
-    struct tri_h5_layout layout;  /* where rows belong; ours, except that rank 0 refers to the writer's */
-    struct tri_h5_part *part;     /* writes this rank's rows; NULL: not begun, or no such file */
+    struct tri_sink sink;         /* sink of the writer */
+    struct tri_output *output;    /* output of the writer */
+    struct tri_h5_layout layout;  /* place of rows in the file; owned here, except that on rank 0 it refers to the
+                                     writer's */
+    struct tri_h5_part *part;     /* writes the rows of this rank; NULL: not begun, or no such file */
 };
 
 struct joint_files {
-    /* Asked for. */
-    struct par_carrier *carrier;          /* between the ranks */
-    const char *scratch;                  /* the folder of spools */
-    bool no_sync;                         /* files get their names without a look at the disk */
-    const struct tri_stop *stop;          /* of what other ranks than the first one write; NULL: never asked */
-    struct tri_text_options text_options; /* its three outputs on rank 0 alone */
-    struct tri_sink text;                 /* rank 0: that of these files; all NULL: there are none */
-    struct joint_h5 h5[JOINT_H5];         /* those that there are come first */
-    struct orphans orphans;               /* which HDF5 files leave out */
-    /* Found. */
+    /* Set by the caller. */
+    struct par_carrier *carrier;          /* connection between the ranks */
+    const char *scratch;                  /* folder for temporary files */
+    bool no_sync;                         /* files get their names before they are on the disk */
+    const struct tri_stop *stop;          /* stops the writes of ranks other than 0; NULL: no stop */
+    struct tri_text_options text_options; /* its three outputs are set on rank 0 only */
+    struct tri_sink text;                 /* sink for text files on rank 0; all NULL: there are none */
+    struct joint_h5 h5[JOINT_H5];         /* existing files come first */
+    struct orphans orphans;               /* points that HDF5 files leave out */
+    /* Results. */
     bool together;                        /* all ranks write */
-    struct tri_ticket *ticket;            /* [JOINT_FILES] texts, then HDF5 files; an empty path: no such file */
-    struct tri_output file[JOINT_FILES];  /* where others than rank 0 have joined in */
-    struct tri_output spool[JOINT_TEXTS]; /* their lines, until all know where these belong */
-    struct tri_text_stream *stream;       /* into these; NULL: not begun, or rank 0 */
-    struct tri_sink to_spool;             /* of the stream */
-    int32_t n_attributes;                 /* of a point */
-    int64_t total[3];                     /* vertices, triangles, segments of all ranks, once the sink has begun */
-    int64_t n_input;                      /* points before refinement, without orphans; counted on rank 0, else 0 */
+    struct tri_ticket *ticket;            /* [JOINT_FILES] text files, then HDF5 files; an empty path: no such file */
+    struct tri_output file[JOINT_FILES];  /* the files as opened by ranks other than 0 */
+    struct tri_output spool[JOINT_TEXTS]; /* lines of this rank, until their place in the file is known */
+    struct tri_text_stream *stream;       /* writes into the spools; NULL: not begun, or rank 0 */
+    struct tri_sink to_spool;             /* sink of the stream */
+    int32_t n_attributes;                 /* number of attributes of a point */
+    int64_t total[3];                     /* vertices, triangles, segments of all ranks; valid after the sink has
+                                             begun */
+    int64_t n_input;                      /* points before refinement, without orphans; on rank 0, otherwise 0 */
     double bounds[4];                     /* least x, least y, greatest x, greatest y of this rank's points */
 };
 
-/* Collective, on files just opened: finds out whether all ranks can write them. wanted, of rank 0: they shall. The
- * agreement includes the status. To be closed in any case. */
+/* Finds out whether all ranks can write the files that were just opened. Collective. wanted, on rank 0: all ranks shall
+ * write. The ranks also agree on the status. joint_files_close must be called in any case. */
 enum tri_status joint_files_open(struct joint_files *joint, bool wanted, enum tri_status status,
                                  struct tri_error *error);
 
-/* On each rank, where all write together. */
+/* Returns the sink of each rank, if all ranks write together. */
 struct tri_sink joint_files_sink(struct joint_files *joint);
 
-/* Collective: an agreement on the status. */
+/* Completes the files. Collective: the ranks agree on the status. */
 enum tri_status joint_files_close(struct joint_files *joint, enum tri_status status, struct tri_error *error);
 
 #endif

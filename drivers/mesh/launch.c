@@ -1,4 +1,4 @@
-/* One of several tasks: whose words are heard, and how they part. */
+/* The program as one of several tasks: which one prints, and how they end. */
 #include "drivers/mesh/launch.h"
 
 #include <stdio.h>
@@ -24,12 +24,12 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     if (task != 0)
         fall_silent();
     enum tri_status status = launch_ranks(launch, tasks, error);
-    if (!status && task == 0 && launch->rank != 0) /* a launcher counts as it likes */
+    if (!status && task == 0 && launch->rank != 0) /* a launcher may use any numbers */
         fall_silent();
     return status;
 }
 
-/* Who has failed says so to all. */
+/* A failed task reports its failure to all. */
 static int agree_on_failure(struct launch *launch, int code, struct tri_error *error)
 {
     if (code != EXIT_SUCCESS && !error->status)
@@ -38,7 +38,7 @@ static int agree_on_failure(struct launch *launch, int code, struct tri_error *e
     return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
 }
 
-/* Every task comes here, whatever the tasks have agreed on before, so all can be asked once more. */
+/* All tasks come here, regardless of earlier agreements, so a last agreement is possible. */
 int launch_agree(struct launch *launch, int code, struct tri_error *error)
 {
     enum { FIRST_STOP = 124 };
@@ -61,14 +61,14 @@ static void say_loss(const struct launch *launch)
     (void)tri_write_next(launch->voice, line, strlen(line));
 }
 
-/* When this task aborts, the launcher kills the others, and task 0 may say nothing, or only that it was asked to end.
- * If task 0 has met the same loss, it has told of it: this task waits until task 0 has ended all. Likewise every task
- * waits for the tasks with lower numbers, up to LAST of them, and whoever is ended meanwhile is silent. After its line
- * a task waits for the launcher to pass the line on: the launcher of MPICH drops words that it has not read when a task
- * ends. */
+/* When a task aborts, the launcher kills the others, and task 0 may print nothing, or only that it was asked to end. If
+ * task 0 has met the same loss, it has reported it, and this task waits until task 0 has ended all. In the same way
+ * every task waits for tasks with lower numbers, up to LAST of them; a task that is ended meanwhile prints nothing.
+ * After its message a task waits for the launcher to pass it on, because the launcher of MPICH drops output that it has
+ * not read when a task ends. */
 static void tell_loss(const struct launch *launch, bool told)
 {
-    enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 }; /* tenths of a second, but for LAST */
+    enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 }; /* waiting time in tenths of a second, except LAST */
     const int before = (launch->rank < LAST ? launch->rank : LAST) - 1;
     if (launch->rank > 0 ? tri_pause((ENDING + EACH * before) / 10.0) : !told)
         say_loss(launch);
@@ -80,7 +80,7 @@ int launch_leave(struct launch *launch, int code, struct tri_error *error)
     if (!launch->carrier)
         return code;
     const bool told = code != EXIT_SUCCESS;
-    interrupt_told(); /* a task that has left with a failure makes the launcher end those that are still about to */
+    interrupt_told(); /* after a task exits with a failure, the launcher ends tasks that are still about to exit */
     code = agree_on_failure(launch, code, error);
     if (launch->carrier->lost)
         tell_loss(launch, told);
@@ -88,8 +88,8 @@ int launch_leave(struct launch *launch, int code, struct tri_error *error)
     return code;
 }
 
-/* --- First the structs, whose pointers tell which arrays there are, then the arrays, each into memory of its own: no
- * rank has more than the input once. */
+/* --- First the structs are sent, whose pointers show which arrays exist. Then each array is sent into memory of its
+ * own, so no rank has the input more than once. */
 
 struct sharing {
     struct par_carrier *carrier;
@@ -102,7 +102,7 @@ static void spread(struct sharing *s, void *bytes, size_t n)
     s->status = par_spread(s->carrier, PAR_MOVE_INPUT, bytes, n, s->status, s->error);
 }
 
-/* An array of so many items, which rank 0 has, or has not. */
+/* Sends an array of n items, which rank 0 may have or not. */
 static void *array(struct sharing *s, void *own, bool exists, int64_t n, size_t item)
 {
     size_t size = (size_t)n * item;
@@ -143,7 +143,7 @@ static void share_elements(struct sharing *s, struct tri_elements *own, const st
     *own = e;
 }
 
-/* Fields of lengths; those that are no file have no arrays. */
+/* Sends fields of lengths. Fields that were not read from a file have no arrays. */
 static void share_lengths(struct sharing *s, struct size_fields *own, const struct size_fields *told)
 {
     for (int i = 0; i < SIZE_OPTIONS_MOST; i++) {
@@ -165,7 +165,7 @@ enum tri_status shared_input(struct par_carrier *carrier, struct run *run, enum 
                              struct tri_error *error)
 {
     struct sharing s = {carrier, status, error};
-    struct run_input told = run->input; /* what is more than numbers is another rank's: never followed here */
+    struct run_input told = run->input; /* pointers of another rank; never followed here */
     struct size_fields sizes = run->sizes;
     spread(&s, &told, sizeof told);
     spread(&s, &sizes, sizeof sizes);
@@ -179,7 +179,7 @@ enum tri_status shared_input(struct par_carrier *carrier, struct run *run, enum 
     return par_agree(carrier, s.status, error);
 }
 
-/* --- the report of all */
+/* --- the report of all ranks */
 
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 

@@ -1,4 +1,4 @@
-/* One table of names; a value is read by the option that asks for it. */
+/* One table lists the names. Each option reads its own value. */
 #include "drivers/mesh/long_options.h"
 
 #include <float.h>
@@ -12,54 +12,60 @@
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
-const char long_options_help[] =
+const char *const long_options_help[] = {
     "Long options (--name VALUE or --name=VALUE; numbers may have exponents)\n"
-    "  --threads N        threads to work with. Default: OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else\n"
-    "                     all cores. The mesh is the same for any number\n"
-    "  --max-area X       as -aX: no triangle larger than X\n"
-    "  --min-angle X      as -qX: no angle below X degrees\n"
-    "  --holes auto       with -p: segments tell what is inside, and no hole points are needed: what lies\n"
-    "                     behind an even number of them is removed. Rings may lie in rings\n"
-    "  --holes points     hole points tell (the default)\n"
-    "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on; one of these endings is no\n"
-    "                     part of BASE, and any other of a dot and letters (.shp) is refused: run.1 and mesh.v2 are\n"
-    "                     names, and mesh.fine.node says that mesh.fine is one\n"
+    "  --threads N        number of threads. Default: OMP_NUM_THREADS, otherwise SLURM_CPUS_PER_TASK, otherwise\n"
+    "                     one for each core. The mesh is the same for any number of threads\n"
+    "  --max-area X       same as -aX: no triangle larger than X\n"
+    "  --min-angle X      same as -qX: no angle below X degrees\n"
+    "  --holes auto       with -p: find the holes from the segments, without hole points. Places that are separated\n"
+    "                     from the outside by an even number of segments are removed. Rings may lie in rings\n"
+    "  --holes points     find the holes from the hole points of the input (the default)\n"
+    "  --output BASE      write BASE.node, BASE.ele, BASE.poly and so on. If BASE ends in .node, .ele or .poly, that\n"
+    "                     ending is removed. Any other ending of a dot and letters (.shp) is an error. Names such as\n"
+    "                     run.1 and mesh.v2 are allowed; for the name mesh.fine write mesh.fine.node\n"
     "  --output FILE.h5 | FILE.vtkhdf | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
-    "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
-    "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
+    "                     write the mesh as HDF5 (with FILE.xdmf beside it), or for VTK and ParaView, Gmsh, SMS or\n"
+    "                     ADCIRC. This replaces BASE.node and so on, unless --output BASE is given as well. Up to 4\n"
     "                     such files\n"
-    "  --parts N          .msh files are cut into N parts (512 in all): FILE.msh becomes FILE_1.msh ... FILE_N.msh,\n"
-    "                     partitioned as Gmsh does it, with the same numbers as in one file\n"
-    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
+    "  --parts N          cut .msh files into N parts, at most 512 in all. FILE.msh becomes FILE_1.msh ...\n"
+    "                     FILE_N.msh, in the format of Gmsh's partitions, with the same numbers as in one file\n"
+    "  --report FILE      write times, blocks, memory and mesh statistics as JSON. -: to standard output, where\n"
     "                     with -Q nothing else is printed\n"
-    "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
+    "  --blocks FILE      write the block and phase of each triangle, one per line, for meshplot --blocks\n"
     "  --numbering curve|blocks\n"
-    "                     curve: new vertices and triangles are numbered along a space-filling curve, which\n"
-    "                     makes solvers faster (the default); blocks, quicker: as the blocks of the schedule\n"
-    "                     made them\n"
-    "  --memory SIZE      memory that the program may take: 500M, 4G (K, M, G, T: powers of 1000), or 60% of what\n"
-    "                     the machine has. Default: what is left, by limits of batch systems too. The program keeps\n"
-    "                     within, by files where a mesh does not fit, or refuses before it costs time\n"
-    "  --scratch DIR      folder for what does not fit into memory. Default: TMPDIR, else that of the output\n"
-    "  --checkpoint DIR   saves the state of the run in this folder, so that it can continue after it was stopped\n"
-    "                     or killed. A run that ends removes these files. If no checkpoint has been written yet,\n"
-    "                     the run starts again from the input\n"
-    "  --every MINUTES    the time between two checkpoints (10), 0: after each step: a phase, or a column of a\n"
-    "                     mesh that is swept. A signal that ends the run writes one, too; --time-limit writes the\n"
-    "                     last one early enough, by the measured speed of the disk\n"
-    "  --resume DIR       continues from there, with the same input and switches, on any number of threads: the files\n"
-    "                     are those of a run that was never stopped. With --checkpoint DIR: starts a new run if\n"
-    "                     there is no checkpoint in DIR yet\n"
+    "                     curve (the default): number new vertices and triangles along a space-filling curve, which\n"
+    "                     makes solvers faster. blocks: number them in the order in which the blocks of the\n"
+    "                     schedule created them, which takes less time\n",
+
+    "  --memory SIZE      memory that the program may use: 500M, 4G (K, M, G, T: powers of 1000), or 60% of what\n"
+    "                     the machine has. Default: the memory that is free, within the limits of batch systems. A\n"
+    "                     mesh that does not fit is kept partly in files. If that is impossible, the program reports\n"
+    "                     an error before the run starts\n"
+    "  --scratch DIR      folder for data that do not fit into memory. Default: TMPDIR, otherwise the output folder\n"
+    "  --checkpoint DIR   save checkpoints in this folder, so that a run that was stopped or killed can be resumed.\n"
+    "                     Its files are removed when the run succeeds. If no checkpoint has been written yet, a\n"
+    "                     resumed run starts again from the input\n"
+    "  --every MINUTES    time between two checkpoints (default 10). 0: after each step, which is a phase of the\n"
+    "                     schedule, or a column of a mesh that is swept. A signal that ends the run also writes a\n"
+    "                     checkpoint. With --time-limit the last one is started early enough, according to the\n"
+    "                     measured speed of the disk\n"
+    "  --resume DIR       continue from the checkpoint in this folder, with the same input and switches and any\n"
+    "                     number of threads. The files are the same as those of a run that was never stopped. With\n"
+    "                     --checkpoint DIR as well: start a new run if the folder has no checkpoint\n"
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
-    "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
-    "                     mesh that it has, whatever time that takes; else it writes nothing\n"
-    "  --no-sync          files of 8 MB or more get their names before they are on the disk. That is faster, but a\n"
-    "                     loss of power may leave them empty\n"
-    "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
-    "                     default), else a line for each stage. Never with -Q\n"
-    "  --no-progress      say nothing of that\n"
-    "  --version, --help  name and version; this help\n";
+    "  --write-partial    if a time limit or a signal stops refinement, write the current mesh, which is valid. This\n"
+    "                     may exceed the limit. Without this option a stopped run writes nothing\n"
+    "  --no-sync          do not wait until files of 8 MB or more are on the disk before they get their names. This\n"
+    "                     is faster, but a loss of power may leave them empty\n"
+    "  --progress         report progress on standard error: one line on a terminal (there the default), otherwise\n"
+    "                     one line for each stage. Never with -Q\n"
+    "  --no-progress      do not report progress\n"
+    "  --version, --help  print name and version; print this help\n",
+
+    NULL,
+};
 
 enum id {
     FLAG, NAME, THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, PARTS, NUMBERING, MEMORY, EVERY, TIME_LIMIT,
@@ -69,8 +75,8 @@ enum id {
 static const struct kind {
     const char *name;
     enum id id;
-    const char *wanted; /* what a value must be, for errors; NULL: there is none */
-    size_t at;          /* of a flag or a name: where it goes */
+    const char *wanted; /* requirement for a value, for errors; NULL: the option has no value */
+    size_t at;          /* for a flag or a name: offset of the member */
 } kinds[] = {
     {"threads", THREADS, "not a whole number from 1 to 1024", 0},
     {"max-area", MAX_AREA, "not a number > 0", 0},
@@ -106,9 +112,9 @@ static const struct kind *find_kind(const char *name, size_t length)
     return NULL;
 }
 
-/* --- values; false: the text is none, and nothing has changed */
+/* --- values; functions return false, and change nothing, if the text is invalid */
 
-/* A whole number from 1 to most. */
+/* Reads a whole number from 1 to most. */
 static bool take_whole(const char *text, int most, int *value)
 {
     int64_t number;
@@ -156,7 +162,7 @@ int long_options_threads(const struct long_options *options)
 
 /* --- output */
 
-/* One more file of some kind. */
+/* Adds a file of another format. */
 static enum tri_status add_file(const char **names, int *n, const char *value, struct tri_error *error)
 {
     if (*n == LONG_OPTIONS_MOST_EXPORTS)
@@ -166,7 +172,7 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
     return TRI_OK;
 }
 
-/* Is its last part a name that suffixes can go behind? */
+/* Returns true if the last part is a name to which suffixes can be appended. */
 static bool is_base(const char *value)
 {
     const char *last = value + tri_path_folder_length(value);

@@ -1,4 +1,4 @@
-/* Which files there are, and in which order they are written. */
+/* The list of output files and the order in which they are written. */
 #include "drivers/mesh/mesh_files.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ enum { NODE, ELE, POLY, OFF, EDGE, V_NODE, V_EDGE, NEIGH, N_KINDS };
 static const struct kind {
     const char *suffix, *article;
     tri_write_call *write;
-    bool of_voronoi; /* it shows the Voronoi diagram */
+    bool of_voronoi; /* the .v.* files describe the Voronoi diagram */
 } kinds[N_KINDS] = {
     {".node", "a", tri_write_node, false},   {".ele", "an", tri_write_ele, false},
     {".poly", "a", tri_write_poly, false},   {".off", "an", tri_write_off, false},
@@ -32,7 +32,7 @@ static enum plan asked(bool by_switch, bool suppressed)
     return !by_switch ? NOT_ASKED : suppressed ? SUPPRESSED : WRITTEN;
 }
 
-/* Where other formats stand alone, not a word about what nobody wants. */
+/* Prints no line about missing files if only other formats are written. */
 static enum plan plan_of(const struct run *run, int kind)
 {
     const struct tri_switches *s = &run->arguments->switches;
@@ -58,8 +58,8 @@ bool mesh_files_has(const struct run *run, const char *suffix)
 
 /* --- names of files in other formats */
 
-/* How many files there are, and the name of one, malloc'ed: of "mesh.msh" that itself, or "mesh_1.msh" and so on, as
- * Gmsh does. NULL: no memory. */
+/* Returns the number of files, and the name of one, malloc'ed: "mesh.msh", or "mesh_1.msh" and so on as in Gmsh. NULL:
+ * no memory. */
 static int files_of(const struct export *export) { return export->n_parts > 0 ? export->n_parts : 1; }
 
 static char *name_of(const struct export *export, const char *name, int file)
@@ -76,7 +76,7 @@ static char *name_of(const struct export *export, const char *name, int file)
 
 /* --- all together */
 
-/* One file more in a set on trial. */
+/* Adds a file to a trial set. */
 static enum tri_status try_file(struct tri_output_set *set, const char *path, const struct file_names *read,
                                 struct tri_error *error)
 {
@@ -87,7 +87,7 @@ static enum tri_status try_file(struct tri_output_set *set, const char *path, co
     return interrupt_open(set, path, &output, error);
 }
 
-/* name: malloc'ed, and freed here; NULL: no memory. */
+/* name: malloc'ed, freed here; NULL: no memory. */
 static enum tri_status try_name(struct tri_output_set *set, char *name, const struct file_names *read,
                                 struct tri_error *error)
 {
@@ -128,7 +128,8 @@ static enum tri_status try_all(struct tri_output_set *set, const struct run *run
 
 enum tri_status mesh_files_check(const struct run *run, const struct file_names *read)
 {
-    static struct tri_output_set set; /* large; handlers know its names until interrupt_drop */
+    static struct tri_output_set set; /* static because it is large, and because handlers know its names until
+                                         interrupt_drop */
     interrupt_begin(&set);
     set.trial = true;
     enum tri_status status = try_all(&set, run, read, run->error);
@@ -152,7 +153,7 @@ static enum tri_status write_file(const struct run *run, const struct tri_grid *
     return status ? status : tri_write_comment(output, arguments->argc, arguments->argv, run->error);
 }
 
-/* In another program's format, which need not know comments. */
+/* Writes in the format of another program, which may have no comments. */
 static enum tri_status write_export(const struct run *run, const struct tri_grid *grid, const char *path)
 {
     struct export export = export_of(path, run->settings.options->n_parts);
@@ -197,7 +198,7 @@ struct tri_grid_options mesh_files_grid(const struct run *run, bool for_solvers)
     return options;
 }
 
-/* Writes Triangle's files, exports, or both from one grid. If there are exports it leaves out unused points. */
+/* Writes Triangle's files, exports, or both from one grid. With exports, unused points are left out. */
 static enum tri_status write_from_grid(const struct run *run, bool own, bool exports)
 {
     const struct tri_grid_options options = mesh_files_grid(run, exports);

@@ -1,5 +1,5 @@
-/* Rates that have been measured (docs/performance.md), and one that is measured here: how long this machine takes for a
- * triangle. */
+/* Estimates from measured rates (docs/performance.md), and from the time per triangle on this machine, which is
+ * measured here. */
 #include "drivers/mesh/needs.h"
 
 #include <math.h>
@@ -11,10 +11,10 @@
 #include "triangle/refine/smooth.h"
 #include "triangle/size/estimate.h"
 
-/* Measured: bytes a triangle at the peak, at least; of one refinement loop beside the mesh; time of the numbering
- * against that of refining; triangles against the least number that area bounds ask for. */
+/* Measured: least bytes per triangle at the peak; bytes of one refinement loop beside the mesh; time of numbering
+ * relative to refinement; number of triangles relative to the least number that area bounds require. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 4, NUMBERING = 0.55, AREA_FACTOR = 1.14;
-/* Text that one thread writes in a second where a triangle takes it the usual time. */
+/* Bytes of text that one thread writes in a second, on a machine with the usual time per triangle. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
 /* --- triangles */
@@ -27,7 +27,8 @@ static double triangles_of(const struct run *run, double demand)
         return now;
     if (run->settings.threads > 0)
         triangles = tri_estimate(&run->mesh, quality, run->settings.executor, &sure);
-    triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */
+    triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at the capacity of a
+                                                                               mesh */
     return quality->max_steiner < 0 ? triangles : fmin(triangles, now + 2 * (double)quality->max_steiner);
 }
 
@@ -35,7 +36,7 @@ static double triangles_of(const struct run *run, double demand)
 
 static double digits(double number) { return number < 10 ? 1 : floor(log10(number)) + 1; }
 
-/* Of Triangle's files, but for .poly. A coordinate takes about 19 characters with its blanks. */
+/* Bytes of Triangle's files, except .poly. A coordinate has about 19 characters with blanks. */
 static double text_of(const struct run *run, double vertices, double triangles)
 {
     const struct tri_switches *s = &run->arguments->switches;
@@ -50,14 +51,15 @@ static double text_of(const struct run *run, double vertices, double triangles)
     return s->off ? bytes + vertices * points + triangles * (3 * v + 5) : bytes;
 }
 
-/* In other formats: numbers are about as long in all of them. */
+/* Bytes of other formats: numbers are about as long in all of them. */
 static double exports_of(const struct run *run, double vertices, double triangles)
 {
     const struct tri_switches *s = &run->arguments->switches;
     double index = vertices > INT32_MAX ? 8 : 4, nodes = s->second_order ? 6 : 3;
     double row = vertices * (28 + 8 * run->mesh.n_attributes) + triangles * (nodes * index + 4);
     double marker = s->no_markers ? 0 : 4;
-    double h5 = vertices * (16 + marker + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* the rest deflates */
+    double h5 = vertices * (16 + marker + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* the other arrays
+                                                                                                  are compressed */
     return run->settings.options->n_exports * row + run->settings.options->n_streams * h5;
 }
 
@@ -80,7 +82,7 @@ double estimate_bytes_each(const struct run *run)
            estimate_edge_lists(run);
 }
 
-/* What -C takes beside the mesh; what it must where there is a bound. */
+/* Bytes that -C needs beside the mesh, or the least number if there is a bound. */
 static double bytes_of_check(const struct run *run, double grown)
 {
     if (!run->arguments->switches.check)
@@ -102,8 +104,8 @@ double estimate_bytes_beside(const struct run *run, double grown)
 
 /* --- seconds */
 
-/* Of one triangle, on one thread that nobody holds up: a small square is refined twice; the second time its memory is
- * there. */
+/* Returns the seconds for one triangle on one undisturbed thread. A small square is refined twice; the second time its
+ * memory is already mapped. */
 static double seconds_a_triangle(void)
 {
     double corners[] = {0, 0, 1, 0, 1, 1, 0, 1}, seconds = 0;
@@ -124,8 +126,8 @@ static double seconds_a_triangle(void)
     return seconds;
 }
 
-/* Reading, and the triangulation that is there already; no more than the processor has worked for it, since others may
- * have held it up. */
+/* Returns the seconds of reading and triangulating, which are done. Processor time limits the result, because other
+ * programs may have delayed it. */
 static double seconds_so_far(const struct run *run)
 {
     double sum = 0;
@@ -144,8 +146,8 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 
 /* --- all together */
 
-/* As schedules go: above TRI_EASY_ANGLE there are two, which ranks can share; a limit on new points makes it one
- * call. */
+/* Follows the rules of the schedule: above TRI_EASY_ANGLE there are two schedules, which ranks can share. A limit on
+ * new points makes it one call. */
 static bool is_swept(const struct run *run)
 {
     const struct tri_quality *quality = &run->options.quality;

@@ -1,53 +1,54 @@
-/* What a run will need, before it begins to refine: triangles, memory, disk, time. */
+/* Estimates what a run needs before refinement begins: triangles, memory, disk and time. */
 #ifndef DRIVERS_MESH_NEEDS_H
 #define DRIVERS_MESH_NEEDS_H
 
 #include "drivers/mesh/stages.h"
 
-/* Bytes of a number of triangles, beyond what is taken now. */
+/* Bytes for a number of triangles, beyond the bytes in use now. */
 struct needs {
     double triangles;
-    double whole;      /* memory of a mesh that is in memory as a whole, were it not too large for one */
-    double held;       /* memory of one that is handed out as it is made, where its arrays are in memory, */
-    double floor;      /* and where they are in files: it cannot be less */
-    double away;       /* of these files */
-    double filed;      /* memory of one that stays a mesh, but lies in files, with what its output takes beside it .. */
-    double filed_away; /* .. and of these files */
-    double checkpoint; /* of the folder of checkpoints where it is handed out as it is made, */
-    double states;     /* and where it is in memory as a whole */
-    double kept;       /* of files in which tiles wait until they can be written */
-    double files;      /* of the output */
+    double whole;      /* memory for a mesh that is in memory as a whole, even if it is too large for one mesh */
+    double held;       /* memory for a swept mesh whose arrays are in memory */
+    double floor;      /* least memory for a swept mesh whose arrays are in files */
+    double away;       /* disk for those files */
+    double filed;      /* memory for a mesh kept as a whole in files, with the output */
+    double filed_away; /* disk for those files */
+    double checkpoint; /* disk for checkpoints of a swept mesh */
+    double states;     /* disk for checkpoints of a mesh in memory */
+    double kept;       /* disk for files in which tiles wait until they can be written */
+    double files;      /* disk for the output */
 };
 
 struct estimate {
-    struct needs least;  /* what area bounds ask for beyond doubt; all 0: there are none */
+    struct needs least;  /* what the area bounds certainly require; all 0: there are no area bounds */
     struct needs likely;
     double vertices;
-    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are, or
-                            each task has its part */
-    double seconds;      /* of the whole run; costs a few milliseconds to find out, and is 0 unless asked for */
+    bool sweeps;         /* a mesh that is handed out is never in memory as a whole: it is swept, or distributed over
+                            tasks */
+    double seconds;      /* time of the whole run; measuring it takes a few milliseconds; 0: not requested */
 };
 
-/* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */
+/* Estimates the needs for the mesh and the bounds. Accuracy: docs/performance.md. O(triangles). */
 struct estimate estimate_make(const struct run *run, bool with_seconds);
 
-/* Finds what a schedule needs for a mesh that grows by so many triangles: all of *needs except triangles and files.
- * demand: how many of them areas ask for; < 0: needs->whole has been found already. For run_settings. */
+/* Finds what a schedule needs for a mesh that grows by this number of triangles: all of *needs except triangles and
+ * files. demand: how many of them the areas require; < 0: needs->whole is already known. For run_settings. */
 void schedule_needs(const struct run *run, bool sweeps, double grown, double demand, struct needs *needs);
 
-/* Bytes for a triangle of the mesh, and of what stands beside it when it is refined, or when it is written. */
+/* Bytes per triangle of the mesh and of the data that refinement or writing needs beside it. */
 double estimate_bytes_each(const struct run *run);
 
-/* Bytes of what is done with a mesh that is finished, and has grown by so many triangles. */
+/* Bytes needed after refinement, for a mesh that has grown by this number of triangles. */
 double estimate_bytes_beside(const struct run *run, double grown);
 
-/* Bytes for a triangle of the lists of edges that the output takes. */
+/* Bytes per triangle of the lists of edges for the output. */
 double estimate_edge_lists(const struct run *run);
 
-/* Bytes of memory that handing out a mesh of so many triangles takes beside it, to the HDF5 files of the run. */
+/* Bytes of memory beside a mesh of this number of triangles while it is handed to the HDF5 files of the run. */
 double estimate_streams(const struct run *run, double triangles);
 
-/* Could so much be moved to files that are mapped? Not where the address space ends before what --memory allows. */
+/* Returns true if this number of bytes could be moved to mapped files. It returns false if the address space is smaller
+ * than --memory allows. */
 bool estimate_can_park(const struct run *run, double held);
 
 #endif

@@ -1,9 +1,10 @@
-/* Can the machine carry the mesh that is asked for, and in what way?
+/* Decides whether the machine can make the requested mesh, and how.
  *
- * RULE. A sure estimate refuses, a likely one warns: areas ask for a number of triangles beyond doubt, angles for about
- * a number. A likely estimate refuses, too, against a bound that somebody has set (--memory, or a limit of the
- * process), and against the most that a mesh holds where areas decide, since the mesh would fail there after all the
- * work. A mesh that fits stays in memory, which is quicker. */
+ * RULE. If a sure estimate exceeds the limits, the run is refused; if a likely estimate does, there is a warning. Area
+ * bounds give a sure number of triangles, angle bounds a likely one. A likely estimate also refuses the run in two
+ * cases: against a bound that somebody has set (--memory, or a limit of the process), and against the capacity of a
+ * mesh if areas decide, because the mesh would fail there after all the work. A mesh that fits stays in memory, which
+ * is faster. */
 #include "drivers/mesh/plan.h"
 
 #include <errno.h>
@@ -14,29 +15,30 @@
 #include "triangle/base/size_text.h"
 #include "triangle/base/system.h"
 
-/* By how many times a mesh in memory may exceed its estimate: in general; where it must not; and where, as well, angles
- * above 31 degrees or diametral circles without vertices are asked for, of which an estimate knows least. Memory below
- * WORTH_A_LOOK bytes is not looked for. */
+/* Factors by which a mesh in memory may exceed its estimate: in general; with a strict bound; and, in addition, with
+ * angles above 31 degrees, or with empty diametral circles, which are hardest to estimate. Less than WORTH_A_LOOK bytes
+ * are not checked. */
 static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 2e7;
 
-/* Areas decide on a mesh that has hardly more triangles than they ask for beyond doubt: 1.14 times as many, as a rule.
- * Up to such a share of what a mesh holds it surely fits in one: blocks have room that they do not use. */
+/* Areas decide if the mesh has hardly more triangles than they require; usually 1.14 times as many. Up to this share of
+ * the capacity a mesh surely fits, since blocks leave some places unused. */
 static const double AREAS_DECIDE = 1.3, SURELY_ONE_MESH = 0.8;
 
-/* Measured: bytes of the process; of text on its way into files while the input is triangulated, a point and at most;
- * and the share of the bytes of triangulating that is sure. */
+/* Measured: bytes of the process; of text that is being written while the input is triangulated, per point and at most;
+ * and the sure share of the bytes for triangulating. */
 static const double PROCESS_BYTES = 1.2e7, TEXT_BYTES = 60, MOST_TEXT = 6e6, SURE_SHARE = 0.7;
 
-/* Measured: what is allocated to write files, touched or not. */
+/* Measured: bytes that are allocated for writing files, used or not. */
 static const double BUFFER_BYTES = 3e7;
 
-/* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
+/* Returns true if there is a strict bound: --memory, or a limit of the process (ulimit -v) beyond which allocations
+ * fail. */
 static bool is_strict(const struct run *run)
 {
     return run->settings.options->memory > 0 || tri_memory_end() != TRI_ENDS_SYSTEM;
 }
 
-/* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
+/* Limits of a process count all allocations, including unused parts of stacks and buffers. */
 static double system_memory_left(const struct run *run)
 {
     const bool counts_all = tri_memory_end() != TRI_ENDS_SYSTEM;
@@ -52,7 +54,7 @@ double plan_memory_left(const struct run *run)
 
 /* --- the input */
 
-/* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
+/* The arrays read from a text need at most about as much memory as the text, which is freed before the next is read. */
 enum tri_status plan_check_files(const struct run *run, const struct file_names *files)
 {
     struct tri_file_facts facts;
@@ -69,14 +71,14 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     return TRI_OK;
 }
 
-/* To write HDF5 of a mesh that nothing refines, beside the half of the peak that the mesh itself takes. */
+/* Bytes to write HDF5 of a mesh without refinement, beside half of the peak, which the mesh itself needs. */
 static double unrefined_streams(const struct run *run)
 {
     const double triangles = run->input.elements.n > 0 ? run->input.elements.n : 2.0 * run->input.pslg.n_points;
     return run->options.refine ? 0 : estimate_streams(run, triangles);
 }
 
-/* At its peak, what has been read included. */
+/* Returns the peak memory, with the input that has been read. */
 static double input_bytes(const struct run *run)
 {
     const struct run_input *input = &run->input;
@@ -103,7 +105,7 @@ enum tri_status plan_check_input(const struct run *run)
     return TRI_OK;
 }
 
-/* --- what asks for the whole mesh */
+/* --- features that need the whole mesh */
 
 static const char *by_switches(const struct tri_switches *s)
 {
@@ -127,8 +129,8 @@ static const char *by_options(const struct long_options *o)
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 
-/* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
- * swept. */
+/* Returns the feature that needs the whole mesh in memory, such as "-n (neighbours)"; "": the program itself; NULL:
+ * none, the mesh can be swept. */
 static const char *obstacle_of(const struct run *run)
 {
     if (run->settings.threads == 0)
@@ -152,7 +154,7 @@ static enum tri_status fail_too_many(const struct run *run, const struct needs *
                     *why ? " where it must be there as a whole, as for " : "", why);
 }
 
-/* why: all triangles of the mesh must be there at a time. */
+/* why: the reason why all triangles must be in memory. */
 static enum tri_status check_number(const struct run *run, const struct estimate *e, const char *why)
 {
     const double most = TRI_MAX_TRIANGLES, likely = e->likely.triangles, least = e->least.triangles;
@@ -166,7 +168,7 @@ static enum tri_status check_number(const struct run *run, const struct estimate
     return TRI_OK;
 }
 
-/* What would do of --memory, where that is what is short. */
+/* Suggests a sufficient --memory, if that is the limit. */
 static void suggest(const struct run *run, double needed, char *text, size_t size)
 {
     *text = 0;
@@ -186,8 +188,8 @@ static enum tri_status fail_memory(const struct run *run, const struct needs *n,
                     *obstacle ? "; less would do but for " : "", obstacle);
 }
 
-/* least, likely: bytes of memory. Where what is likely refuses, it does so first: who gives what is then said to be
- * needed is not refused again. */
+/* least, likely: bytes of memory. If the likely estimate refuses, it is used for the message, so that a user who sets
+ * the suggested value is not refused again. */
 static enum tri_status check_memory(const struct run *run, const struct estimate *e, double least, double likely,
                                     double left, const char *obstacle)
 {
@@ -212,7 +214,7 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
     return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle);
 }
 
-/* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
+/* A mesh that is handed out, but cannot be swept, is kept as a whole, in memory or not. */
 static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left)
 {
     const char *why = run->settings.n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
@@ -226,11 +228,11 @@ static enum tri_status check_stream(const struct run *run, const struct estimate
 
 enum { DISK_PLACES = 3 };
 
-/* What a run puts on disk. */
+/* Data that a run writes into one place. */
 struct disk_place {
-    const char *what; /* "its files" */
-    const char *path; /* a folder, or a file that is there or will be */
-    double bytes;     /* that will be needed there */
+    const char *what; /* name in messages, such as "its files" */
+    const char *path; /* a folder, or an existing or future file */
+    double bytes;     /* bytes needed there */
 };
 
 static bool look_at(const struct disk_place *place, struct tri_file_facts *facts)
@@ -246,7 +248,8 @@ static bool are_on_one_disk(const struct disk_place *a, const struct disk_place 
     return a == b || (look_at(a, &one) && look_at(b, &other) && one.device == other.device);
 }
 
-/* The first place on a disk that has less left than all places on it need; NULL: none. *needed receives that. */
+/* Returns the first place on a disk that has less space left than all places on it need; NULL: none. *needed receives
+ * that number. */
 static const struct disk_place *too_small(const struct disk_place places[DISK_PLACES], double *needed)
 {
     for (int i = 0; i < DISK_PLACES; i++) {
@@ -300,7 +303,7 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     return TRI_OK;
 }
 
-/* A folder is tried before the work, which may take hours until it is needed. */
+/* Checks that a folder can be written before the work, because it may be needed only hours later. */
 static enum tri_status check_scratch(const struct run *run)
 {
     const char *folder = run->settings.options->scratch;
@@ -353,8 +356,8 @@ static void say_way(const struct run *run, const struct estimate *e, double left
         say_parking(run, n->away);
 }
 
-/* A mesh that stays one, where --memory bounds what is in memory of it. Of several tasks one makes all of it, whose
- * needs nobody has estimated. */
+/* For a mesh that is kept as a whole, with --memory as a bound for its part in memory. With several tasks one of them
+ * makes all of it, and there is no estimate for its needs. */
 static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
     const struct run_settings *settings = &run->settings;
@@ -362,7 +365,7 @@ static bool may_lie_in_files(const struct run *run, const struct estimate *e)
            estimate_can_park(run, e->likely.whole);
 }
 
-/* Buffers of what is written while it is made may be more than a small mesh. */
+/* For a small mesh the output buffers may exceed the mesh. */
 static bool takes_less_whole(const struct run *run, const struct estimate *e, double left)
 {
     return may_lie_in_files(run, e) && e->likely.floor > left && e->likely.filed <= left;
@@ -397,7 +400,7 @@ static void print_seconds(double seconds, int threads)
     printf(" on %d thread%s\n", threads, threads > 1 ? "s" : "");
 }
 
-/* there: what there is, which is `left`, or all there is. */
+/* there: `left`, or the whole capacity. */
 static void print_bytes(const char *what, double needed, double there, const char *left)
 {
     printf("  %s: %s", what, tri_size_text(needed).text);

@@ -1,4 +1,4 @@
-/* INVARIANT: outside begin .. end the terminal shows no line of ours, so that others may print. */
+/* INVARIANT: outside begin .. end the terminal shows no line of progress, so that other code may print. */
 #include "drivers/mesh/progress.h"
 
 #include <inttypes.h>
@@ -35,14 +35,14 @@ void progress_begin(struct progress *progress, int64_t triangles, double estimat
                 threads == 1 ? "" : "s");
 }
 
-/* Triangles made in a second. */
+/* Returns triangles per second. */
 static double rate(const struct progress *progress, double time, int64_t triangles)
 {
     double seconds = time - progress->began;
     return seconds > 0 ? (double)(triangles - progress->first) / seconds : 0;
 }
 
-/* A time as people write it: 42 s, 12:07 min, 3:05 h. */
+/* Formats a time: 42 s, 12:07 min, 3:05 h. */
 static int print_time(double seconds)
 {
     if (seconds < 100)
@@ -53,7 +53,7 @@ static int print_time(double seconds)
     return fprintf(stderr, "%ld:%02ld h", whole / 3600, whole / 60 % 60);
 }
 
-/* How long still, how much memory; where the estimate has been reached, how far is not known. */
+/* Prints the remaining time and the memory. If the estimate has been reached, the remaining time is unknown. */
 static int print_outlook(const struct progress *p, double time)
 {
     const double made = (double)(p->triangles - p->first), left = p->estimate - (double)p->triangles;
@@ -90,7 +90,7 @@ static int print_step(const struct progress *p, double time, const struct par_pl
     return is_before_phases(place) ? width : width + print_outlook(p, time);
 }
 
-/* The rest of a longer line that was there is covered with blanks. */
+/* Blanks cover the rest of a longer previous line. */
 static void rewrite(struct progress *p, double time, const struct par_place *place)
 {
     fputc('\r', stderr);
@@ -101,7 +101,8 @@ static void rewrite(struct progress *p, double time, const struct par_place *pla
     fflush(stderr);
 }
 
-/* Is it worth a line in a log? Of a whole mesh each round is, of what comes before one, of a sweep the first column. */
+/* Returns true if a log gets a line: for each round of a whole mesh, for the first place before or in the phases, for
+ * the first column of a sweep, and every PROGRESS_LOG_SECONDS. */
 static bool is_news(const struct progress *p, double time, const struct par_place *place)
 {
     const struct par_place *last = &p->last;
@@ -117,7 +118,7 @@ void progress_drop(struct progress *p)
     p->width = 0;
 }
 
-/* The sweep has been given up: its triangles are gone. */
+/* The sweep was abandoned, and its triangles are gone. */
 static void begin_again(struct progress *p)
 {
     progress_drop(p);
@@ -126,7 +127,7 @@ static void begin_again(struct progress *p)
     p->triangles = p->first;
 }
 
-/* A run that goes on from a checkpoint has not made those that were there. */
+/* A resumed run has not made the triangles of the checkpoint. */
 static void note_place(struct progress *p, const struct par_place *place)
 {
     if (!p->in_phases && !is_before_phases(place))

@@ -1,6 +1,5 @@
-/* How far the work is, on standard error: one line that is rewritten on a terminal, plain lines in the log of a batch
- * job. What has been told once is not taken back: numbers never become smaller, unless a sweep begins again as a whole
- * mesh, which is told. */
+/* Reports progress on standard error: one line that is rewritten on a terminal, or plain lines in a log. Printed
+ * numbers never decrease. The exception is a sweep that starts again as a whole mesh, which is reported. */
 #ifndef DRIVERS_MESH_PROGRESS_H
 #define DRIVERS_MESH_PROGRESS_H
 
@@ -15,26 +14,28 @@ enum progress_mode { PROGRESS_SILENT, PROGRESS_LINE, PROGRESS_LOG };
 struct progress {
     enum progress_mode mode;
     const char *program;
-    double began, told;   /* seconds of some clock: when refinement began, when the line was last written */
-    int64_t first;        /* triangles when its phases began, or went on from a checkpoint */
-    double estimate;      /* of them at the end */
-    bool is_told, in_phases, was_swept; /* a place has been told; one of a phase; the last was of a sweep */
+    double began, told;   /* seconds of a clock: when refinement began, and when the line was last printed */
+    int64_t first;        /* triangles when the phases began, or when the run was resumed from a checkpoint */
+    double estimate;      /* estimated number of triangles at the end */
+    bool is_told, in_phases, was_swept; /* a place was printed; it was in a phase; the last one was in a sweep */
     bool has_sizes;       /* there was a schedule for sizes */
-    struct par_place last; /* that was written */
-    int64_t triangles;    /* the most that have been told */
+    struct par_place last; /* the last place that was printed */
+    int64_t triangles;    /* largest number of triangles that was printed */
     int width;            /* characters of the line on the terminal */
 };
 
-/* What is wanted, and whether standard error is a terminal, decide the mode. */
+/* Selects the mode by the options, and by whether standard error is a terminal. */
 struct progress progress_start(const char *program, enum long_options_progress wanted, bool quiet);
 
-/* A stage begins: a line in a log; nothing on a terminal, where standard output tells it. */
+/* Reports the begin of a stage: a line in a log. A terminal shows nothing, because standard output already names the
+ * stage. */
 void progress_stage(struct progress *progress, const char *what);
 
-/* Refinement begins, goes on, ends. step has the shape of par_options.progress, user is the struct; it may be called
- * as often as wanted: a terminal sees at most ten lines a second, a log one line for each round, and one for each
- * PROGRESS_LOG_SECONDS. estimate: triangles at the end; for percents and the time to go. numbering: seconds since begin
- * that do not count. A refinement that has been stopped, or has failed, is dropped instead. */
+/* Report the begin, the progress and the end of refinement. step has the type of par_options.progress, with the struct
+ * as user. It may be called any number of times: a terminal shows at most ten lines a second, a log one line for each
+ * round, and one every PROGRESS_LOG_SECONDS. estimate: triangles at the end, for percentages and the remaining time.
+ * numbering: seconds since begin to leave out. progress_drop replaces progress_end if refinement was stopped or has
+ * failed. */
 enum { PROGRESS_LOG_SECONDS = 30 };
 void progress_begin(struct progress *progress, int64_t triangles, double estimate, int threads);
 void progress_step(void *user, const struct par_place *place);

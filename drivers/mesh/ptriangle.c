@@ -1,5 +1,5 @@
-/* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and
- * long options. */
+/* ptriangle: the mesh generator on all cores. It has the command line, files and printed lines of Triangle, and long
+ * options. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,27 +34,28 @@
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 
-/* All about this program, from its words to its files; all 0 until then. */
+/* The program, from its arguments to its files; initially all 0. */
 struct program {
-    struct run run;               /* from files to files; not begun before the words have been taken */
+    struct run run;               /* from files to files; begins after the arguments have been read */
     struct long_options options;
-    char *scratch;                /* folder for what does not fit in memory, malloc'ed: options.scratch */
+    char *scratch;                /* folder for data that do not fit in memory, malloc'ed: options.scratch */
     struct progress progress;
     struct restart restart;
     struct launch launch;
     struct streams streams;
     struct joint_files joint;     /* on several ranks */
     struct par_team team;
-    struct tri_executor executor; /* of the team */
-    struct par_park *park;        /* of the mesh, as long as that lives; NULL: it is in memory, or swept */
-    int32_t n_before;             /* vertices there were before refinement */
-    bool refined;                 /* the schedule has run: its report is filled */
+    struct tri_executor executor; /* executor of the team */
+    struct par_park *park;        /* files of the mesh, which live as long as it; NULL: the mesh is in memory, or
+                                     swept */
+    int32_t n_before;             /* number of vertices before refinement */
+    bool refined;                 /* refinement has run, and its report is filled */
     struct par_report schedule;
-    struct rank_report ranks;     /* n_ranks is 0: there is one process */
+    struct rank_report ranks;     /* n_ranks is 0: there is a single process */
 };
 
-/* What a build with tests takes from the environment: the schedule on small inputs, with so many triangles in a cell;
- * and a sweep of what would fit in memory. 0: nothing. */
+/* Returns a setting for tests from the environment: the triangles of a cell, or a sweep of a mesh that fits in memory.
+ * 0: not set. */
 static double for_tests(const char *name)
 {
 #ifdef PTRIANGLE_TESTS
@@ -68,7 +69,7 @@ static double for_tests(const char *name)
 
 /* --- refinement */
 
-/* A rank knows of its own part. */
+/* A rank knows only the triangles of its own part. */
 static void tell_reached(const struct program *p, int64_t triangles)
 {
     const bool in_parts = p->run.settings.n_ranks > 1;
@@ -106,7 +107,7 @@ static struct par_options options_of(struct program *p)
     return options;
 }
 
-/* Vertices, triangles or segments, by 0, 1, 2, that have been handed out, by all ranks. */
+/* Returns how many vertices, triangles or segments (0, 1, 2) all ranks have handed out. */
 static int64_t handed_out(const struct program *p, int which)
 {
     return p->joint.together ? p->joint.total[which] : p->streams.taken[which];
@@ -124,14 +125,14 @@ static enum tri_status refine_with(struct program *p, const struct par_options *
                      options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
-        interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* of all ranks */
+        interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* triangles of all ranks */
     else if (status == TRI_STOPPED && !options->sweep)
         tell_reached(p, p->run.mesh.n_triangles);
     return status;
 }
 
-/* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
- * boundary is a subsegment. */
+/* Refinement keeps the number of holes and components, so vertices - edges + triangles does not change. Every boundary
+ * edge is a subsegment. */
 static void count_streamed(struct program *p, const struct tri_counts *before)
 {
     struct tri_counts *c = &p->run.counts;
@@ -143,13 +144,13 @@ static void count_streamed(struct program *p, const struct tri_counts *before)
     c->interior = c->subsegments - c->exterior;
 }
 
-/* Bytes of tiles that may wait for the disk. */
+/* Returns the bytes of tiles that may wait for the disk. */
 static int64_t waiting_bytes(const struct program *p)
 {
     return (int64_t)fmin(fmax(p->run.plan.memory / 32, 0x1p20), 0x1p26);
 }
 
-/* What others than the first rank cannot know of its files. */
+/* Shows the first rank's files, which only that rank knows. */
 static void show_streams(struct program *p)
 {
     struct joint_files *joint = &p->joint;
@@ -161,7 +162,7 @@ static void show_streams(struct program *p)
     }
 }
 
-/* Do all ranks write the files? Not where a format wants the whole mesh. Collective. */
+/* Finds out whether all ranks write the files. They do not if a format needs the whole mesh. Collective. */
 static enum tri_status join_files(struct program *p, enum tri_status status)
 {
     const bool ends_at_once = !p->options.write_partial && !long_options_state(&p->options);
@@ -184,8 +185,8 @@ static enum tri_status refine_into(struct program *p, const struct tri_sink *sin
     return refine_with(p, &options);
 }
 
-/* On several ranks into the sink of the first, behind a queue: who receives tiles of others does not wait for the disk.
- * to: on that rank. */
+/* Refines on several ranks, with all tiles sent to the sink of the first. A queue before that sink lets it receive
+ * tiles without waiting for the disk. to: the sink, on that rank. */
 static enum tri_status refine_through_first(struct program *p, const struct tri_sink *to)
 {
     struct par_queue queue;
@@ -205,7 +206,7 @@ static enum tri_status refine_through_first(struct program *p, const struct tri_
     return status;
 }
 
-/* Refines on several ranks. to: where rank 0 takes tiles of all, if all cannot write together. */
+/* Refines on several ranks. to: the sink of rank 0 for all tiles, if not all ranks write. */
 static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink *to, enum tri_status status)
 {
     status = join_files(p, status);
@@ -215,7 +216,7 @@ static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink 
     return joint_files_close(&p->joint, status, p->run.error);
 }
 
-/* What did not fit in memory, or could not be swept. */
+/* Reports data that did not fit in memory, or a mesh that could not be swept. */
 static void tell_of_parking(const struct program *p)
 {
     if (p->schedule.parked > 0)
@@ -224,7 +225,7 @@ static void tell_of_parking(const struct program *p)
                     p->scratch, tri_size_text((double)p->schedule.parked).text);
 }
 
-/* Refines, and writes what is finished meanwhile. */
+/* Refines, and writes finished tiles at the same time. */
 static enum tri_status sweep(struct program *p)
 {
     struct run *run = &p->run;
@@ -245,7 +246,7 @@ static enum tri_status sweep(struct program *p)
     return status;
 }
 
-/* A stop is no failure that others have to share where the mesh that is there will be written. */
+/* A stop is no failure for other ranks if the current mesh will be written. */
 static enum tri_status report_ranks(struct program *p, enum tri_status status)
 {
     const bool is_kept = status == TRI_STOPPED && p->options.write_partial;
@@ -254,7 +255,7 @@ static enum tri_status report_ranks(struct program *p, enum tri_status status)
     return shared ? shared : status;
 }
 
-/* As the plan says. All but user and report is the run's. */
+/* Refines according to the plan. user is the struct program; only user and report are used. */
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -266,8 +267,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     if (run->plan.swept) {
         status = p->launch.rank > 0 ? refine_on_ranks(p, NULL, TRI_OK) : sweep(p);
-        tri_mesh_free(mesh); /* what is left of it is no mesh */
-    } else if (p->launch.rank == 0) { /* makes the whole, and keeps its checkpoints as one task does */
+        tri_mesh_free(mesh); /* the rest is no valid mesh */
+    } else if (p->launch.rank == 0) { /* makes the whole mesh, and writes checkpoints like a single task */
         struct par_options options = options_of(p);
         options.park = run->plan.filed ? &p->park : NULL;
         status = refine_with(p, &options);
@@ -281,8 +282,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 
 /* --- output */
 
-/* Beside a mesh that was not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
- * files. */
+/* Makes room for this number of bytes beside a mesh that was not swept: moves parts of the mesh to files if
+ * necessary. */
 static enum tri_status make_room(struct program *p, double bytes)
 {
     const enum tri_status status = par_park_expect(p->park, &p->run.mesh, (size_t)bytes, p->run.error);
@@ -296,7 +297,7 @@ static enum tri_status make_room(struct program *p, double bytes)
     return status;
 }
 
-/* Of a mesh that is there as a whole. */
+/* Writes the tiles of a mesh that is complete. */
 static enum tri_status write_streams(struct program *p)
 {
     struct run *run = &p->run;
@@ -333,7 +334,8 @@ static char *block_row(const void *user, int64_t i, char *at)
     return at;
 }
 
-/* A line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1: none. */
+/* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1:
+ * none. */
 static enum tri_status write_blocks(const struct program *p)
 {
     const struct run *run = &p->run;
@@ -344,7 +346,7 @@ static enum tri_status write_blocks(const struct program *p)
                                              NULL, run->error);
 }
 
-/* A report tells how many triangles stay below the bounds however the mesh was made. */
+/* Counts the triangles that violate the bounds, for the report. */
 static void count_remaining(struct program *p)
 {
     const struct run *run = &p->run;
@@ -358,7 +360,7 @@ static void count_remaining(struct program *p)
     p->schedule.remain_known = true;
 }
 
-/* What the options want beside the mesh. */
+/* Writes all requested output except the mesh. */
 static enum tri_status write_further(struct program *p)
 {
     const struct run *run = &p->run;
@@ -374,7 +376,8 @@ static enum tri_status write_further(struct program *p)
     return report_write(run, p->refined ? &p->schedule : NULL, &p->ranks);
 }
 
-/* -C. The judge keeps to what is left of a bound; pages of a mesh that lies in files take some of that, too. */
+/* Checks the mesh (-C). The checker must keep to the rest of a memory bound; pages of a mesh in files need a part of
+ * it. */
 static enum tri_status check(struct program *p)
 {
     const double OF_FILES = 0.75;
@@ -399,20 +402,21 @@ static enum tri_status write_all(struct program *p)
 
 /* --- the run */
 
-/* One word for all ranks, with the same error. */
+/* Makes all ranks return the same status with the same error. */
 static enum tri_status agree(struct program *p, enum tri_status status)
 {
     return p->launch.carrier ? par_agree(p->launch.carrier, status, p->run.error) : status;
 }
 
-/* Of several ranks one reads. */
+/* Reads the input, on one of several ranks. */
 static enum tri_status read_input(struct program *p)
 {
     const enum tri_status status = run_read(&p->run);
     return p->launch.carrier ? shared_input(p->launch.carrier, &p->run, status, p->run.error) : status;
 }
 
-/* Whatever can fail comes before the commit, what is printed included, and what others do. */
+/* Writes the output. Everything that can fail comes before the commit, including printing and the work of other
+ * ranks. */
 static enum tri_status write_output(struct program *p)
 {
     if (p->launch.rank > 0)
@@ -420,7 +424,8 @@ static enum tri_status write_output(struct program *p)
     return run_commit(&p->run, agree(p, write_all(p)));
 }
 
-/* From the named file to the mesh in its files. Whoever fails agrees, at whatever agreement the others are. */
+/* Makes the mesh, from the input file to the output files. A failed rank joins the agreement at which the others
+ * wait. */
 static int make_mesh(struct program *p)
 {
     struct run *run = &p->run;
@@ -434,7 +439,7 @@ static int make_mesh(struct program *p)
 
 /* --- arguments */
 
-/* --output names the files whatever -I says; the suffix of one of them goes. */
+/* Applies --output, which overrides -I. A suffix of Triangle's files is removed. */
 static enum tri_status name_output(struct arguments *arguments, const char *base, struct tri_error *error)
 {
     if (!base || !arguments->file)
@@ -453,7 +458,7 @@ static enum tri_status refuse_second_order(const char *path, const char *format,
     return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)", format);
 }
 
-/* Can every file that is asked for hold what the switches ask for? */
+/* Checks that all requested files can hold the requested data. */
 static enum tri_status check_formats(const struct long_options *options, const struct tri_switches *switches,
                                      struct tri_error *error)
 {
@@ -493,9 +498,9 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     return status;
 }
 
-/* --- all together */
+/* --- the whole program */
 
-/* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
+/* Returns --scratch, TMPDIR, or the folder of the output; malloc'ed. */
 static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
 {
     const char *asked = options->scratch ? options->scratch : getenv("TMPDIR");
@@ -506,7 +511,7 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     return folder > 0 ? tri_name(output, folder, "") : tri_joined(".", "");
 }
 
-/* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */
+/* Converts a share of the memory to bytes. If the memory is unknown, a share is an error. */
 static enum tri_status settle_memory(struct long_options *options, struct tri_error *error)
 {
     const double total = options->memory_share > 0 ? tri_memory_total() : 0;
@@ -560,14 +565,14 @@ static int run_program(struct program *p, const struct arguments *arguments, str
 
 static void free_program(struct program *p)
 {
-    par_park_close(p->park, NULL); /* the mesh has gone with its run */
+    par_park_close(p->park, NULL); /* the mesh was freed with its run */
     par_team_end(&p->team);
     par_report_free(&p->schedule);
     free(p->scratch);
     free(p->ranks.number);
 }
 
-/* Once the words have been taken. */
+/* Runs the program after the arguments have been read. */
 static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     if (p->options.version) {
@@ -584,7 +589,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
-    /* One task goes on where several were at work. */
+    /* a single task resumes a run of several */
     const bool alone = !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
     int64_t room[PAR_ROOM];
     struct par_carrier one = par_carrier_alone(room);

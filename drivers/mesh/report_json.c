@@ -1,6 +1,6 @@
-/* The report: one object, built with jansson from what the run and the schedule have counted.
+/* Writes the report: one object, built with jansson from the counts of the run and the schedule.
  *
- * A library call that runs out of memory gives NULL, which the calls around it pass on: it is looked for once, at the
+ * A library call that runs out of memory returns NULL, which the enclosing calls pass on. It is checked once, at the
  * end. */
 #include "drivers/mesh/report_json.h"
 
@@ -14,12 +14,12 @@
 #include "triangle/base/system.h"
 #include "triangle/text/write.h"
 
-/* JSON has no infinity and no NaN: null stands for them. */
+/* JSON has no infinity and no NaN; null replaces them. */
 static json_t *real(double value) { return isfinite(value) ? json_real(value) : json_null(); }
 
 static json_t *whole(int64_t value) { return json_integer((json_int_t)value); }
 
-/* The list with one more item; NULL: no memory. */
+/* Appends an item to the list; NULL: no memory. */
 static json_t *appended(json_t *list, json_t *item)
 {
     if (json_array_append_new(list, item) == 0)
@@ -30,7 +30,7 @@ static json_t *appended(json_t *list, json_t *item)
 
 /* --- stages */
 
-/* Quality here ends with the merged mesh; numbering comes after it. */
+/* The stage "quality" ends with the merged mesh; numbering is separate. */
 static json_t *stages_of(const struct run *run, const struct par_report *schedule)
 {
     const double *s = run->time.stage, number = schedule ? schedule->seconds_number : 0;
@@ -43,7 +43,7 @@ static json_t *stages_of(const struct run *run, const struct par_report *schedul
 static json_t *command_of(const struct arguments *arguments)
 {
     json_t *words = json_array();
-    for (int i = 0; i < arguments->argc; i++) /* words need not be UTF-8 */
+    for (int i = 0; i < arguments->argc; i++) /* arguments need not be UTF-8 */
         if (json_array_append_new(words, json_string(arguments->argv[i])))
             json_array_append_new(words, json_null());
     return words;
@@ -82,8 +82,8 @@ static json_t *blocks_of(const struct par_report *r)
     return blocks;
 }
 
-/* Share of the schedule in the time from the Delaunay triangulation to the merged mesh; 0: one sequential call did the
- * work. */
+/* Returns the share of the schedule in the time from the Delaunay triangulation to the merged mesh; 0: one sequential
+ * call did the work. */
 static json_t *percent(const struct par_report *r, double seconds)
 {
     double merged = r->seconds_total - r->seconds_number;
@@ -128,7 +128,7 @@ static json_t *histogram_of(const int64_t *count, int n)
     return list;
 }
 
-/* Of a mesh that is gone nothing is known but counts: null stands for all else. */
+/* If the mesh has gone, only its counts are known, and all other values are null. */
 static struct tri_shapes shapes_of(const struct run *run)
 {
     struct tri_shapes shapes = {.smallest_area = NAN, .largest_area = NAN, .total_area = NAN, .shortest_edge = NAN,
@@ -183,7 +183,7 @@ static json_t *rank_of(const int64_t *number)
                      moves_of(number + RANK_MESSAGES));
 }
 
-/* One object a rank; null: there is one process. */
+/* Returns one object per rank; null: there is a single process. */
 static json_t *ranks_of(const struct rank_report *report)
 {
     if (report->n_ranks == 0)
@@ -194,7 +194,7 @@ static json_t *ranks_of(const struct rank_report *report)
     return ranks;
 }
 
-/* --- lengths that are asked for */
+/* --- lengths */
 
 static json_t *source_of(const struct size_source *source)
 {
@@ -209,7 +209,7 @@ static json_t *source_of(const struct size_source *source)
 
 static json_t *given(double value) { return value > 0 ? real(value) : json_null(); }
 
-/* null: there are none. */
+/* Returns the lengths; null: there are none. */
 static json_t *sizes_of(const struct size_options *options)
 {
     json_t *sources = json_array();
@@ -224,9 +224,9 @@ static json_t *sizes_of(const struct size_options *options)
                      given(options->elements_across), "per_circle", given(options->per_circle));
 }
 
-/* --- all of it */
+/* --- the whole report */
 
-/* Of new vertices: in a lattice, over a front, or neither. */
+/* Returns the placement of new vertices: lattice, front, or neither. */
 static const char *placement_of(const struct tri_quality *q)
 {
     return tri_wants_lattice(q) || tri_lattice_length(q) > 0 ? "lattice" : q->lengths && q->front ? "front" : "classic";
@@ -234,7 +234,7 @@ static const char *placement_of(const struct tri_quality *q)
 
 static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks)
 {
-    int64_t memory = tri_memory_peak(); /* before the report needs some */
+    int64_t memory = tri_memory_peak(); /* measured before the report needs memory */
     const struct tri_quality *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
@@ -257,7 +257,7 @@ static enum tri_status write_text(const struct run *run, const char *text)
     struct tri_output *output;
     if (long_options_report_is_printed(run->settings.options)) {
         puts(text);
-        return TRI_OK; /* the caller looks whether all that was printed is out */
+        return TRI_OK; /* the caller checks that all output was written */
     }
     enum tri_status status = interrupt_open(run->outputs, run->settings.options->report, &output, run->error);
     status = status ? status : tri_output_write(output, text, strlen(text), run->error);

@@ -7,11 +7,11 @@
 #include "sched/schedule/schedule.h"
 #include "triangle/text/output.h"
 
-/* TRI_BAD_INPUT: this program was built without reports. */
+/* Checks that this program was built with reports. TRI_BAD_INPUT if not. */
 enum tri_status report_check(struct tri_error *error);
 
-/* Writes it into run->outputs. schedule: NULL, or what refined the mesh; of several ranks that of the first. Takes a
- * pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+/* Writes the report into run->outputs. schedule: the report of refinement, of the first of several ranks; or NULL.
+ * Takes one or two passes over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status report_write(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks);
 
 #endif

@@ -1,4 +1,4 @@
-/* In place of report_json.c where the library jansson was missing when this was built. */
+/* Replaces report_json.c if the library jansson was missing during the build. */
 #include "drivers/mesh/report_json.h"
 
 enum tri_status report_check(struct tri_error *error)

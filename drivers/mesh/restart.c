@@ -19,9 +19,9 @@ static enum tri_status check_options(const struct long_options *o, struct tri_er
     return TRI_OK;
 }
 
-/* A line that grows. */
+/* A line of text that grows. */
 struct line {
-    char *text; /* malloc'ed; ends in a zero once something has come */
+    char *text; /* malloc'ed; ends in a zero if not NULL */
     int64_t n, room;
     bool no_memory;
 };
@@ -36,7 +36,7 @@ static void add(struct line *line, const char *text)
     line->n += n;
 }
 
-/* A word as a shell would need it. */
+/* Adds an argument, quoted for a shell. */
 static void add_word(struct line *to, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-_./=:,%@";
@@ -48,21 +48,21 @@ static void add_word(struct line *to, const char *word)
     add(to, quote);
 }
 
-/* Is this the option, in a word of its own or with its value behind a "="? */
+/* Returns true if the argument is this option, with or without "=value". */
 static bool is_option(const char *word, const char *option)
 {
     size_t n = strlen(option);
     return strncmp(word, option, n) == 0 && (word[n] == 0 || word[n] == '=');
 }
 
-/* Is this one of the options, which all have a value, that the command that goes on has not? */
+/* Returns true for options that the resuming command leaves out. All of them have a value. */
 static bool is_left_out(const char *word)
 {
     return is_option(word, "--checkpoint") || is_option(word, "--resume") || is_option(word, "--time-limit");
 }
 
-/* The command that goes on: the words that were given, without the directory, which --resume names, and without the
- * limit of time, which was for the run that is over. */
+/* Builds the resuming command: the original arguments, without the folder, which --resume names, and without the time
+ * limit, which applied to this run only. */
 static void add_command(struct line *to, const struct restart *r, const char *program,
                         const struct arguments *arguments)
 {
@@ -84,7 +84,7 @@ static void tell_kept(void *user, int64_t triangles)
     interrupt_kept(triangles, restart->go_on);
 }
 
-/* From now on a stop tells what is kept. */
+/* From now on a stop reports what is kept. */
 static enum tri_status follow(struct restart *r, const char *program, const struct arguments *arguments,
                               struct tri_error *error)
 {

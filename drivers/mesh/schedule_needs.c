@@ -1,4 +1,4 @@
-/* What a run of the schedule will need: sums of what sched/ and the writers say that they take. */
+/* Estimates what a run of the schedule needs, from the needs that sched/ and the writers state. */
 #include <math.h>
 
 #include "drivers/mesh/needs.h"
@@ -7,14 +7,14 @@
 #include "sched/tunables.h"
 #include "triangle/text/stream.h"
 
-/* Measured: bytes of buffers and libraries; for pages of files on their way, a thread; and for pieces of files that
- * pass through the first of several tasks. */
+/* Measured bytes: buffers and libraries; pages of files being written, per thread; and pieces of files that pass
+ * through the first of several tasks. */
 static const double BUFFERS = 3e7, PAGES = 3e7, PIECES = 3.5e7;
 
-/* The root that what a sweep holds grows with: so many triangles are in a column, to the order. */
+/* Returns the approximate number of triangles in a column of cells. The memory of a sweep grows with this number. */
 static double column_of(double triangles) { return sqrt(triangles * par_triangles_in_cell(triangles)); }
 
-/* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
+/* Returns the peak memory of a mesh that grows by `grown` triangles, of which areas require `demand`. */
 static double bytes_whole(const struct run *run, double grown, double demand)
 {
     const double places = grown + PAR_EMPTY_PLACES * fmax(grown - demand, 0), all = run->mesh.n_triangles + places;
@@ -23,13 +23,13 @@ static double bytes_whole(const struct run *run, double grown, double demand)
     return fmax(refined, grown * each + estimate_bytes_beside(run, grown));
 }
 
-/* The least memory that does, where some of what is held could go to files. */
+/* Returns the least memory, if data can be moved to files. */
 static double floor_of(const struct run *run, double held, double work)
 {
     return estimate_can_park(run, held) ? fmin(held, BUFFERS + work + PAGES * run->settings.threads) : held;
 }
 
-/* Of the rank that has most. */
+/* Finds the needs of the rank that needs most. */
 static void find_needs_of_rank(const struct run *run, double grown, struct needs *n)
 {
     const double own = fmin(PAR_RANK_BUSIEST * grown / run->settings.n_ranks, grown);

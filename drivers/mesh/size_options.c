@@ -17,7 +17,7 @@ enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_C
 static const struct kind {
     const char *name;
     enum id id;
-    const char *wanted; /* what a value must be, for errors */
+    const char *wanted; /* requirement for a value, for errors */
 } kinds[] = {
     {"size", SIZE, "neither a length above 0 nor a file of lengths (" TRI_SIZE_SUFFIXES ")"},
     {"size-near", SIZE_NEAR, "not MARKER:LENGTH or MARKER:LENGTH,GROWTH"},
@@ -40,14 +40,14 @@ static const struct kind *find_kind(const char *word)
     return NULL;
 }
 
-/* --- values; false: the text is none */
+/* --- values; functions return false if the text is invalid */
 
 static bool take_length(const char *text, double *length)
 {
     return words_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, length);
 }
 
-/* Four numbers with commas between them; extent: room for them. */
+/* Reads four numbers separated by commas. extent: receives them. */
 static bool take_extent(const char *text, double extent[4])
 {
     const char *const end = text + strlen(text);
@@ -60,7 +60,7 @@ static bool take_extent(const char *text, double extent[4])
     return true;
 }
 
-/* A file with a known suffix; behind an array stands @ and its extent. */
+/* Reads a file name with a known suffix. For an array, @ and its extent follow. */
 static bool take_file(struct size_source *source, const char *text)
 {
     const char *at = strrchr(text, '@');
@@ -193,11 +193,11 @@ void size_options_free(struct size_options *options)
     options->n = 0;
 }
 
-/* --- in words */
+/* --- as text */
 
 struct line {
     char *at;
-    size_t left; /* room, with the final 0 */
+    size_t left; /* bytes, with the final 0 */
 };
 
 #if defined(__GNUC__)

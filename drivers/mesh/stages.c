@@ -1,4 +1,4 @@
-/* The stages in their order, and the lines that are printed between them. */
+/* The stages in their order, and the lines printed between them. */
 #include "drivers/mesh/stages.h"
 
 #include <inttypes.h>
@@ -13,9 +13,9 @@
 #include "triangle/base/system.h"
 #include "triangle/refine/census.h"
 
-static struct tri_output_set outputs; /* its temporary names are published to the handlers (interrupt.c) */
+static struct tri_output_set outputs; /* handlers know its temporary names (interrupt.c) */
 
-/* Ends a stage; the next one begins. */
+/* Ends a stage, and begins the next one. */
 static void end_stage(struct run *r, enum run_stage stage)
 {
     double time = tri_seconds();
@@ -33,7 +33,7 @@ static void say_milliseconds(const struct run *r, const char *what, double secon
 static void warn_of_switch(void *user, const char *text, bool misread)
 {
     const struct run *r = user;
-    if (misread) /* which cannot have been meant */
+    if (misread) /* probably a mistake */
         console_remark(&r->console, "warning: %s\n", text);
     else
         console_warn(&r->console, "%s.\n", text);
@@ -80,7 +80,7 @@ static enum tri_status read_pslg(struct run *r, const struct tri_read_options *o
     return status;
 }
 
-/* The triangles of a mesh that is to be refined, and their area bounds. */
+/* Reads the triangles of a mesh to refine, and their area bounds. */
 static enum tri_status read_mesh(struct run *r, const struct tri_read_options *options)
 {
     const struct tri_names *names = &r->input.names;
@@ -96,7 +96,7 @@ static enum tri_status read_mesh(struct run *r, const struct tri_read_options *o
     return tri_read_area(names->area, options, r->input.base, &r->input.elements, r->error);
 }
 
-/* Where the file that was named is there, but not of a kind that is read, the error says which kinds are. */
+/* If the named file exists but is of no supported type, the error lists the supported types. */
 static void add_hint(const struct run *r)
 {
     const char *file = r->arguments->file;
@@ -111,7 +111,7 @@ static void add_hint(const struct run *r)
                  " GeoJSON, shapefiles and others)");
 }
 
-/* Once the .poly has been read it is known whether the .node is, too. */
+/* Only after the .poly file has been read is it known whether the .node file is needed. */
 static struct file_names files_read(const struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
@@ -187,7 +187,7 @@ static void warn_of_loose(const struct run *r)
                      (long)loose);
 }
 
-/* There is a mesh. */
+/* Marks the mesh as valid. */
 static void say_built(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
@@ -200,7 +200,7 @@ static void say_built(struct run *r)
     }
 }
 
-/* Called when a stage begins: the lines that end the one before, then those of the new one. */
+/* Called when a stage begins. Prints the last lines of the previous stage, then the first lines of the new one. */
 static void follow_stage(void *user, enum tri_stage begins)
 {
     struct run *r = user;
@@ -238,7 +238,7 @@ static void follow_stage(void *user, enum tri_stage begins)
     }
 }
 
-/* A stop that nobody has noticed counts as one up to here, unless the mesh is finished, and not kept elsewhere. */
+/* A stop that was not noticed counts as one until now, unless the mesh is finished and not kept elsewhere. */
 static enum tri_status notice_stop(struct run *r, enum tri_status status)
 {
     if (r->built && long_options_state(r->settings.options))
@@ -246,7 +246,7 @@ static enum tri_status notice_stop(struct run *r, enum tri_status status)
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
 
-/* Files of a mesh that is there are written though somebody asks for the end, as long as there is time. */
+/* Writes the files of a complete mesh in spite of a stop, as long as there is time. */
 static void begin_outputs(const struct run *r)
 {
     interrupt_begin(&outputs);
@@ -254,7 +254,7 @@ static void begin_outputs(const struct run *r)
         outputs.stop = interrupt_end();
 }
 
-/* What will be told of the input, though its vertices will be gone then. */
+/* Keeps data about the input for messages, because its vertices will be gone. */
 static enum tri_status keep_twins(struct run *r)
 {
     const struct tri_mesh *mesh = &r->mesh;
@@ -287,7 +287,7 @@ enum tri_status run_find_unused(struct run *r)
     return TRI_OK;
 }
 
-/* Of the mesh as it is before refinement. */
+/* Makes the edge lengths, from the mesh before refinement. */
 static enum tri_status make_lengths(struct run *r)
 {
     const struct size_options *options = &r->arguments->sizes;
@@ -332,7 +332,7 @@ enum tri_status run_refine_end(struct run *r, enum tri_status status)
     return status;
 }
 
-/* A dry run wants the mesh as it is before. */
+/* A dry run needs the mesh before refinement. */
 static enum tri_status leave_unrefined(void *user, struct tri_mesh *mesh, const struct tri_quality *quality,
                                        struct tri_refine_report *report, struct tri_error *error)
 {
@@ -340,7 +340,7 @@ static enum tri_status leave_unrefined(void *user, struct tri_mesh *mesh, const 
     return TRI_OK;
 }
 
-/* The mesh, refined or, in a dry run, as it is before. */
+/* Makes the mesh: refined, or in a dry run before refinement. */
 static enum tri_status generate(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
@@ -361,7 +361,7 @@ static enum tri_status generate(struct run *r)
     options.is_edge = r->is_edge;
     options.base = r->arguments->format ? r->arguments->format->base : r->input.base;
     enum tri_status status = tri_generate(&r->mesh, &r->input.pslg, &options, &r->report, r->error);
-    if (r->built) /* not the input's fault */
+    if (r->built) /* the input is not at fault */
         return notice_stop(r, status);
     if (status == TRI_BAD_INPUT && s->mesh && !r->arguments->format)
         snprintf(r->error->file, sizeof r->error->file, "%s.ele", r->arguments->input);
@@ -377,7 +377,7 @@ static void tell_of_quality(struct run *r)
         return;
     say_milliseconds(r, r->plan.swept ? "Quality and output" : "Quality", r->time.stage[RUN_QUALITY]);
     if (r->report.notes.empty[0])
-        return; /* no triangle keeps anything */
+        return; /* no triangle refers to it */
     if (report->hit_limit && r->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
     summary_bounds(r);
@@ -385,7 +385,7 @@ static void tell_of_quality(struct run *r)
 
 /* --- a run that is stopped */
 
-/* Triangles below the bounds, where counting them takes no time to speak of; else -1. */
+/* Returns the number of triangles that violate the bounds if counting is fast; otherwise -1. */
 static int64_t count_bad(const struct run *r)
 {
     enum { SOON_COUNTED = 1 << 22 };
@@ -396,7 +396,7 @@ static int64_t count_bad(const struct run *r)
     return summary_sum(count);
 }
 
-/* What there is of the mesh, as far as this process knows: on several ranks each has a part. */
+/* Returns the number of triangles known to this process; each rank has a part. */
 static void tell_how_far(const struct run *r, char *far, size_t size)
 {
     const int64_t bad = r->built ? count_bad(r) : -1;
@@ -412,7 +412,7 @@ static void tell_how_far(const struct run *r, char *far, size_t size)
         snprintf(far + length, size - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
 }
 
-/* By what, when, where, how far; and what is kept. */
+/* Reports the cause, the stage and the progress of a stop, and what is kept. */
 static void tell_of_stop(struct run *r, bool partial)
 {
     struct tri_error line = {.status = TRI_STOPPED};
@@ -429,7 +429,7 @@ static void tell_of_stop(struct run *r, bool partial)
         interrupt_told();
 }
 
-/* After a stop: is there a mesh, and is it wanted? Then on with it. */
+/* After a stop: goes on if there is a mesh, and it is requested. */
 static enum tri_status keep_partial(struct run *r, enum tri_status status)
 {
     if (status != TRI_STOPPED || !r->built || !r->settings.options->write_partial)
@@ -443,7 +443,7 @@ static enum tri_status keep_partial(struct run *r, enum tri_status status)
 
 /* --- output */
 
-/* Rows on their way, and lists beside the mesh: of edges, and of vertices if those without triangles are left out. */
+/* Bytes of rows being written, and of lists beside the mesh: edges, and vertices if unused ones are left out. */
 double run_write_bytes(const struct run *r)
 {
     const bool leaves_out = mesh_files_grid(r, r->settings.options->n_exports > 0).jettison;
@@ -490,7 +490,7 @@ enum tri_status run_tell(struct run *r)
     if (status)
         return status;
     say_milliseconds(r, "Total running", r->time.total);
-    r->counts.interior += r->report.loose; /* as Triangle counts */
+    r->counts.interior += r->report.loose; /* counted as in Triangle */
     r->counts.subsegments += r->report.loose;
     summary_counts(r);
     if (s->verbosity > 0)
@@ -508,7 +508,7 @@ enum tri_status run_commit(struct run *r, enum tri_status status)
 
 /* --- all together */
 
-/* Of the mesh as it is before. */
+/* A dry run: makes the mesh before refinement, and prints what the run would need. */
 static enum tri_status make_dry(struct run *r)
 {
     enum tri_status status = generate(r);
@@ -536,15 +536,15 @@ enum tri_status run_make(struct run *r)
     if (status)
         return status;
     tell_of_quality(r);
-    summary_input(r); /* when the vertices have the numbers of the input again */
+    summary_input(r); /* after vertices have the numbers of the input again */
     return TRI_OK;
 }
 
-/* Seconds that ending may take. A batch system kills 30 seconds after it has asked. */
+/* Seconds that ending may take. A batch system kills a program 30 seconds after the request. */
 static double patience_of(const struct run_settings *settings)
 {
     static const double KEEPING = 3, KEEPING_ON_RANKS = 25;
-    if (settings->options->write_partial || settings->written_elsewhere) /* the first task says why all end */
+    if (settings->options->write_partial || settings->written_elsewhere) /* the first task reports why all end */
         return HUGE_VAL;
     return !long_options_state(settings->options) ? 0 : settings->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
 }

@@ -1,7 +1,7 @@
-/* A run of a mesh generator from the command line, from files to files: the stages that `triangle` and its parallel
- * sister share. Each program calls them in the order below, with its own steps between: begin, read and make,
- * then, after write_begin, write_mesh, tell and commit, unless the run is dry. Whatever happens, end comes last.
- * A stage that fails returns its status, with run->error; a program calls no stage after that but commit and end. */
+/* A run of a mesh generator on the command line, from files to files. `triangle` and `ptriangle` share these stages.
+ * Each program calls them in the order below, with its own steps between: begin, read, make, then, after write_begin,
+ * write_mesh, tell and commit, unless it is a dry run. end always comes last. A stage that fails returns its status,
+ * with run->error. After a failure a program calls only commit and end. */
 #ifndef DRIVERS_MESH_STAGES_H
 #define DRIVERS_MESH_STAGES_H
 
@@ -29,108 +29,112 @@ enum run_stage {
 
 struct needs; /* drivers/mesh/needs.h */
 
-/* What the program says of the machine and of its tasks; all 0: one core, no schedule. */
+/* Properties of the machine and of the tasks; all 0: one core, no schedule. */
 struct run_settings {
-    const struct long_options *options;  /* what the command line says beyond the switches of Triangle; maybe all 0 */
-    const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    int threads;            /* of the schedule that refines; 0: there is no schedule, tri_refine refines */
+    const struct long_options *options;  /* options beyond the switches of Triangle; may be all 0 */
+    const struct tri_executor *executor; /* executor for reading and writing; NULL: one task after another */
+    int threads;            /* threads of the schedule; 0: tri_refine refines without a schedule */
     /* What the schedule needs (drivers/mesh/needs.h); NULL: there is none. */
     void (*schedule_needs)(const struct run *run, bool sweeps, double grown, double demand, struct needs *needs);
-    int n_ranks;            /* that share the mesh; 0: it is all here */
+    int n_ranks;            /* number of ranks that share the mesh; 0: a single process */
     bool written_elsewhere; /* another rank reads and writes all files */
-    bool always_sweep;      /* on ranks, and for tests: also what would fit in memory */
+    bool always_sweep;      /* sweep even if the mesh would fit in memory; on ranks, and for tests */
 };
 
 struct run_input {
-    struct tri_names names; /* of the files; empty before run_begin */
+    struct tri_names names; /* names of the files; empty before run_begin */
     struct tri_pslg pslg;
-    struct tri_elements elements; /* -r: the triangles; else none */
+    struct tri_elements elements; /* with -r: the triangles; otherwise empty */
     int32_t base;           /* 0 or 1: the first number in the files */
-    bool points_in_poly;    /* there is no .node */
-    int64_t warnings;       /* about lines of the files */
+    bool points_in_poly;    /* there is no .node file */
+    int64_t warnings;       /* number of warnings about lines of the files */
 };
 
-/* How the mesh is made: see drivers/mesh/plan.h. */
+/* How the mesh is made, see drivers/mesh/plan.h. */
 struct run_plan {
-    bool swept;    /* files are written meanwhile, and the mesh goes; else it stays a mesh .. */
-    bool filed;    /* .. which lies in files as far as it does not fit in memory; else in memory */
-    double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
-    double triangles; /* that are expected */
+    bool swept;    /* write files during refinement and free the mesh; if false, keep the mesh */
+    bool filed;    /* keep the part of the mesh that does not fit in memory in files */
+    double memory; /* bytes of memory that the process may use; HUGE_VAL: not known */
+    double triangles; /* expected number of triangles */
 };
 
-/* In seconds. */
+/* Times in seconds. */
 struct run_time {
-    double begin, mark; /* by tri_seconds: when the run and the stage began */
-    double stage[RUN_STAGES]; /* spent in each; 0: not yet */
-    double total;       /* from the begin to the statistics; 0: not yet */
+    double begin, mark; /* by tri_seconds: start of the run, and of the stage */
+    double stage[RUN_STAGES]; /* duration of each stage; 0: not yet */
+    double total;       /* from the start to the statistics; 0: not yet */
 };
 
-/* All about a run, as far as it got. */
+/* A run, as far as it has come. */
 struct run {
     struct run_settings settings;
     const struct arguments *arguments;
-    struct tri_options options;     /* by the switches; refine_call and refine_user are the program's, which refines
-                                       between run_refine_begin and run_refine_end */
+    struct tri_options options;     /* set by the switches; refine_call and refine_user belong to the program, which
+                                       refines between run_refine_begin and run_refine_end */
     struct run_input input;
-    struct size_fields sizes;       /* options.quality.lengths are its own, from run_refine_begin on */
-    struct run_plan plan;           /* all 0 until refinement begins */
+    struct size_fields sizes;       /* options.quality.lengths refers to it after run_refine_begin */
+    struct run_plan plan;           /* all 0 before refinement */
     struct tri_mesh mesh;
-    bool built;                     /* there is a mesh: what stops now leaves one that is valid */
-    bool *is_edge;                  /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
-    int32_t *twin;                  /* [pslg.n_points] first one of the points at a place, where the mesh will be gone;
-                                       else NULL */
+    bool built;                     /* the mesh is valid from now on, also after a stop */
+    bool *is_edge;                  /* [n_segments] with -r: whether the segment is an edge of the mesh; otherwise
+                                       NULL */
+    int32_t *twin;                  /* [pslg.n_points] the first point at the same place, if the mesh will be gone;
+                                       otherwise NULL */
     struct orphans unused;          /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
     struct tri_report report;
-    struct tri_counts counts;       /* of the finished mesh; whoever sweeps fills them, else run_tell */
-    int64_t remain[TRI_EXCUSES];    /* triangles that stay below the bounds, by reason */
-    bool remain_known;              /* they have been counted */
+    struct tri_counts counts;       /* counts of the finished mesh; set by a sweep, otherwise by run_tell */
+    int64_t remain[TRI_EXCUSES];    /* triangles that violate the bounds, by reason */
+    bool remain_known;              /* `remain` has been counted */
     struct run_time time;
-    const char *stopped;            /* by what, "SIGTERM", and this is the mesh so far; NULL: by nothing */
+    const char *stopped;            /* cause of the stop, such as "SIGTERM", if the mesh is incomplete; NULL: not
+                                       stopped */
     struct console console;
-    struct tri_output_set *outputs; /* the guarded set (drivers/interrupt.h) of its files */
+    struct tri_output_set *outputs; /* the guarded set of its files (drivers/interrupt.h) */
     struct tri_error *error;
 };
 
-/* Arguments after arguments_end, with the name of an input. The settings, and who refines, are still to be set. All
- * pointers are borrowed. */
+/* Returns a run with arguments after arguments_end, which name an input. The caller must still set the settings and the
+ * refine call. All pointers are borrowed. */
 struct run run_new(const char *program, const struct arguments *arguments, struct tri_error *error);
 
-/* Starts the clock and the watch for signals, and checks the switches. */
+/* Starts the clock and the signal handlers, and checks the switches. */
 enum tri_status run_begin(struct run *run);
 
-/* Unless written_elsewhere. Where there are no ranks, also: can what has been read be triangulated in memory? */
+/* Reads the input, unless written_elsewhere. Without ranks it also checks that the input can be triangulated in
+ * memory. */
 enum tri_status run_read(struct run *run);
 
-/* Makes the mesh, refined by options.refine_call. A dry run leaves it as it is before, and ends here: it says what the
- * true one would need, and where it would be refused. */
+/* Makes the mesh, refined by options.refine_call. A dry run does not refine; it prints what the run would need and
+ * whether it would be refused. */
 enum tri_status run_make(struct run *run);
 
-/* Finds the vertices of no triangle in a mesh that has no free numbers: run->unused. run_refine_begin does so while the
- * mesh is small. TRI_NO_MEMORY. */
+/* Finds the unused vertices of a mesh that has no free numbers: run->unused. run_refine_begin does so while the mesh is
+ * small. TRI_NO_MEMORY. */
 enum tri_status run_find_unused(struct run *run);
 
-/* For a refine_call: before it refines as run->plan says, which begin finds out. Where run->plan.swept, it also writes
- * the files into run->outputs, and counts: run->counts; the mesh is gone then. After a failure of begin it returns that
- * status; else what end makes of its own. */
+/* A refine_call calls begin, refines as run->plan says, which begin has set, and calls end. If run->plan.swept, the
+ * refine_call also writes the files into run->outputs and sets run->counts, and the mesh is gone. If begin fails, the
+ * refine_call returns that status; otherwise it returns the result of end. */
 enum tri_status run_refine_begin(struct run *run);
 enum tri_status run_refine_end(struct run *run, enum tri_status status);
 
-/* Begins to write. Of a mesh that was swept all is written, and write_mesh does nothing. */
+/* Begins the output. After a sweep everything has been written, and write_mesh does nothing. */
 void run_write_begin(struct run *run);
 
-/* Bytes of memory that write_mesh takes beside the mesh. */
+/* Returns the bytes of memory that write_mesh needs beside the mesh. */
 double run_write_bytes(const struct run *run);
 enum tri_status run_write_mesh(struct run *run);
 
-/* Says the statistics. */
+/* Prints the statistics. */
 enum tri_status run_tell(struct run *run);
 
-/* After run_write_begin. All files appear together, as the last thing that can fail; after a failure, status, none. */
+/* Commits the output, after run_write_begin. All files appear together, as the last action that can fail; after a
+ * failure (status) none. */
 enum tri_status run_commit(struct run *run, enum tri_status status);
 
-/* Says how the run failed or was stopped, and frees all. Returns the exit code: 0; 1 after an error: then no file has
- * been touched; after a stop that of interrupt_code: then no file has been touched either, unless partial meshes are
- * wanted and it says where one is. */
+/* Reports a failure or a stop, and frees everything. Returns the exit code: 0 for success; 1 after an error, without a
+ * changed file; after a stop that of interrupt_code. After a stop no file has changed either, unless a partial mesh was
+ * requested, whose place is printed. */
 int run_end(struct run *run, enum tri_status status);
 
 #endif

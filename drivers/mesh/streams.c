@@ -30,7 +30,7 @@ static enum tri_status open_stream(struct stream *s, const char *name, const str
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, sink, error);
 }
 
-/* One of Triangle's files, if it is wanted. */
+/* Opens one of Triangle's files, if requested. */
 static enum tri_status open_text(struct tri_output **output, const struct run *run, const char *suffix)
 {
     if (!mesh_files_has(run, suffix))
@@ -122,7 +122,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
     return status;
 }
 
-/* Segments of the input that are no edges of the mesh, and whose ends are points, as the last tile. */
+/* Hands out, as the last tile, input segments whose ends are points but which are no edges of the mesh. */
 static enum tri_status take_loose(struct streams *streams, struct tri_error *error)
 {
     const struct run *run = streams->run;

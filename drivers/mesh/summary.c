@@ -1,4 +1,4 @@
-/* Lines about a finished mesh. Labels and columns of the blocks are those of Triangle, since scripts parse them. */
+/* Prints lines about a finished mesh. Labels and columns are those of Triangle, because scripts parse them. */
 #include "drivers/mesh/summary.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 #include "triangle/refine/census.h"
 #include "triangle/refine/split.h"
 
-/* --- what went otherwise */
+/* --- warnings */
 
 static void warn_of_duplicates(const struct run *run)
 {
@@ -32,8 +32,8 @@ void summary_notes(const struct run *run)
         console_remark(&run->console, "warning: %s\n", notes->empty);
 }
 
-/* A Voronoi vertex lies beyond a subsegment whose diametral circle holds the apex of its triangle. Without segments the
- * mesh ends at the convex hull, and beyond that no vertex is. */
+/* Warns of Voronoi vertices beyond a subsegment. They occur if its diametral circle contains the apex of the triangle.
+ * Without segments the mesh ends at the convex hull, and no Voronoi vertex is reported beyond it. */
 static void warn_of_voronoi(const struct run *run)
 {
     const struct tri_mesh *mesh = &run->mesh;
@@ -87,7 +87,7 @@ int64_t summary_sum(const int64_t count[TRI_EXCUSES])
     return sum;
 }
 
-/* The rest of a line: how many for each reason. Nothing where there are none. */
+/* Prints the rest of a line: the number for each reason, or nothing if there are none. */
 static void say_reasons(const struct run *run, const int64_t count[TRI_EXCUSES])
 {
     const char *comma = "";
@@ -116,7 +116,7 @@ void summary_bounds(struct run *run)
 {
     const struct console *console = &run->console;
     const struct tri_quality *quality = &run->options.quality;
-    if (!console->quiet && !run->plan.swept) { /* a pass over all triangles */
+    if (!console->quiet && !run->plan.swept) { /* one pass over all triangles */
         if (quality->conforming)
             say_encroached(run);
         tri_count_bad(&run->mesh, quality, &run->report.quality, run->settings.executor, run->remain);
@@ -133,7 +133,7 @@ void summary_bounds(struct run *run)
 
 /* --- Statistics */
 
-/* Nodes amid edges that were read with -r are not written again. */
+/* Midpoints of edges that were read with -r are not written again. */
 static void warn_of_unused(const struct run *run)
 {
     const int64_t n = run->unused.n;
@@ -231,7 +231,7 @@ void summary_shapes(const struct run *run)
     printf("  Vertices put into triangles: %" PRId64 "\n\n", run->report.quality.inserted_free);
 }
 
-/* --- The mesh as the judge reads it, the judgement, and its lines. */
+/* --- The mesh in the form of the checker, the check, and its lines. */
 
 static enum tri_status read_mesh(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
                                  struct tri_error *error)
@@ -262,10 +262,10 @@ static struct tri_check_source source_of(const struct tri_mesh *mesh)
                                      .read = read_mesh, .user = (void *)mesh};
 }
 
-/* Bytes for parts that are worth it. */
+/* Additional bytes, for parts of useful size. */
 static const double PARTS = 4e6;
 
-/* What the judge must be told at least. */
+/* Returns the least memory bound that the checker accepts, in bytes. */
 static double least_bytes(const struct tri_check_source *source)
 {
     return tri_check_least_bytes(source, NULL) / TRI_CHECK_SHARE + PARTS;

@@ -12,7 +12,7 @@
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
 
-/* Triangle has no long options: it reads the letters of --min-angle as switches, which nobody means. */
+/* Triangle has no long options. It would read the letters of --min-angle as switches, which is never intended. */
 static bool is_long(const char *word) { return strncmp(word, "--", 2) == 0 && isalpha((unsigned char)word[2]); }
 
 static int take_long(const char *word)
@@ -37,7 +37,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 {
     struct run *run = user;
     enum tri_status status = run_refine_begin(run);
-    (void)quality; /* as it was before the lengths were made */
+    (void)quality; /* unchanged since the lengths were made */
     return status ? status : run_refine_end(run, tri_refine(mesh, &run->options.quality, report, error));
 }
 
@@ -52,7 +52,7 @@ static enum tri_status write_output(struct run *run)
     return run_commit(run, status);
 }
 
-/* From the named file to the mesh in its files. */
+/* Makes the mesh, from the input file to the output files. */
 static int make_mesh(const struct arguments *arguments)
 {
     static const struct long_options none;

@@ -1,5 +1,5 @@
-/* meshplot: draws a mesh from its files as PNG or SVG. Here are arguments and files; drivers/plot/plot.h draws.
- * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
+/* meshplot: draws a mesh from its files as PNG or SVG. This file handles arguments and files; drivers/plot/plot.h
+ * draws. Exit code 0: drawn, 1: files cannot be read, drawn or written, 2: wrong usage. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,38 +23,38 @@ enum { TROUBLE = 1, MISUSE = 2 };
 
 static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg [options]\n";
 
-static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+static const char help[] = /* cmake/help.awk turns it into a manual page */
     "\n"
-    "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtkhdf, .vtu, .msh,\n"
-    ".2dm, .14 or .grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or\n"
-    "that has more than 16.7 million triangles, what lies in the window is drawn; if that is more than so many\n"
-    "triangles, densities are.\n"
+    "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly if that file exists. Without BASE.ele\n"
+    "it draws points and segments only. BASE can also be the name of one file that ptriangle has written: .h5,\n"
+    ".vtkhdf, .vtu, .msh, .2dm, .14 or .grd. If the mesh is larger than the memory (.h5 and text files) or has more\n"
+    "than 16.7 million triangles, only the part inside the window is drawn. If that part has more than 16.7 million\n"
+    "triangles, the picture shows their density instead.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
     "  -c, --color quality|area|region|block|none|density\n"
     "                           quality (default): the smallest angle of each triangle; region: its first\n"
-    "                           attribute; block: see --blocks; density: how many triangles there are at each\n"
-    "                           pixel, below 1 where they are larger than pixels, for a mesh of any size\n"
-    "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
-    "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
-    "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
-    "  -e, --edges auto|on|off  auto (default): short ones fade\n"
-    "      --segments on|off    (default on)\n"
-    "      --legend on|off      (default on)\n"
-    "  -t, --title TEXT         a line above the picture\n"
-    "  -b, --blocks FILE        one line `block phase` for each triangle, in the order of BASE.ele; a phase\n"
-    "                           below 0: in no block\n"
-    "      --version, --help    name and version; this help\n"
+    "                           attribute; block: see --blocks; density: number of triangles per pixel, below 1\n"
+    "                           if triangles are larger than pixels, for meshes of any size\n"
+    "  -s, --size WIDTH         width of the picture in pixels, 64 to 12000 (default 1200)\n"
+    "  -w, --window X0,Y0,X1,Y1  part of the mesh to show (default: all)\n"
+    "  -m, --mark X0,Y0,X1,Y1  draw a red frame around this part\n"
+    "  -e, --edges auto|on|off  auto (default): short edges fade\n"
+    "      --segments on|off    draw segments (default on)\n"
+    "      --legend on|off      draw a legend (default on)\n"
+    "  -t, --title TEXT         print a line above the picture\n"
+    "  -b, --blocks FILE        file with one line `block phase` for each triangle, in the order of BASE.ele; a\n"
+    "                           negative phase means that the triangle is in no block\n"
+    "      --version, --help    print name and version; print this help\n"
     "\n"
-    "Exit code: 0 drawn, 1 files that cannot be read or written, 2 wrong usage.\n";
+    "Exit code: 0 for success, 1 if a file cannot be read or written, 2 for wrong usage.\n";
 
 enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSITY };
 
 struct settings {
     const char *base, *output, *blocks;
     enum colouring colour;
-    bool is_base; /* a suffix has been cut off `base` */
+    bool is_base; /* a suffix of `base` was removed */
     bool has_window;
     struct plot_style style; /* window and mark in the caller's coordinates */
 };
@@ -62,9 +62,9 @@ struct settings {
 struct files {
     struct tri_pslg mesh; /* points and subsegments */
     struct tri_elements elements;
-    int32_t *block_phase; /* [elements.n][2] or NULL */
+    int32_t *block_phase; /* [elements.n][2] block and phase of each triangle, or NULL */
     struct plot_density density;
-    int64_t all_points, all_triangles; /* of the whole mesh, where that is but a part */
+    int64_t all_points, all_triangles; /* of the whole mesh, if only a part was read */
 };
 
 /* --- reading */
@@ -110,14 +110,14 @@ static enum tri_status read_blocks(struct files *f, const char *path, struct tri
 
 /* --- coordinates */
 
-/* x * 2^-exponent; in two steps, since 2^1074 is no double. */
+/* Returns x * 2^-exponent. It takes two steps because 2^1074 is no double. */
 static double scale_down(double x, int exponent)
 {
     const int half = exponent / 2;
     return ldexp(ldexp(x, -half), -(exponent - half));
 }
 
-/* Brings the points to |x| <= 1, so that no square overflows or vanishes. Returns the exponent. */
+/* Scales the points to |x| <= 1, so that squares neither overflow nor vanish. Returns the exponent. */
 static int normalise(struct tri_pslg *mesh)
 {
     double largest = 0;
@@ -137,7 +137,7 @@ static struct plot_box scale_box(struct plot_box box, int exponent)
                              scale_down(box.y1, exponent)};
 }
 
-/* The box around all that is drawn. */
+/* Returns the box around the drawing. */
 static struct plot_box whole(const struct plot_mesh *mesh)
 {
     struct plot_box box = plot_box_empty;
@@ -158,7 +158,7 @@ static enum tri_status take_densities(struct settings *s, struct files *f, const
     return plot_part_count(source, &f->density, &f->mesh, error);
 }
 
-/* What shows in the window; TRI_TOO_LARGE, and nothing: that is too much to be drawn. */
+/* Reads the triangles inside the window. TRI_TOO_LARGE: there are too many to be drawn, and nothing is kept. */
 static enum tri_status take_triangles(const struct plot_box *window, struct files *f,
                                       const struct tri_check_source *source, bool all, struct tri_error *error)
 {
@@ -334,7 +334,7 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-/* The index of text among words that are separated by bars. */
+/* Finds the index of text in a list of words separated by bars. */
 static bool parse_word(const char *text, const char *words, int *value)
 {
     const size_t n = strlen(text);
@@ -360,7 +360,7 @@ static bool parse_box(const char *text, struct plot_box *box)
     return box->x0 < box->x1 && box->y0 < box->y1;
 }
 
-/* Applies one option; false: not a value for it. */
+/* Applies one option. Returns false if its value is invalid. */
 static bool apply(void *settings, int option)
 {
     struct settings *s = settings;
@@ -394,7 +394,7 @@ static bool apply(void *settings, int option)
     return known;
 }
 
-/* 0: go on; < 0: done, with success; > 0: exit code. */
+/* Returns 0 to go on, < 0 if the program is done, > 0: the exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,

@@ -1,6 +1,6 @@
-/* How many triangles there are at each pixel. A pixel whose centre a triangle covers has as many of it as fit into the
- * pixel's area, so that few triangles give an even picture; those much smaller than a pixel are counted where their
- * centroids lie. */
+/* Counts triangles at each pixel. If a triangle covers the centre of a pixel, it adds the number of such triangles that
+ * fit into the pixel, so that few triangles give an even picture. Triangles much smaller than a pixel are counted at
+ * their centroid. */
 #include <math.h>
 
 #include "drivers/plot/plot.h"
@@ -13,7 +13,7 @@ static void add(struct plot_density *d, double column, double row, double share)
         d->count[(size_t)row * (size_t)d->width + (size_t)column] += share;
 }
 
-/* Where a horizontal line runs through the triangle; nowhere: from > to. */
+/* Finds where a horizontal line crosses the triangle; from > to: nowhere. */
 static void cut(double corner[3][2], double y, double *from, double *to)
 {
     *from = INFINITY;

@@ -1,26 +1,26 @@
-/* The picture as a whole: where the mesh and the texts go, and the texts. */
+/* Draws the whole picture: places the mesh and the texts, and draws the texts. */
 #include "drivers/plot/plot.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* Where everything lies, in pixels, y down. */
+/* Positions in pixels, y down. */
 struct layout {
     double font; /* size of the texts */
     double margin;
-    struct plot_box field; /* of the mesh */
-    double legend;         /* top of the texts below, or 0 */
+    struct plot_box field; /* box of the mesh */
+    double legend;         /* top of the texts below the mesh, or 0 */
 };
 
 /* --- layout */
 
-/* Names of colours stand in so many columns. */
+/* Number of columns for the names of colours. */
 static int key_columns(double width, double font)
 {
     return (int)fmax(1, fmin(6, 0.68 * width / (6 * font)));
 }
 
-/* Height of the texts below, in sizes of their font. */
+/* Returns the height of the texts below, in units of their font size. */
 static double legend_lines(const struct plot_shading *shading, double width, double font)
 {
     const int columns = key_columns(width, font);
@@ -85,7 +85,7 @@ static void use_font(cairo_t *cr, double size, bool bold)
     cairo_set_source_rgb(cr, 0.15, 0.17, 0.2);
 }
 
-/* 1234567 as "1,234,567". */
+/* Formats 1234567 as "1,234,567". */
 static void print_grouped(char out[32], int64_t n)
 {
     char digits[24];
@@ -99,7 +99,7 @@ static void print_grouped(char out[32], int64_t n)
     out[at] = '\0';
 }
 
-/* Histogram above a bar of the shades, ticks below; (x, y) is the upper left corner. */
+/* Draws a histogram above a bar of the shades, with ticks below. (x, y) is the upper left corner. */
 static void draw_scale(cairo_t *cr, const struct plot_shading *s, double x, double y, double width, double font)
 {
     const double step = width / s->n_shades, high = 2.6 * font, bar = 0.45 * font;

@@ -1,10 +1,10 @@
-/* Drawing the mesh into its field of the picture, from bottom to top: triangles, edges, subsegments, a frame;
- * points only where there are no triangles.
+/* Draws the mesh into its box of the picture, from bottom to top: triangles, edges, subsegments, a frame. Points are
+ * drawn only if there are no triangles.
  *
- * Triangles on a surface of pixels are filled without antialiasing, which would leave a light seam along every edge,
- * into a layer of twice the resolution; scaled down, it has smooth outlines, and triangles smaller than a pixel mix as
- * they should. Cairo's coordinates end at 2^23 pixels: what reaches far out of the picture is cut before it is handed
- * over. */
+ * On a pixel surface triangles are filled without antialiasing, which would leave a light seam along every edge. They
+ * are filled into a layer of twice the resolution. Scaling it down gives smooth outlines, and mixes the colours of
+ * triangles smaller than a pixel. Cairo's coordinates end at 2^23 pixels, so shapes that reach far beyond the picture
+ * are cut first. */
 #include "drivers/plot/plot.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ struct pixel {
     double x, y;
 };
 
-/* The window in the middle of the field, as large as fits. */
+/* Places the window in the middle of the box, as large as fits. */
 static struct canvas fit(cairo_t *cr, const struct plot_mesh *mesh, const struct plot_box *window,
                          const struct plot_box *field)
 {
@@ -51,7 +51,7 @@ static bool is_near(struct pixel p)
     return fabs(p.x) < far_out && fabs(p.y) < far_out;
 }
 
-/* Signed distance to border `side` of the square of half width far_out; >= 0 inside. */
+/* Returns the signed distance to border `side` of the square of half width far_out; >= 0 inside. */
 static double inside(struct pixel p, int side)
 {
     const double along = side < 2 ? p.x : p.y;
@@ -64,7 +64,7 @@ static struct pixel cross(struct pixel p, struct pixel q, int side)
     return (struct pixel){p.x + s * (q.x - p.x), p.y + s * (q.y - p.y)};
 }
 
-/* Cuts a convex polygon by one border; `out` has room for one corner more. Returns its number of corners. */
+/* Cuts a convex polygon by one border. `out` has room for one more corner. Returns its number of corners. */
 static int cut_polygon(const struct pixel *in, int n, int side, struct pixel *out)
 {
     int m = 0;
@@ -117,7 +117,7 @@ static bool in_field(const struct plot_box *field, const struct pixel *p, int n)
     return plot_boxes_meet(&box, field);
 }
 
-/* Triangles sorted by shade; malloc'ed. */
+/* Returns the triangles sorted by shade; malloc'ed. */
 static int32_t *order_by_shade(const struct plot_mesh *mesh, const struct plot_shading *shading)
 {
     int32_t *order = malloc(((size_t)mesh->n_triangles + 1) * sizeof *order);
@@ -136,7 +136,7 @@ static int32_t *order_by_shade(const struct plot_mesh *mesh, const struct plot_s
     return order;
 }
 
-/* A vector surface gets a hair of the same colour around each fill, against the seams. */
+/* On a vector surface each fill gets a thin outline of the same colour, which hides the seams. */
 static void paint_fill(cairo_t *cr, bool vector)
 {
     if (vector) {
@@ -172,7 +172,7 @@ static void fill_triangles(const struct canvas *c, bool vector, const struct plo
     paint_fill(c->cr, vector);
 }
 
-/* Fills into a finer layer, and lays that on the picture. Returns what became of the layer. */
+/* Fills into a finer layer, and draws that on the picture. Returns the status of the layer. */
 static cairo_status_t fill_through_layer(const struct canvas *c, const struct plot_shading *shading,
                                          const int32_t *order)
 {
@@ -217,7 +217,7 @@ static enum tri_status draw_triangles(const struct canvas *c, bool vector, const
 
 /* --- edges */
 
-/* Edges at the lower of their ends, once for each triangle: far ends of those at v are ends[start[v]] ..
+/* Edges stored at their lower end, once for each triangle. The other ends of edges at v are ends[start[v]] ..
  * ends[start[v + 1] - 1]. */
 struct edge_list {
     size_t *start; /* [n_points + 1] */
@@ -247,7 +247,7 @@ static enum tri_status edge_list_make(struct edge_list *list, const struct plot_
     return TRI_OK;
 }
 
-/* Has the edge come before, with another triangle? */
+/* Returns true if the edge occurred before, with another triangle. */
 static bool is_again(const struct edge_list *list, int32_t v, size_t i)
 {
     size_t k = list->start[v];
@@ -256,7 +256,7 @@ static bool is_again(const struct edge_list *list, int32_t v, size_t i)
     return k < i;
 }
 
-/* How strongly an edge of that many pixels is drawn: 0 (not) .. FADE_STEPS. */
+/* Returns how strongly an edge of this length in pixels is drawn: 0 (not) .. FADE_STEPS. */
 static int strength(double length, enum plot_edges edges)
 {
     if (edges == PLOT_EDGES_ON)
@@ -264,7 +264,7 @@ static int strength(double length, enum plot_edges edges)
     return (int)fmin(fmax((length - 2) / 2, 0), FADE_STEPS);
 }
 
-/* The lines so far are drawn now and then: a path must not become too long. */
+/* Draws the collected lines from time to time, because a path must not become too long. */
 static void draw_line(const struct canvas *c, struct pixel p, struct pixel q, int *in_path)
 {
     add_line(c->cr, p, q);
@@ -325,7 +325,7 @@ static void draw_segments(const struct canvas *c, double width)
     cairo_stroke(c->cr);
 }
 
-/* Points alone: a line of no length with round ends is a dot. */
+/* Draws points alone: a line of length 0 with round ends is a dot. */
 static void draw_points(const struct canvas *c, double width)
 {
     int in_path = 0;
@@ -359,7 +359,7 @@ static uint32_t packed(struct plot_colour colour)
            (uint32_t)lrint(255 * colour.blue);
 }
 
-/* Pixel for pixel, as an image. */
+/* Draws each pixel as part of an image. */
 static enum tri_status draw_density(const struct canvas *c, const struct plot_shading *s, const struct plot_box *window,
                                     struct tri_error *error)
 {

@@ -1,5 +1,5 @@
-/* Points come through a cache of blocks: where numbers are local, as in our meshes, each block is read once or twice.
- * A mesh of up to 16 million points is in it as a whole. */
+/* Points are read through a cache of blocks. If numbers are local, as in meshes of ptriangle, each block is read once
+ * or twice. A mesh of up to 16 million points fits into the cache. */
 #include "drivers/plot/plot.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "triangle/base/grow.h"
 
 enum {
-    BLOCK_BITS = 12, /* points of a block */
+    BLOCK_BITS = 12, /* points in a block */
     BLOCK = 1 << BLOCK_BITS,
     MOST_BLOCKS = 1 << 12,
     SLICE = 1 << 16 /* triangles or segments */
@@ -28,8 +28,8 @@ int32_t plot_most_triangles(void)
 struct cache {
     const struct tri_check_source *source;
     struct tri_error *error;
-    enum tri_status status;    /* of the first block that could not be read */
-    int64_t n_slots, *block;   /* [n_slots] number of the block there, -1: none */
+    enum tri_status status;    /* status of the first block that could not be read */
+    int64_t n_slots, *block;   /* [n_slots] number of the block in each slot, -1: none */
     double (*points)[BLOCK][2];
 };
 
@@ -40,8 +40,8 @@ struct list {
 struct part {
     struct cache cache;
     struct plot_box window;
-    struct list corners, ends; /* numbers of points, three or two for each */
-    double *attributes;        /* one for each triangle taken */
+    struct list corners, ends; /* numbers of points, three or two for each item */
+    double *attributes;        /* one attribute for each triangle */
     int64_t attribute_room;
     struct plot_density *density;
 };
@@ -65,7 +65,7 @@ static void cache_end(struct cache *k)
     free(k->points);
 }
 
-/* Where point v is; one that is not there, or cannot be read, is nowhere. */
+/* Returns the position of point v. A point that does not exist, or cannot be read, has no position. */
 static const double *place_of(struct cache *k, int64_t v)
 {
     static const double nowhere[2] = {NAN, NAN};
@@ -97,9 +97,9 @@ enum tri_status plot_part_box(const struct tri_check_source *source, struct plot
     return status;
 }
 
-/* --- what shows */
+/* --- visible parts */
 
-/* Does the box around n points meet the window? */
+/* Returns true if the box around n points overlaps the window. */
 static bool shows(struct part *p, const int64_t *v, int n)
 {
     struct plot_box box = plot_box_empty;
@@ -119,7 +119,7 @@ static enum tri_status add(struct list *list, const int64_t *v, int n, struct tr
 
 static enum tri_status add_attribute(struct part *p, double value, struct tri_error *error)
 {
-    int64_t n = p->corners.n / 3; /* with this one */
+    int64_t n = p->corners.n / 3; /* including this one */
     if (!tri_grow_far(&p->attributes, &p->attribute_room, n, sizeof *p->attributes))
         return plot_no_memory(error);
     p->attributes[n - 1] = value;
@@ -141,7 +141,7 @@ static void count_triangle(struct part *p, const int64_t *v)
 {
     double corner[3][2];
     const double *at[3];
-    for (int k = 0; k < 3; k++) /* which a later one may push out of the cache */
+    for (int k = 0; k < 3; k++) /* a later point may evict it from the cache */
         at[k] = memcpy(corner[k], place_of(&p->cache, v[k]), sizeof corner[k]);
     plot_density_add(p->density, at);
 }
@@ -180,7 +180,7 @@ static enum tri_status each_segment(struct part *p, int64_t *ends, struct tri_er
     return status;
 }
 
-/* --- points of what was taken get numbers of their own */
+/* --- renumbering of the collected points */
 
 static int compare_numbers(const void *a, const void *b)
 {

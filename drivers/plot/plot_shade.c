@@ -1,6 +1,6 @@
-/* What colour each triangle gets and what the legend says: by smallest angle, area, region, or block and phase.
+/* Chooses the colour of each triangle and the legend: by smallest angle, area, region, or block and phase.
  *
- * A triangle's colour is an index into a short table of shades, so that the drawing can go shade by shade. */
+ * The colour of a triangle is an index into a short table of shades, so that the drawing can proceed shade by shade. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ enum {
     MAX_REGION_SHADES = 4096,
     MAX_KEYS = 24,
     MAX_PHASES = 24,
-    TONES = 16, /* of one phase, so that neighbouring blocks differ */
+    TONES = 16, /* tones within one phase, so that neighbouring blocks differ */
     OUTSIDE = MAX_PHASES * TONES
 };
 
@@ -66,17 +66,16 @@ static struct plot_colour from_oklch(double L, double C, double hue)
     return (struct plot_colour){to_srgb(clamp(rgb[0])), to_srgb(clamp(rgb[1])), to_srgb(clamp(rgb[2]))};
 }
 
-/* Sequential scale for t in 0 .. 1, dark violet to light yellow: lightness rises evenly, so that the order is seen also
- * without colour vision or in grey print. */
+/* Sequential scale for t in 0 .. 1, dark violet to light yellow. Lightness rises evenly, so the order is visible
+ * without colour vision and in grey print. */
 static struct plot_colour scale_colour(double t)
 {
     t = clamp(t);
     return from_oklch(0.30 + 0.63 * t, 0.12 + 0.05 * t, 310 - 205 * t);
 }
 
-/* One of any number of colours that are told apart easily as long as there are a dozen; tone in 0 .. 1 goes from its
- * darker to its lighter shade. Hues by the golden angle: each new one falls into the widest gap
- * between those before it. */
+/* Returns one of any number of colours; up to a dozen are easy to distinguish. tone in 0 .. 1 selects a darker or
+ * lighter shade. Hues follow the golden angle: each new one falls into the widest gap between earlier ones. */
 static struct plot_colour category_colour(int category, double tone)
 {
     static const double lightness[3] = {0, -0.17, 0.1};
@@ -146,7 +145,7 @@ static void fill_scale(struct plot_shading *s)
 
 /* --- geometry of a triangle */
 
-/* Sides as vectors, from corner k to the next one; returns twice the area. */
+/* Returns twice the area, and the sides as vectors from corner k to the next one. */
 static double measure(const struct plot_mesh *mesh, int32_t t, double side[3][2])
 {
     const int32_t *v = mesh->corners + 3 * (size_t)t;
@@ -158,7 +157,7 @@ static double measure(const struct plot_mesh *mesh, int32_t t, double side[3][2]
     return side[0][0] * side[1][1] - side[0][1] * side[1][0];
 }
 
-/* 0 for a triangle that is flat or clockwise. */
+/* Returns 0 for a flat or clockwise triangle. */
 static double smallest_angle(const struct plot_mesh *mesh, int32_t t)
 {
     double side[3][2], smallest = 180;
@@ -205,7 +204,7 @@ enum tri_status plot_shade_quality(struct plot_shading *s, const struct plot_mes
     return TRI_OK;
 }
 
-/* Ticks at the powers of ten, or at 1, 2, 5 times them where the range is short. */
+/* Places ticks at powers of ten, or at 1, 2, 5 times them if the range is short. */
 static void add_log_ticks(struct plot_shading *s, double low, double high)
 {
     const int n_steps = high - low < 3 ? 3 : 1, stride = (int)fmax(1, ceil((high - low) / 8));
@@ -234,7 +233,7 @@ enum tri_status plot_shade_area(struct plot_shading *s, const struct plot_mesh *
     }
     if (high < low)
         low = high = 0;
-    if (high - low < 0.01) { /* all alike: in the middle of the scale */
+    if (high - low < 0.01) { /* all values are equal: use the middle of the scale */
         low -= 0.5;
         high += 0.5;
     }
@@ -250,7 +249,7 @@ enum tri_status plot_shade_area(struct plot_shading *s, const struct plot_mesh *
 
 /* --- density */
 
-/* Logarithms of the least and the most there is at a pixel, at least a decade apart. */
+/* Finds the logarithms of the smallest and largest density, at least a decade apart. */
 static void density_range(const struct plot_density *d, double *low, double *high)
 {
     double least = 1, most = 0;
@@ -286,14 +285,14 @@ enum tri_status plot_shade_density(struct plot_shading *s, const struct plot_den
 
 /* --- regions */
 
-/* What is no number, in an HDF5 file of others, comes last. */
+/* Sorts NaN last, which HDF5 files of other programs may contain. */
 static int compare_reals(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y ? 1 : (isnan(x) != 0) - (isnan(y) != 0);
 }
 
-/* Sorts and drops repetitions; returns how many remain. */
+/* Sorts and removes duplicates. Returns the remaining number. */
 static int32_t distinct_reals(double *value, int32_t n)
 {
     int32_t kept = 0;
@@ -343,7 +342,7 @@ enum tri_status plot_shade_region(struct plot_shading *s, const struct plot_mesh
 
 /* --- blocks and phases */
 
-/* Distinct (phase, block) with phase >= 0; < 0: out of memory. */
+/* Finds distinct (phase, block) pairs with phase >= 0. Returns < 0 if out of memory. */
 static int64_t count_blocks(const int32_t *block_phase, int32_t n)
 {
     int64_t *key = malloc(((size_t)n + 1) * sizeof *key), used = 0;
@@ -359,7 +358,7 @@ static int64_t count_blocks(const int32_t *block_phase, int32_t n)
     return different;
 }
 
-/* Consecutive blocks get tones far apart. */
+/* Consecutive blocks get tones that differ strongly. */
 static int tone_of(int32_t block)
 {
     const double turns = 0.61803398874989485 * block;

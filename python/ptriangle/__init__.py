@@ -4,15 +4,15 @@
     m = ptriangle.mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]], min_angle=30, size=0.1)
     m.points, m.triangles
 
-help(ptriangle.mesh) tells all that can be given and wanted, help(ptriangle.Mesh) what comes out.
+help(ptriangle.mesh) lists the input and all options, and help(ptriangle.Mesh) describes the result.
 
-The mesh depends on the input alone, not on the number of threads. While the library works, other threads of Python run.
-Errors are exceptions with the library's words: InputError (a ValueError), TooLargeError (a MemoryError), FileError (an
-OSError), StoppedError; all are Error. Input that was hardly meant so is an InputWarning: skipped segments, polygons
-that overlap, sizes that are no lengths. EmptyMeshWarning, a kind of it, says why a mesh has no triangles;
-IgnoredWarning, another kind, says that part of a call has no effect.
+The mesh depends only on the input, not on the number of threads. Other Python threads run while the library works.
+Errors are exceptions with the message of the library: InputError (a ValueError), TooLargeError (a MemoryError),
+FileError (an OSError) and StoppedError. All are subclasses of Error. An InputWarning reports input that is probably a
+mistake, such as skipped segments, overlapping polygons or invalid sizes. It has two subclasses: EmptyMeshWarning says
+why a mesh has no triangles, and IgnoredWarning says that part of a call has no effect.
 
-ptriangle.compat stands in for the package `triangle`.
+ptriangle.compat replaces the package `triangle`.
 """
 from . import _library
 from ._errors import Error, FileError, InputError, StoppedError, TooLargeError

@@ -1,4 +1,4 @@
-"""Arrays of the library as numpy sees them, and the other way round."""
+"""Converts between arrays of the library and of numpy."""
 from __future__ import annotations
 
 from typing import Any, Iterable, Optional, Tuple, Type, Union
@@ -13,7 +13,7 @@ Array = npt.NDArray[Any]
 
 
 class _View:
-    """What numpy needs to see an array of the library, and who owns that."""
+    """The array interface of an array of the library, with a reference to its owner."""
 
     def __init__(self, array: Union[Reals, Ints], owner: object) -> None:
         size = array.dtype.itemsize
@@ -24,14 +24,14 @@ class _View:
 
 
 def to_numpy(array: Union[Reals, Ints], owner: object) -> Array:
-    """[n][width], without a copy, read-only: it belongs to the owner, who lives as long as it does."""
+    """Returns a read-only array [n][width] without a copy. It keeps its owner alive."""
     if array.n == 0:
         return np.empty((0, array.width), array.dtype)
     return np.asarray(_View(array, owner))
 
 
 def freeze(arrays: Iterable[Array]) -> None:
-    """They are read-only from now on."""
+    """Makes arrays read-only."""
     for rows in arrays:
         rows.flags.writeable = False
 
@@ -44,7 +44,7 @@ def _refuse_other_ints(rows: Array, name: str) -> None:
 
 
 def as_int32(given: Any, name: str) -> Array:
-    """Integers of 32 bits, also of numbers of another type with such values; nothing wraps."""
+    """Converts to 32-bit integers. Values that do not fit are errors."""
     rows = numbers(given, name)
     if rows.dtype == np.int32:
         return rows
@@ -54,7 +54,7 @@ def as_int32(given: Any, name: str) -> Array:
 
 
 def numbers(given: Any, name: str) -> Array:
-    """An array of numbers of whatever is given."""
+    """Converts any input to an array of numbers."""
     try:
         rows = np.asarray(given)
         return rows if rows.dtype.kind in "fiub" else rows.astype(np.float64)
@@ -64,7 +64,7 @@ def numbers(given: Any, name: str) -> Array:
 
 def from_numpy(kind: Union[Type[Reals], Type[Ints]], given: Any, name: str,
                width: Optional[int] = None) -> Tuple[Union[Reals, Ints], Optional[Array]]:
-    """(array of the library, numpy array that must live as long). Rows of equal steps are passed without a copy."""
+    """Returns (array of the library, numpy array that must live as long). Rows of equal steps are not copied."""
     rows = numbers(given, name)
     if rows.size == 0:
         return kind(), None

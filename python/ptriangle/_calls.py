@@ -1,7 +1,7 @@
-"""Calls of the library, and what may come in between: functions of the caller's, signals, exceptions in both.
+"""Calls of the library, with callbacks of the user, signals, and exceptions in both.
 
-INVARIANT: no exception leaves a function that C code has called; ctypes would drop it. What is raised in a function of
-the caller's, or in a handler of a signal (KeyboardInterrupt!), is kept, ends the work, and is raised when it has ended.
+INVARIANT: no exception leaves a function that C code has called, because ctypes would drop it. An exception in a
+callback, or in a handler of a signal (KeyboardInterrupt), is stored. It ends the call, and is raised after that.
 """
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ R = TypeVar("R")
 
 
 class Calls:
-    """What one call of the library calls back. who: the function as the caller knows it, for messages."""
+    """The callbacks of one call of the library. who: name of the public function, for messages."""
 
     def __init__(self, who: str) -> None:
         self.who = who
-        self.fault: Optional[BaseException] = None  # the first one
+        self.fault: Optional[BaseException] = None  # the first exception
         self._thread = threading.get_ident()
-        self._inside = False    # this thread is in a function of the caller's, where an exception is caught
+        self._inside = False    # this thread runs a callback of the user, in which exceptions are caught
         self._running = False
 
     def keep(self, fault: BaseException) -> None:
@@ -32,7 +32,8 @@ class Calls:
             self.fault = fault
 
     def guarded(self, function: Callable[..., R], otherwise: R) -> Callable[..., R]:
-        """The function for C code. After a fault it is not called any more; `otherwise` is what it returns then."""
+        """Wraps a function for C code. After an exception it is not called any more, and the wrapper returns
+        `otherwise`."""
         def call(*arguments: Any) -> R:
             if self.fault is not None:
                 return otherwise
@@ -49,7 +50,8 @@ class Calls:
         return call
 
     def stop(self, function: Optional[Callable[[], Any]]) -> Any:
-        """Asks the caller's function, if there is one, whether to stop; and does so after a fault."""
+        """Returns the stop callback. It calls the function of the user, if there is one, and stops after an
+        exception."""
         if function is None:
             return Stop(lambda _user: self.fault is not None)
         asked = self.guarded(lambda: bool(function()), True)
@@ -58,8 +60,8 @@ class Calls:
     # --- signals
 
     def _instead(self, handler: Callable[[int, Any], Any]) -> Callable[[int, Any], Any]:
-        """A handler may run at any instruction, also the first of a function that C code calls, before any `try`. So
-        what it raises is kept, unless it is in a function of the caller's, which might go on for ever: that ends."""
+        """A handler may run at any instruction, even at the start of a callback, before any `try`. So its exception is
+        stored. The exception is raised at once only inside a function of the user, which might never return."""
         def handle(number: int, frame: Any) -> None:
             try:
                 handler(number, frame)
@@ -73,7 +75,7 @@ class Calls:
         return handle
 
     def run(self, function: Callable[..., R], *arguments: Any) -> R:
-        """Calls the library, which needs no lock of the interpreter meanwhile."""
+        """Calls the library without the lock of the interpreter."""
         handlers = _handlers()
         try:
             self._running = True
@@ -81,7 +83,7 @@ class Calls:
                 _signal.signal(number, self._instead(handler))
             returned = function(*arguments)
         finally:
-            self._running = False  # a handler of ours that a signal leaves in place does what the one before it does
+            self._running = False  # if our handler stays in place after a signal, it does the same as the previous one
             for number, handler in handlers.items():
                 _signal.signal(number, handler)
         if self.fault is not None:
@@ -89,7 +91,7 @@ class Calls:
         return returned
 
     def run_checked(self, function: Callable[..., int], *arguments: Any) -> None:
-        """The same, for functions that return a status and take a tri_error as their last argument."""
+        """The same for functions that return a status and have a tri_error as last argument."""
         error = ErrorDetail()
         status = self.run(function, *arguments, byref(error))
         if status:
@@ -109,7 +111,7 @@ _SIGNALS = tuple(int(number) for number in signal.valid_signals())
 
 
 def _handlers() -> Dict[int, Callable[[int, Any], Any]]:
-    """Handlers that are written in Python; none outside of the main thread, which alone runs them."""
+    """Returns the handlers written in Python; none outside the main thread, which alone runs them."""
     if threading.current_thread() is not threading.main_thread():
         return {}
     getsignal = _signal.getsignal

@@ -1,4 +1,4 @@
-"""Triangle's text files as dictionaries, as the package `triangle` has them."""
+"""Reads Triangle's text files into dictionaries, like the package `triangle`."""
 from __future__ import annotations
 
 import os
@@ -11,7 +11,7 @@ ENDINGS = ("node", "ele", "poly", "area", "edge", "neigh")
 
 
 class _Numbers:
-    """The records of a file: lines of numbers; comments and empty lines are left out."""
+    """The records of a file: lines of numbers, without comments and empty lines."""
 
     def __init__(self, text: str) -> None:
         lines = (line.split("#", 1)[0].split() for line in text.splitlines())
@@ -28,7 +28,7 @@ class _Numbers:
         return [int(word) for word in words[:n]] + [0] * (n - len(words))
 
     def table(self, n: int, width: int) -> Tuple[int, Any]:
-        """n records: the number of the first, and `width` values each, 0 where there are fewer."""
+        """Reads n records: the number of the first, and `width` values each, 0 for missing ones."""
         rows = [self.next() for _ in range(n)]
         values = np.zeros((n, width))
         for row, words in zip(values, rows):
@@ -37,7 +37,7 @@ class _Numbers:
         return int(rows[0][0]) if rows else 0, values
 
     def regions(self, n: int) -> Any:
-        """n regions: x, y, attribute, largest area; a single value behind the place is the area."""
+        """Reads n regions: x, y, attribute, largest area. A single value after the place is the area."""
         single = [len(words) == 4 for words in self.records[self.at:self.at + n]]
         values = self.table(n, 4)[1]
         values[single, 2:] = values[single, 2:][:, ::-1]
@@ -122,7 +122,7 @@ _READERS = {"node": _node, "poly": _poly, "ele": _ele, "area": _area, "edge": _e
 
 def loads(node: Optional[str] = None, ele: Optional[str] = None, poly: Optional[str] = None,
           area: Optional[str] = None, edge: Optional[str] = None, neigh: Optional[str] = None) -> Arrays:
-    """The arrays of files that are given as texts; indices count from 0, whatever the files do."""
+    """Returns the arrays of files given as texts. Indices count from 0, regardless of the files."""
     texts = {"node": node, "poly": poly, "ele": ele, "area": area, "edge": edge, "neigh": neigh}
     data: Arrays = {}
     first = 1
@@ -133,7 +133,7 @@ def loads(node: Optional[str] = None, ele: Optional[str] = None, poly: Optional[
 
 
 def load(directory: str, name: str) -> Arrays:
-    """The arrays of the files name.node, name.poly, name.ele and so on in a directory, as far as there are any."""
+    """Returns the arrays of the existing files among name.node, name.poly, name.ele and so on in a directory."""
     texts = {}
     for ending in ENDINGS:
         path = os.path.join(directory, name + "." + ending)

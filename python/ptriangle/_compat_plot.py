@@ -1,4 +1,4 @@
-"""Pictures of meshes by matplotlib, as the package `triangle` draws them: what is given is drawn."""
+"""Draws meshes with matplotlib, like the package `triangle`: all given arrays are drawn."""
 from __future__ import annotations
 
 from typing import Any, Mapping, Tuple
@@ -12,7 +12,7 @@ def _lines(ax: Any, ends: Any, **style: Any) -> None:
 
 
 def _rays(ax: Any, origins: Any, directions: Any) -> None:
-    """Rays are drawn as far as the figure is wide."""
+    """Draws rays as long as the width of the figure."""
     length = np.ptp(np.asarray(ax.dataLim.get_points(), float)).max() if ax.has_data() else 1.0
     norms = np.linalg.norm(directions, axis=1, keepdims=True)
     tips = origins + length * directions / np.where(norms > 0, norms, 1)
@@ -32,8 +32,8 @@ def _triangles(ax: Any, at: Any, kw: Mapping[str, Any]) -> None:
 
 
 def plot(ax: Any, **kw: Any) -> None:
-    """Draws arrays as triangulate() takes and gives them, or (vertices, edges, rays as ray_origins and ray_directions)
-    as voronoi() does, on the axes of matplotlib."""
+    """Draws on axes of matplotlib: the arrays of triangulate(), or those of voronoi() (vertices, edges, ray_origins and
+    ray_directions)."""
     at = np.asarray(kw["vertices"], float)
     if "triangles" in kw:
         _triangles(ax, at, kw)
@@ -65,10 +65,10 @@ def _side_by_side(plt: Any, rows: int, columns: int, figures: Tuple[Any, Any], f
 
 
 def compare(plt: Any, A: Any, B: Any, figsize: Tuple[float, float] = (6, 3)) -> None:
-    """Two figures side by side."""
+    """Draws two figures side by side."""
     _side_by_side(plt, 1, 2, (A, B), figsize)
 
 
 def comparev(plt: Any, A: Any, B: Any, figsize: Tuple[float, float] = (3, 6)) -> None:
-    """Two figures, one above the other."""
+    """Draws two figures, one above the other."""
     _side_by_side(plt, 2, 1, (A, B), figsize)

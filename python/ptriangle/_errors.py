@@ -1,11 +1,11 @@
-"""Exceptions, which say what the library says."""
+"""Exceptions with the messages of the library."""
 from __future__ import annotations
 
 from typing import Type
 
 
 class Error(Exception):
-    """A call of the library failed; the text is the library's. status: enum tri_status."""
+    """A call of the library failed. The text is the library's message. status: enum tri_status."""
 
     def __init__(self, text: str, status: int = 0) -> None:
         super().__init__(text, status)
@@ -16,14 +16,14 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """What was given has no meaning; the text says what and where."""
+    """The input is invalid. The text names the fault and its place."""
 
     def __init__(self, text: str, status: int = 3) -> None:
         super().__init__(text, status)
 
 
 class TooLargeError(Error, MemoryError):
-    """More memory than there is, or more triangles than one mesh holds."""
+    """The mesh needs more memory than available, or more triangles than one mesh can hold."""
 
 
 class FileError(Error, OSError):
@@ -34,7 +34,7 @@ class FileError(Error, OSError):
 
 
 class StoppedError(Error):
-    """The function given as `stop` asked for it."""
+    """The function given as `stop` returned True."""
 
 
 _KINDS = {1: TooLargeError, 2: TooLargeError, 3: InputError, 4: FileError, 5: FileError, 8: StoppedError}

@@ -1,4 +1,4 @@
-"""Arrays as a figure of the library: what is given, and what a mesh consists of."""
+"""Converts arrays to a figure of the library."""
 from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, Tuple
@@ -6,14 +6,14 @@ from typing import Any, Dict, List, Mapping, Tuple
 from ._arrays import from_numpy
 from ._library import Figure, Ints, Reals
 
-SHAPES: Dict[str, Tuple[Any, Any]] = {  # the library's kind, and the width of a row
+SHAPES: Dict[str, Tuple[Any, Any]] = {  # type in the library, and width of a row
     "points": (Reals, 2), "point_attributes": (Reals, None), "point_markers": (Ints, 1), "segments": (Ints, 2),
     "segment_markers": (Ints, 1), "holes": (Reals, 2), "regions": (Reals, 4), "triangles": (Ints, 3),
     "triangle_attributes": (Reals, None), "triangle_areas": (Reals, 1)}
 
 
 def figure_of(arrays: Mapping[str, Any], who: str) -> Tuple[Figure, List[Any]]:
-    """The figure, and what must live as long."""
+    """Returns the figure, and the arrays that must live as long."""
     figure, kept = Figure(), []
     for name, given in arrays.items():
         if given is None:

@@ -1,7 +1,7 @@
-"""Files of meshes and figures, by the suffix of their names; what the library does not know is done here.
+"""Reads and writes files of meshes and figures. The suffix selects the format.
 
-A format of its own is an entry of _READERS and _WRITERS: here .h5 and .vtkhdf, by h5py, as docs/formats.md describes
-them.
+The library handles most formats. Formats handled in Python are entries of _READERS and _WRITERS: .h5 and .vtkhdf, with
+h5py (docs/formats.md).
 """
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _read_h5(path: str, who: str) -> Arrays:
 
 
 def _add_vtk(file: Any, arrays: Arrays) -> None:
-    """What VTK and ParaView read of it: one grid of triangles and then segments as lines."""
+    """Adds the grid for VTK and ParaView: triangles, then segments as lines."""
     points, triangles, segments = (arrays[name] for name in ("points", "triangles", "segments"))
     m, s = len(triangles), len(segments)
     grid = file.create_group("VTKHDF")
@@ -130,8 +130,8 @@ def write_arrays(path: Any, arrays: Arrays, first: int, who: str) -> None:
         raise InputError("%s: %s: cannot write %r files, but %s" % (who, path, suffix, _known(_WRITERS)))
     triangles = arrays["triangles"]
     figure, kept = figure_of(dict(arrays, triangles=None), who)
-    if triangles.shape[1] == 6:  # the library has middles opposite the corners
+    if triangles.shape[1] == 6:  # in the library midpoints lie opposite the corners
         triangles = triangles[:, [0, 1, 2, 4, 5, 3]]
     figure.triangles, owner = from_numpy(lib.Ints, triangles, who + ": triangles")
     Calls(who).run_checked(library.tri_file_write, os.fsencode(path), byref(figure), whole(who, "first", first))
-    del kept, owner  # which the library has looked at until here
+    del kept, owner  # the library uses these arrays up to this line

@@ -1,7 +1,8 @@
-"""Linear interpolation in a Delaunay triangulation: of scattered measurements onto the points of a mesh.
+"""Linear interpolation of scattered measurements, in their Delaunay triangulation, at the points of a mesh.
 
-Each place walks from triangle to triangle, across the edge that it lies farthest behind, all of them at once. In a
-Delaunay triangulation such walks end. Places outside have the value of the nearest place of the border.
+The search for each place walks from triangle to triangle, across the edge that the place is farthest beyond. All places
+walk at once. In a Delaunay triangulation such walks end. A place outside has the value of the nearest place on the
+border.
 """
 from __future__ import annotations
 
@@ -11,9 +12,9 @@ import numpy as np
 
 from ._arrays import Array
 
-_INSIDE = -1e-12    # a share of a triangle's area that counts as none
-_FLAT = 1e-9        # the height of a triangle, as a share of its longest edge, that counts as none
-_MOST = 1 << 15     # pairs of places and edges that are looked at together: they fit in a core's cache
+_INSIDE = -1e-12    # share of the area of a triangle that counts as zero
+_FLAT = 1e-9        # height of a triangle, as a share of its longest edge, that counts as zero
+_MOST = 1 << 15     # pairs of places and edges in one step: they fit in the cache of a core
 
 
 def _shares(corners: Array, at: Array) -> Array:
@@ -26,7 +27,7 @@ def _shares(corners: Array, at: Array) -> Array:
 
 
 def _starts(centres: Array, at: Array) -> Array:
-    """A triangle near each place: one whose centre lies in the same cell of a grid, or before it."""
+    """Returns a triangle near each place: its centre lies in the same cell of a grid, or in an earlier one."""
     low, high = centres.min(axis=0), centres.max(axis=0)
     n = max(1, int(np.sqrt(len(centres))))
 
@@ -38,14 +39,14 @@ def _starts(centres: Array, at: Array) -> Array:
 
 
 def _rounding(points: Array, length: Any) -> Any:
-    """What counts as no distance, from an edge as long as that."""
+    """Returns the distance from an edge of this length that counts as zero."""
     return _FLAT * length + 8 * np.spacing(np.abs(points).max())
 
 
 def without_flat_rim(points: Array, triangles: Array, neighbors: Array) -> Tuple[Array, Array]:
-    """Triangles and neighbors without those that rounding alone has made: points on a slanted line of the hull have
-    flat triangles. One goes if its longest edge is in the hull, or is that of another that goes. If all are flat, so is
-    the cloud: none is left."""
+    """Removes flat triangles, which rounding makes from points on a slanted line of the hull. A flat triangle is
+    removed if its longest edge is in the hull, or belongs to another removed one. If all points lie on a line, no
+    triangle remains. Returns triangles and neighbors."""
     edges = points[triangles[:, [2, 0, 1]]] - points[triangles[:, [1, 2, 0]]]
     length2, n, rows = (edges * edges).sum(axis=-1), len(triangles), np.arange(len(triangles))
     longest = length2.argmax(axis=1)
@@ -62,10 +63,10 @@ def without_flat_rim(points: Array, triangles: Array, neighbors: Array) -> Tuple
 
 
 def _locate(corners: Array, neighbors: Array, at: Array) -> Tuple[Array, Array]:
-    """(the triangle of each place, is it inside). Outside it is a triangle at the border."""
+    """Returns (the triangle of each place, whether the place is inside). Outside it is a triangle at the border."""
     triangle, inside = _starts(corners.mean(axis=1), at), np.ones(len(at), bool)
     walking = np.arange(len(at))
-    for _ in range(len(corners)):  # but for rounding, no walk comes to a triangle twice
+    for _ in range(len(corners)):  # except for rounding, no walk visits a triangle twice
         if len(walking) == 0:
             break
         shares = _shares(corners[triangle[walking]], at[walking])
@@ -80,7 +81,7 @@ def _locate(corners: Array, neighbors: Array, at: Array) -> Tuple[Array, Array]:
 
 
 def _onto_border(points: Array, border: Array, at: Array) -> Tuple[Array, Array, Array]:
-    """(the nearest edge of the border [b, 2] to each place, how much of it lies before the nearest place of it, the
+    """Returns for each place (the nearest edge of the border [b, 2], the position on this edge from 0 to 1, the
     distance)."""
     a, (u, v) = points[border[:, 0]], (points[border[:, 1]] - points[border[:, 0]]).T
     length2 = u * u + v * v
@@ -98,7 +99,7 @@ def _onto_border(points: Array, border: Array, at: Array) -> Tuple[Array, Array,
 
 
 def interpolated(points: Array, triangles: Array, neighbors: Array, values: Array, at: Array) -> Tuple[Array, Array]:
-    """(values [k, ...] at places, which of them are inside, but for rounding). values [n, ...] at the points."""
+    """Returns (values [k, ...] at places, which of them are inside up to rounding). values [n, ...] at the points."""
     corners = points[triangles]
     triangle, inside = _locate(corners, neighbors, at)
     shares = np.clip(_shares(corners[triangle], at), 0, 1)

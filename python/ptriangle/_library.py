@@ -30,7 +30,7 @@ class ErrorDetail(Structure):
 
 
 class Sized(Structure):
-    """A struct that begins with its size; the rest is 0."""
+    """A struct that begins with its size. Other members are 0 initially."""
 
     def __init__(self, **fields: Any) -> None:
         super().__init__(size=sizeof(self), **fields)
@@ -59,7 +59,7 @@ class SizeField(Structure):
 
 
 class Settings(Sized):
-    kept: Any = None  # what its pointers lead to
+    kept: Any = None  # objects that the pointers refer to
     _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("conforming", c_bool),
                 ("keep_hull", c_bool), ("protect", c_int), ("most_new_points", c_int64),
                 ("edge_length", c_void_p), ("edge_length_user", c_void_p),

@@ -1,4 +1,4 @@
-"""Meshes as Python has them: arrays, and what is worked out of them when it is asked for."""
+"""The class Mesh: arrays of a mesh, and quantities that are computed from them on demand."""
 from __future__ import annotations
 
 from ctypes import byref, c_int64, c_void_p
@@ -31,7 +31,7 @@ _NAMES = ("points", "point_attributes", "point_markers", "triangles", "triangle_
 
 
 class Handle:
-    """The library's mesh, deleted with the last array that looks into it."""
+    """Owns a mesh of the library, and deletes it after the last array that refers to its memory."""
 
     def __init__(self) -> None:
         self.mesh = c_void_p()
@@ -50,7 +50,7 @@ def made(figure: Figure, settings: Settings, calls: Calls) -> Handle:
 
 def _arrays_of(handle: Handle) -> Dict[str, Array]:
     arrays = {name: to_numpy(getattr(library, "tri_mesh_" + name)(handle.mesh), handle) for name in _NAMES}
-    for kind in ("point", "triangle"):  # where there are none: a row of no columns for each
+    for kind in ("point", "triangle"):  # no attributes: one row without columns for each
         if len(arrays[kind + "_attributes"]) == 0:
             arrays[kind + "_attributes"] = np.empty((len(arrays[kind + "s"]), 0))
     for kind in ("point", "segment"):
@@ -59,7 +59,7 @@ def _arrays_of(handle: Handle) -> Dict[str, Array]:
 
 
 def _used(arrays: Mapping[str, Array], n_input: int, crossings: int) -> Array:
-    """Which points are corners of triangles, or ends of segments. New points are, except where segments cross."""
+    """Marks the points that are corners of triangles or ends of segments. All new points are, except crossings."""
     corners, n = arrays["triangles"].ravel(), len(arrays["points"])
     first_new = n if crossings else n_input
     used = np.arange(n) >= first_new
@@ -69,31 +69,31 @@ def _used(arrays: Mapping[str, Array], n_input: int, crossings: int) -> Array:
 
 
 def _firsts(points: Array) -> Array:
-    """For each point the first one at its place."""
+    """Returns for each point the first point at the same place."""
     places = points[:, 0] + 1j * points[:, 1]
     _, first, group = np.unique(places, return_index=True, return_inverse=True)
     return first[group.reshape(-1)]
 
 
 class Mesh:
-    """A triangle mesh, made by ptriangle.mesh(). It does not change; refine() makes another one.
+    """A triangle mesh, made by ptriangle.mesh(). It does not change; refine() returns a new one.
 
-    Arrays are numpy's, read-only, and see the library's memory without a copy. Numbers of points count from 0. A mesh
-    can be pickled and copied, and is a picture in notebooks.
+    The arrays are read-only numpy arrays, which refer to the memory of the library without a copy. Points are numbered
+    from 0. A mesh can be pickled and copied. Notebooks display it as a picture.
     """
 
     def __init__(self, handle: Handle, order: int = 1) -> None:
         self._handle: Optional[Handle] = handle
-        self._numbers: Optional[Array] = None  # of the library's points, where others have been dropped
+        self._numbers: Optional[Array] = None  # numbers of the remaining points in the library; None if all remain
         self._input_points: Array = np.empty(0, np.int32)
-        self._polygons: Optional[Array] = None  # of each triangle, where polygons were regions
+        self._polygons: Optional[Array] = None  # the polygon of each triangle; None without overlay
         self._order = order
         self._arrays = _arrays_of(handle)
         self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
 
     def _settle_points(self, n_input: int, n_told: Optional[int], keep_unused: bool) -> None:
-        """Says where the first n_told of the n_input points went (None: all), and drops points that no triangle uses. A
-        mesh without triangles keeps its points."""
+        """Finds the new numbers of the first n_told of the n_input points (None: all), and removes points that no
+        triangle uses. A mesh without triangles keeps its points."""
         arrays = self._arrays
         self._input_points = np.arange(n_input, dtype=np.int32)[:n_told]
         used = _used(arrays, n_input, self._counts["crossings"])
@@ -109,8 +109,8 @@ class Mesh:
         freeze([self._input_points])
 
     def _settle_polygons(self, attributes: Optional[Array] = None) -> None:
-        """The last attribute is the number of the polygon, from 1: it moves to triangle_polygons. attributes: for each
-        polygon, in its place."""
+        """Moves the last attribute, the number of the polygon counted from 1, to triangle_polygons. attributes: one
+        value for each polygon, which replaces it."""
         rows = self._arrays["triangle_attributes"]
         polygons = rows[:, -1].astype(np.int32) - 1 if rows.shape[1] else np.full(len(rows), -1, np.int32)
         if attributes is not None:
@@ -122,81 +122,83 @@ class Mesh:
 
     @property
     def points(self) -> Reals:
-        """Coordinates, [n, 2]: the points that were given, in their order, new ones, and with order 2 the middles of
-        the edges. Given points that no triangle uses are left out (mesh() has keep_unused)."""
+        """Coordinates, [n, 2]: the input points in their order, then new points, then with order 2 the midpoints of the
+        edges. Input points that no triangle uses are left out, unless mesh() was called with keep_unused."""
         return self._nodes[0]
 
     @property
     def input_points(self) -> Integers:
-        """Where the points went that mesh() was given, with the corners of polygons behind them: the number in `points`
-        of each; of a duplicate, that of the first point at its place; -1 if it was left out. With union=True the
-        corners of polygons are not listed. refine() keeps these numbers."""
+        """For each point given to mesh(), and then for each corner of polygons, its number in `points`. A duplicate has
+        the number of the first point at its place. -1: the point was left out. With union=True the corners of polygons
+        are not listed. refine() keeps these numbers."""
         return self._input_points
 
     @property
     def point_attributes(self) -> Reals:
-        """Attributes of the points, [n, k]; k is 0 if none were given. New points lie on the surface that is linear in
-        each triangle of the input's own triangulation."""
+        """Attributes of the points, [n, k]; k is 0 if none were given. At new points they are interpolated linearly in
+        the triangulation of the input."""
         return self._nodes[1]
 
     @property
     def point_markers(self) -> Integers:
-        """Markers of the points, [n]: as given, else that of a segment there, else 1 on the boundary and 0 inside."""
+        """Markers of the points, [n]: as given, otherwise that of a segment at the point, otherwise 1 on the boundary
+        and 0 inside."""
         return self._nodes[2]
 
     @property
     def triangles(self) -> Integers:
-        """Points of the triangles, counter-clockwise, [m, 3]; with order 2 [m, 6]: corners a, b, c, then the middles of
-        ab, bc and ca, as VTK, Gmsh and meshio have them."""
+        """Points of the triangles, counter-clockwise, [m, 3]; with order 2 [m, 6]: corners a, b, c, then the midpoints
+        of ab, bc and ca, in the order of VTK, Gmsh and meshio."""
         return self._triangles
 
     @property
     def triangle_attributes(self) -> Reals:
-        """Attributes of the triangles, [m, k]: those of the regions that they lie in; k is 0 where there are none."""
+        """Attributes of the triangles, [m, k]: those of their regions; k is 0 if there are none."""
         return np.asarray(self._arrays["triangle_attributes"])
 
     @property
     def triangle_polygons(self) -> Integers:
-        """The polygon that each triangle lies in, [m], with mesh(overlay=True): its number in `polygons`, counted from
-        0; -1 if there is none. refine() keeps it."""
+        """With mesh(overlay=True) the polygon of each triangle, [m], as a number in `polygons`, counted from 0; -1 if
+        there is none. refine() keeps it."""
         return np.full(len(self._arrays["triangles"]), -1, np.int32) if self._polygons is None else self._polygons
 
     @property
     def segments(self) -> Integers:
-        """Pieces of the segments that were given, and of the boundary, [s, 2]; with order 2 [s, 3], the middle last."""
+        """Subsegments of the input segments, and edges of the boundary, [s, 2]; with order 2 [s, 3], the midpoint
+        last."""
         return self._with_middles(self._arrays["segments"])
 
     @property
     def segment_markers(self) -> Integers:
-        """Markers of the segments, [s]: as given, else 1 on the boundary and 0 inside."""
+        """Markers of the segments, [s]: as given, otherwise 1 on the boundary and 0 inside."""
         return np.asarray(self._arrays["segment_markers"])
 
     @property
     def neighbors(self) -> Integers:
-        """The triangle opposite each corner of each triangle, [m, 3]; -1 where there is none."""
+        """The triangle opposite each corner of each triangle, [m, 3]; -1 if there is none."""
         return self._neighbors
 
     @property
     def edges(self) -> Integers:
-        """Ends of all edges, [e, 2]. With order 2 the middle of edge i is point len(points) - len(edges) + i."""
+        """Ends of all edges, [e, 2]. With order 2 the midpoint of edge i is point len(points) - len(edges) + i."""
         return self._edges[0]
 
     @property
     def edge_markers(self) -> Integers:
-        """Markers of the edges, [e]: that of the segment which the edge is, else 0."""
+        """Markers of the edges, [e]: that of the segment on this edge, otherwise 0."""
         return self._edges[1]
 
     @property
     def boundary(self) -> Integers:
-        """Edges with a triangle on one side only, [b, 2], with that on their left; with order 2 [b, 3], the middle
-        last. np.unique(m.boundary) are the points of the boundary."""
+        """Edges with a triangle on one side only, [b, 2]; the triangle lies to their left. With order 2 [b, 3], the
+        midpoint last. np.unique(m.boundary) returns the points of the boundary."""
         corners = self._arrays["triangles"]
         triangle, k = np.nonzero(self.neighbors < 0)
         return self._with_middles(np.column_stack([corners[triangle, (k + 1) % 3], corners[triangle, (k + 2) % 3]]))
 
     @property
     def order(self) -> int:
-        """1: triangles are their corners; 2: there are points amid the edges, too."""
+        """1: triangles consist of their corners; 2: they also have the midpoints of their edges."""
         return self._order
 
     @property
@@ -215,18 +217,18 @@ class Mesh:
 
     @property
     def quality(self) -> Reals:
-        """Quality of the triangles, [m]: twice the radius of the inscribed circle over that of the circumscribed one: 1
-        for an equilateral triangle, 0 for a flat one."""
+        """Quality of the triangles, [m]: twice the radius of the inscribed circle divided by the radius of the
+        circumcircle. It is 1 for an equilateral triangle and 0 for a flat one."""
         sines = np.sin(np.radians(self.angles) / 2)
         return np.asarray(8 * sines.prod(axis=1))
 
     @property
     def counts(self) -> Dict[str, int]:
-        """What was odd about the input (duplicates, crossings, skipped_segments), and what refinement did (new_points,
+        """Counts for the input (duplicates, crossings, skipped_segments) and for refinement (new_points,
         new_points_on_segments, gated, fenced)."""
         return dict(self._counts)
 
-    # --- what they are made of
+    # --- construction
 
     @cached_property
     def _nodes(self) -> Tuple[Array, Array, Array]:
@@ -276,7 +278,7 @@ class Mesh:
         return ends, to_numpy(markers, handle)[:, 0]
 
     def _library_mesh(self) -> Handle:
-        """The library's mesh; after unpickling it is built again, with the same numbers."""
+        """The mesh of the library. After unpickling it is rebuilt with the same numbers."""
         if self._handle is None:
             calls = Calls("Mesh")
             figure, kept = figure_of(self._arrays, calls.who)
@@ -300,7 +302,7 @@ class Mesh:
     def __deepcopy__(self, memo: Dict[int, Any]) -> "Mesh":
         return self
 
-    # --- what can be done with it
+    # --- operations
 
     @explained
     def refine(self, *, min_angle: Optional[float] = None, max_area: Optional[float] = None,
@@ -313,10 +315,10 @@ class Mesh:
                min_size: Optional[float] = None, max_size: Optional[float] = None,
                optimise: Optional[int] = None, elements_across: Optional[float] = None,
                per_circle: Optional[float] = None) -> "Mesh":
-        """A finer mesh, by the keywords of ptriangle.mesh(); this one stays as it is.
+        """Returns a finer mesh. The keywords are those of ptriangle.mesh(). This mesh does not change.
 
-        Bounds that came with regions count no more; triangle_areas, [m], are new ones for each triangle. order is that
-        of this mesh where it is not given.
+        Area bounds of regions no longer apply; triangle_areas, [m], sets a new bound for each triangle. The default of
+        order is that of this mesh.
         """
         settings, calls = settings_of("refine()", Wanted(min_angle, max_area, size, unsuitable, conforming, False,
                                                          protect, max_new_points, gate, fence, threads, stop, progress,
@@ -336,11 +338,12 @@ class Mesh:
 
     @explained
     def interpolate(self, points: npt.ArrayLike, values: npt.ArrayLike, outside: Optional[float] = None) -> Reals:
-        """Values at the points of this mesh, of measurements at other places: depths, heights.
+        """Interpolates measurements, such as depths or heights, at the points of this mesh.
 
         points [k, 2], values [k] or [k, w]; the result is [n] or [n, w]. Interpolation is linear in the Delaunay
-        triangulation of the measurements; of several at one place the first counts. At points of this mesh outside the
-        measurements' convex hull the value is that of the nearest place of the hull, or `outside` (such as numpy.nan).
+        triangulation of the measurements. If several have the same place, the first counts. Points of this mesh outside
+        the convex hull of the measurements have the value of the nearest place on the hull, or `outside` (such as
+        numpy.nan).
         """
         who, at = "interpolate()", np.asarray(self.points)
         given = numbers(values, who + ": values").astype(np.float64)
@@ -364,11 +367,11 @@ class Mesh:
             fence: Optional[Sequence[float]] = None, size_near: Optional[Near] = None,
             gradation: Optional[float] = None, min_size: Optional[float] = None,
             max_size: Optional[float] = None) -> Dict[str, int]:
-        """How many triangles do not keep the bounds, by reason; keywords as those of ptriangle.mesh().
+        """Counts the triangles that violate the bounds, by reason. The keywords are those of ptriangle.mesh().
 
         Reasons: input_angle (a small angle of the input), narrow_gap (between segments), protected, limit (of new
-        points, or they would have run away), precision (of the coordinates), deferred (by gate or fence, or not refined
-        by these bounds yet).
+        points, or the bound would need an endless number of points), precision (of the coordinates), deferred (by gate
+        or fence, or not refined with these bounds yet).
         """
         settings, calls = settings_of("bad()", Wanted(min_angle, max_area, size, unsuitable, conforming, False, protect,
                                                       max_new_points, gate, fence, size_near=size_near,
@@ -383,9 +386,10 @@ class Mesh:
     @explained
     def check(self, min_angle: Optional[float] = None, max_area: Optional[float] = None,
               conforming: bool = False) -> Verdict:
-        """A judgement by exact arithmetic, independent of the mesher: is it a mesh, and does it keep these bounds?
+        """Verifies the mesh in exact arithmetic, and that it keeps these bounds. The checker is independent of the
+        mesher.
 
-        Points that no triangle uses are no fault, but an InputWarning."""
+        Points that no triangle uses are not a fault. They give an InputWarning."""
         detail, calls = VerdictDetail(), Calls("check()")
         demands = Demands(min_angle=float(min_angle or 0), max_area=float(max_area or 0), delaunay=int(conforming))
         figure, kept = figure_of(self._arrays, calls.who)
@@ -399,17 +403,18 @@ class Mesh:
 
     @explained
     def write(self, path: Any, first: int = 1) -> None:
-        """Writes the mesh in the format that the suffix says: x.vtu (VTK), x.msh (Gmsh), x.h5 or x.vtkhdf (HDF5, by
-        h5py), x.2dm (SMS), x.14 or x.grd (ADCIRC); x.poly, x.ele, x.node or x without suffix: x.node, x.ele and
-        x.poly, whose numbers count from `first`, 0 or 1. Order 2 is for all of them but .h5, .vtkhdf and .14."""
+        """Writes the mesh. The suffix selects the format: x.vtu (VTK), x.msh (Gmsh), x.h5 or x.vtkhdf (HDF5, needs
+        h5py), x.2dm (SMS), x.14 or x.grd (ADCIRC). x.poly, x.ele, x.node, and x without suffix write x.node, x.ele and
+        x.poly, with numbers that count from `first`, 0 or 1. All formats except .h5, .vtkhdf and .14 support order
+        2."""
         arrays = dict(self._arrays)
         if self._order == 2:
             arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))
         _files.write_arrays(path, arrays, first, "write()")
 
     def to_meshio(self) -> Any:
-        """The mesh as a meshio.Mesh: triangles (triangle6 with order 2), then segments (line, line3), with their
-        markers as cell data `marker`, attributes as `attribute_0`, ...; z is 0."""
+        """Returns a meshio.Mesh with triangles (triangle6 with order 2), then segments (line, line3). Markers are the
+        cell data `marker`, attributes are `attribute_0`, ...; z is 0."""
         try:
             import meshio  # type: ignore[import-untyped, unused-ignore]
         except ImportError:
@@ -427,13 +432,13 @@ class Mesh:
 
     def plot(self, ax: Any = None, *, color: Any = "tab:blue", segment_color: Any = "black",
              linewidth: float = 0.5) -> Any:
-        """Draws the mesh by matplotlib on `ax`, else on the current axes, which it returns. segment_color=None leaves
-        the segments out."""
+        """Draws the mesh with matplotlib on `ax`, or on the current axes if ax is None, and returns the axes.
+        segment_color=None leaves out the segments."""
         return _picture.plot(self._arrays["points"], self._arrays["triangles"], self._arrays["segments"], ax, color,
                              segment_color, linewidth)
 
     def _repr_svg_(self) -> str:
-        """The mesh in a notebook."""
+        """Returns the picture for notebooks."""
         return _picture.svg(self._arrays["points"], self.edges, self._arrays["segments"], self._words())
 
     def _words(self) -> str:
@@ -446,7 +451,7 @@ class Mesh:
 
 
 def finished(handle: Handle, order: int, calls: Calls) -> Mesh:
-    """The mesh of a call that has come to its end: here is where warnings are given."""
+    """Returns the mesh of a completed call, and issues its warnings."""
     if order not in (1, 2):
         raise InputError("%s: order is %r instead of 1 or 2" % (calls.who, order))
     tell(library.tri_mesh_notes(handle.mesh), calls.who)

@@ -1,4 +1,4 @@
-"""Warnings of input that was hardly meant so, mostly in the words of the library."""
+"""Warnings of probable mistakes in the input, mostly with the text of the library."""
 from __future__ import annotations
 
 import sys
@@ -7,8 +7,8 @@ from typing import Optional, Type
 
 
 class InputWarning(UserWarning):
-    """Input that was hardly meant so: skipped segments, polygons that overlap, a size function that returned no length.
-    The text says which or where."""
+    """The input is probably a mistake: skipped segments, overlapping polygons, a size function that returned an invalid
+    length. The text says which one, or where."""
 
 
 class IgnoredWarning(InputWarning):
@@ -20,7 +20,7 @@ class EmptyMeshWarning(InputWarning):
 
 
 def _depth() -> int:
-    """How far up the line is that called the package, seen from who calls this."""
+    """Returns how many stack frames the caller of the package is above the caller of this function."""
     depth, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
         depth, frame = depth + 1, frame.f_back
@@ -31,12 +31,12 @@ _KINDS = {"the mesh is empty": EmptyMeshWarning, "an angle bound of": IgnoredWar
 
 
 def warn(text: str, who: str, kind: Type[InputWarning] = InputWarning) -> None:
-    """A warning at the line that called the package."""
+    """Issues a warning at the line that called the package."""
     warnings.warn("%s: %s" % (who, text), kind, stacklevel=_depth())
 
 
 def tell(notes: Optional[bytes], who: str, kind: Type[InputWarning] = InputWarning) -> None:
-    """A warning for each line of the library's notes."""
+    """Issues a warning for each line of the library's notes."""
     for line in (notes or b"").decode("utf-8", "replace").splitlines():
         found = [_KINDS[begin] for begin in _KINDS if line.startswith(begin)]
         warn(line.replace("edge_length returned", "size returned"), who, found[0] if found else kind)

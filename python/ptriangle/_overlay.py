@@ -1,9 +1,9 @@
-"""Polygons as regions: a map, in which later polygons lie on top of earlier ones.
+"""Polygons as regions of a map, in which later polygons cover earlier ones.
 
-All borders are triangulated at once, so that the library finds where they cross and which run along each other. The
-segments divide the plane into faces. Each belongs to the last polygon around one point of it, the centroid of its
-largest triangle. Borders stay where the polygons on their sides differ. Such a centroid is also the seed by which the
-library knows a face: it lies as far from all borders as a triangle of the face allows.
+All borders are triangulated at once, so that the library finds crossings and overlaps. The segments divide the plane
+into faces. A face belongs to the last polygon that contains the centroid of its largest triangle. A border remains if
+the polygons on its sides differ. The same centroid is the seed of the face for the library, because it lies far from
+all borders.
 """
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ._library import Settings
 from ._mesh import Mesh, made
 from ._notes import warn
 
-_NARROW = 1e-3  # of the root of the mean area: faces that are narrower are hardly meant
+_NARROW = 1e-3  # share of the root of the mean area: narrower faces are probably not intended
 
 
 class Overlay(NamedTuple):
@@ -28,15 +28,15 @@ class Overlay(NamedTuple):
 
     points: Array           # [n, 2]
     segments: Array         # [s, 2]
-    markers: Array          # [s] those of given segments, and 0 on borders of polygons
+    markers: Array          # [s] markers of given segments; 0 on borders of polygons
     holes: Array            # [h, 2] in gaps that polygons enclose
     seeds: Array            # [f, 2]
     owners: Array           # [f] the polygon of each seed
 
 
 def arrangement(points: Array, segments: Array, markers: Array, calls: Calls) -> Tuple[Mesh, Array, Array]:
-    """The triangulation of the convex hull, with points where segments cross; the edges opposite the corners,
-    [m, 3, 2]; which of them are segments, [m, 3]."""
+    """Returns the triangulation of the convex hull, with points at crossings; the edges opposite the corners,
+    [m, 3, 2]; and which of them are segments, [m, 3]."""
     figure, kept = figure_of({"points": points, "segments": segments, "segment_markers": markers}, calls.who)
     whole = Mesh(made(figure, Settings(keep_hull=True), calls))
     del kept
@@ -46,7 +46,7 @@ def arrangement(points: Array, segments: Array, markers: Array, calls: Calls) ->
 
 
 def _snapped(polygons: List[_rings.Polygon], grid: float, who: str) -> Tuple[Array, Array]:
-    """Points and segments of the rings, on a grid."""
+    """Returns points and segments of the rings, snapped to a grid."""
     try:
         import shapely  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ImportError:
@@ -59,10 +59,10 @@ def _snapped(polygons: List[_rings.Polygon], grid: float, who: str) -> Tuple[Arr
 
 
 class _Faces:
-    """Faces between borders: of each triangle the owner, -1 for none, and the face."""
+    """Faces between borders: for each triangle the owner (-1: none) and the face."""
 
     def __init__(self, whole: Mesh, walls: Array, kept: Array) -> None:
-        """kept: which edges stay borders, whoever owns their sides."""
+        """kept: edges that remain borders regardless of the owners of their sides."""
         self.whole, self.walls, self.kept, self.neighbors = whole, walls, kept, whole.neighbors
         self.owner = np.empty(0, int)
 
@@ -73,7 +73,7 @@ class _Faces:
         self.owner = np.append(item, -1)[_union.last_around(places[asked], polygons)][of]
 
     def merge(self) -> None:
-        """Faces of one owner become one; their widths, and which of them are open to the outside."""
+        """Merges adjacent faces of the same owner. Returns their widths, and which of them are open to the outside."""
         self.borders = self.kept | (self.owner[:, None] != np.append(self.owner, -1)[self.neighbors])
         self.label = _union.faces_of(self.neighbors, self.borders)
         corners = self.whole.points[self.whole.triangles]
@@ -85,7 +85,7 @@ class _Faces:
         self.open[self.label[((self.neighbors < 0) & ~self.borders).any(axis=1)]] = True
 
     def absorb(self, width: float) -> None:
-        """Faces that are no wider than this go to the owner of the face with which they share the longest border."""
+        """Gives faces no wider than this to the owner of the face with which they share the longest border."""
         thin = (self.width[self.label] <= width) & ~self.open[self.label]
         triangle, corner = np.nonzero(thin[:, None] & self.borders & ~self.kept & (self.neighbors >= 0))
         other = self.neighbors[triangle, corner]
@@ -116,7 +116,7 @@ class _Faces:
 
 def laid(points: Array, segments: Array, segment_markers: Optional[Array], items: List[List[_rings.Polygon]],
          grid: Optional[float], keep_hull: bool, calls: Calls) -> Overlay:
-    """The figure of the polygons of each item, with points and segments that are given beside them."""
+    """Returns the figure of the polygons of each item, together with given points and segments."""
     polygons, item = [p for parts in items for p in parts], np.repeat(np.arange(len(items)), list(map(len, items)))
     if grid is not None and not grid > 0:
         raise InputError("%s: grid: %r is not > 0" % (calls.who, grid))
@@ -150,8 +150,8 @@ def laid(points: Array, segments: Array, segment_markers: Optional[Array], items
 
 
 def background(overlay: Overlay, sizes: Array, calls: Calls) -> Optional[Tuple[Array, Array, Array]]:
-    """A size field of lengths for each polygon: a mesh with the least length of the polygons around each point. Its
-    edges are at most about three times as long."""
+    """Returns a size field from a length for each polygon: a mesh with the least length of the polygons around each
+    point. Its edges are at most about three times as long."""
     known = np.isfinite(sizes) & (sizes > 0)
     if not known[overlay.owners].any():
         return None
@@ -168,5 +168,5 @@ def background(overlay: Overlay, sizes: Array, calls: Calls) -> Optional[Tuple[A
 
 
 def regions(overlay: Overlay, areas: Any) -> Array:
-    """The rows that the library takes: place, attribute, largest area (0: any)."""
+    """Returns the rows of regions for the library: place, attribute, largest area (0: no bound)."""
     return np.column_stack([overlay.seeds, overlay.owners + 1, np.broadcast_to(areas, len(overlay.seeds))])

@@ -1,4 +1,4 @@
-"""Pictures of meshes: for notebooks as SVG without any library, and on axes of matplotlib, where that is installed."""
+"""Pictures of meshes: as SVG for notebooks without any library, or on axes of matplotlib if it is installed."""
 from __future__ import annotations
 
 from typing import Any
@@ -16,7 +16,7 @@ def _path(ends: Array, style: str) -> str:
 
 
 def svg(points: Array, edges: Array, segments: Array, caption: str) -> str:
-    """All edges; of a large mesh its segments; of very many of these every other, third, ... one."""
+    """Returns all edges; in a large mesh only segments; if there are very many, every second, third, ... of them."""
     used = points[np.unique(np.concatenate([edges, segments]))] if len(edges) + len(segments) else points[:0]
     low, high = (used.min(axis=0), used.max(axis=0)) if len(used) else (np.zeros(2), np.ones(2))
     width, height = np.maximum(high - low, 1e-300)

@@ -8,14 +8,14 @@ from pathlib import Path
 
 
 def _become(name: str) -> int:
-    """Runs the program, on POSIX in the place of this one. Returns its exit code."""
+    """Runs the program and returns its exit code. On POSIX it replaces this process."""
     windows = os.name == "nt"
     path = Path(__file__).resolve().parent / "programs" / (name + ".exe" * windows)
     if not path.exists():
         print("%s: this build of the Python package has no such program" % name, file=sys.stderr)
         return 1
     try:
-        if windows:  # where the shell would not wait for a program that takes the place of this one
+        if windows:  # on Windows the shell would not wait for a program that replaces this process
             return subprocess.call([str(path), *sys.argv[1:]])
         os.execv(path, [name, *sys.argv[1:]])
     except OSError as fault:

@@ -1,4 +1,4 @@
-"""How far the work is: told to a function, or, progress=True, shown as a line on standard error."""
+"""Reports progress to a function or, with progress=True, as a line on standard error."""
 from __future__ import annotations
 
 import sys
@@ -10,7 +10,7 @@ from ._library import Progress
 
 
 class _Line:
-    """Rewritten on a terminal and in a notebook, ten times a second at most."""
+    """A line that is rewritten at most ten times a second, on a terminal or in a notebook."""
 
     def __init__(self) -> None:
         self.told = 0.0
@@ -25,6 +25,7 @@ class _Line:
 
 
 def follow(calls: Calls, progress: Union[bool, Callable[[float, int], Any]]) -> Any:
-    """The callback of the library: it tells the share that is done, 0 to 1, and the triangles that there are."""
+    """Returns the callback for the library. It passes on the share that is done, 0 to 1, and the number of
+    triangles."""
     told = progress if callable(progress) else _Line()
     return Progress(calls.guarded(lambda _user, done, triangles: told(done, triangles) and None, None))

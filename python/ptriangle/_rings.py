@@ -1,4 +1,4 @@
-"""Polygons in the forms that people have them in: rings, lists of rings, shapely's, geopandas' series, GeoJSON."""
+"""Reads polygons in many forms: rings, lists of rings, shapely geometries, series of geopandas, GeoJSON."""
 from __future__ import annotations
 
 from typing import Any, Iterable, Iterator, List, Mapping, Tuple
@@ -8,19 +8,19 @@ import numpy as np
 from ._arrays import Array, numbers
 from ._errors import InputError
 
-Polygon = List[Array]  # an outline and its holes: rings [k, 2] without a last point that is the first
+Polygon = List[Array]  # an outline and its holes: rings [k, 2], without the first point repeated at the end
 
 
 def _ring(given: Any, name: str) -> Array:
     ring = numbers(given, name).astype(np.float64, copy=False)
     if ring.ndim != 2 or ring.shape[1] not in (2, 3, 4):
         raise InputError("%s: a ring of shape %s instead of (n, 2)" % (name, ring.shape))
-    ring = ring[:, :2]  # z is dropped
+    ring = ring[:, :2]  # ignores z
     return ring[:-1] if len(ring) > 1 and np.array_equal(ring[0], ring[-1]) else ring
 
 
 def _of_mapping(geometry: Mapping[str, Any], name: str) -> Iterator[Polygon]:
-    """A GeoJSON object, as __geo_interface__ gives it."""
+    """Reads a GeoJSON object, such as one of __geo_interface__."""
     kind = geometry.get("type")
     if kind in ("FeatureCollection", "GeometryCollection"):
         for part in geometry["features" if kind == "FeatureCollection" else "geometries"]:
@@ -38,7 +38,7 @@ def _of_mapping(geometry: Mapping[str, Any], name: str) -> Iterator[Polygon]:
 
 
 def _is_list_of_rings(given: Any) -> bool:
-    """[outer, hole, ..] rather than one ring?"""
+    """Returns True for [outer, hole, ..], False for one ring."""
     return isinstance(given, (list, tuple)) and len(given) > 0 and np.ndim(given[0]) == 2
 
 
@@ -53,7 +53,7 @@ def _of_any(given: Any, name: str) -> Iterator[Polygon]:
 
 
 def items_of(given: Any, name: str) -> Tuple[List[List[Polygon]], List[Mapping[str, Any]]]:
-    """The polygons of each item (a feature, a shape, a list of rings), and its properties, by their names."""
+    """Returns the polygons of each item (a feature, a shape, a list of rings), and its properties by name."""
     geometry, one = getattr(given, "__geo_interface__", given), False
     if isinstance(geometry, Mapping):
         kind = geometry.get("type")
@@ -67,7 +67,7 @@ def items_of(given: Any, name: str) -> Tuple[List[List[Polygon]], List[Mapping[s
 
 
 def column_of(given: Any, properties: List[Mapping[str, Any]], name: str) -> Array:
-    """A number for each item: given for each, or for all, or the name of a property; NaN where there is none."""
+    """Returns a number for each item. It is given for each, for all, or as the name of a property; NaN if missing."""
     if isinstance(given, str):
         known = ", ".join(sorted({key for item in properties for key in item}))
         if not any(given in item for item in properties):
@@ -81,7 +81,7 @@ def column_of(given: Any, properties: List[Mapping[str, Any]], name: str) -> Arr
 
 
 def _area(ring: Array) -> float:
-    """The area of a ring that does not cross itself."""
+    """Returns the area of a ring that does not cross itself."""
     if len(ring) < 3:
         return 0.0
     x, y = (ring - ring[0]).T
@@ -89,12 +89,12 @@ def _area(ring: Array) -> float:
 
 
 def areas_of(polygons: Iterable[Polygon]) -> Array:
-    """Areas [n] of polygons that are valid."""
+    """Returns the areas [n] of valid polygons."""
     return np.array([_area(polygon[0]) - sum(map(_area, polygon[1:])) if polygon else 0.0 for polygon in polygons])
 
 
 def segments_of(polygons: Iterable[Polygon], first: int) -> Tuple[Array, Array]:
-    """Points and segments of all rings; numbers begin with `first`."""
+    """Returns points and segments of all rings. Numbers begin with `first`."""
     points, segments = [np.empty((0, 2))], [np.empty((0, 2), np.int64)]
     for ring in (ring for polygon in polygons for ring in polygon):
         number = np.arange(first, first + len(ring))

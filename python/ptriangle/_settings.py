@@ -1,4 +1,4 @@
-"""What is wanted of a mesh, as the library takes it."""
+"""Converts keywords of mesh() to settings of the library."""
 from __future__ import annotations
 
 import math
@@ -27,7 +27,7 @@ def number(who: str, name: str, given: Any) -> float:
 
 
 def whole(who: str, name: str, given: Any, bits: int = 32) -> int:
-    """An integer with sign of so many bits; None is 0."""
+    """Converts to a signed integer with this number of bits; None is 0."""
     value = number(who, name, 0 if given is None else given)
     if not math.isfinite(value) or value != math.floor(value):
         raise InputError("%s: %s is %r instead of a whole number" % (who, name, given))
@@ -43,7 +43,7 @@ def _refuse(who: str, name: str, given: Any) -> None:
 
 
 def _take_sizes(settings: Settings, calls: Calls, wanted: "Wanted") -> None:
-    found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: which the library looks at
+    found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: the library uses these arrays
     settings.sizes, settings.n_sizes = found, len(found)
     for name in ("gradation", "min_size", "max_size", "elements_across", "per_circle"):
         if getattr(wanted, name) is not None:
@@ -95,7 +95,7 @@ def _placement(who: str, given: Any) -> int:
 
 
 def settings_of(who: str, wanted: Wanted) -> Tuple[Settings, Calls]:
-    """The library's settings for a call of `who`, a name that InputErrors begin with."""
+    """Returns the settings of the library for a call of `who`, the name at the beginning of error messages."""
     calls = Calls(who)
     settings = Settings(min_angle=number(who, "min_angle", wanted.min_angle or 0),
                         max_area=number(who, "max_area", wanted.max_area or 0), conforming=bool(wanted.conforming),

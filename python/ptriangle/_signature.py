@@ -1,4 +1,4 @@
-"""Keywords that do not exist are refused with the name of the one that was probably meant."""
+"""Rejects unknown keywords, and suggests the one that was probably meant."""
 from __future__ import annotations
 
 import functools
@@ -9,7 +9,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def explained(function: F) -> F:
-    """The function with its own signature, which says more of a keyword that it does not know than Python does."""
+    """Wraps a function with its own signature. The error for an unknown keyword is more helpful than that of Python."""
     names = list(inspect.signature(function).parameters)
 
     @functools.wraps(function)

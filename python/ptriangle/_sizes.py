@@ -1,4 +1,4 @@
-"""Sizes: how long edges shall be, as a caller gives them and as the library takes them (struct tri_size_field)."""
+"""Converts sizes, the desired lengths of edges, to struct tri_size_field of the library."""
 from __future__ import annotations
 
 from ctypes import POINTER, c_double, cast
@@ -54,7 +54,7 @@ def _mesh(who: str, points: Any, triangles: Any, values: Any, kept: List[Any]) -
 
 
 def _on_arrays(calls: Calls, function: Function) -> Callable[[Array, Array], Array]:
-    """The function on arrays. One that takes numbers alone is called for each place, and a warning says so."""
+    """Makes a function of arrays. A function of single numbers is called for each place, with a warning."""
     name = str(getattr(function, "__name__", type(function).__name__))
     each: List[bool] = []
 
@@ -115,7 +115,7 @@ def _near(who: str, marker: Any, given: Any) -> SizeField:
 
 
 def fields(calls: Calls, size: Optional[Size], size_near: Optional[Near]) -> Tuple[Any, List[Any]]:
-    """An array of SizeField, and what must live as long."""
+    """Returns an array of SizeField, and the objects that must live as long."""
     kept: List[Any] = []
     given = size if isinstance(size, list) else [] if size is None else [size]
     found = [_field(calls, one, kept) for one in given]

@@ -1,8 +1,8 @@
 """The union of polygons that may overlap.
 
-All rings are triangulated at once, with points where they cross. What the segments divide the plane into are faces:
-each lies in a polygon or not, as one point of it does. The outline of the faces that do is the union, made of points
-that there are: nothing is computed twice in different ways.
+All rings are triangulated at once, with points at their crossings. The segments divide the plane into faces. A face
+lies in a polygon if one of its points does. The outline of these faces is the outline of the union. It consists of
+points of the triangulation, so no crossing is computed twice.
 """
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ._arrays import Array
 from ._notes import warn
 from ._rings import Polygon, areas_of
 
-_MOST = 1 << 22  # pairs of points and edges that are looked at together
+_MOST = 1 << 22  # pairs of points and edges in one step
 
 
 def is_among(some: Array, segments: Array) -> Array:
-    """Which of some pairs of points are segments, in either direction."""
+    """Returns which of the pairs of points are segments, in either direction."""
     def keys(pairs: Array) -> Array:
         low, high = np.sort(pairs.astype(np.int64), axis=1).T
         return np.asarray(low << 32 | high)
@@ -26,7 +26,7 @@ def is_among(some: Array, segments: Array) -> Array:
 
 
 def faces_of(neighbors: Array, walls: Array) -> Array:
-    """The face of each triangle, known by a triangle of it. walls [m, 3]: which edges are segments."""
+    """Returns the face of each triangle, named by one of its triangles. walls [m, 3]: which edges are segments."""
     label = np.arange(len(neighbors))
     triangle, corner = np.nonzero((neighbors >= 0) & ~walls)
     beside = neighbors[triangle, corner]
@@ -42,7 +42,7 @@ def faces_of(neighbors: Array, walls: Array) -> Array:
 
 
 def _is_enclosed(places: Array, ring: Array) -> Array:
-    """Which places lie in a ring, by the even-odd rule."""
+    """Returns which places lie in a ring, by the even-odd rule."""
     x, y = places[:, :1], places[:, 1:]
     a, b = ring, np.roll(ring, -1, axis=0)
     up = (a[:, 1] <= y) != (b[:, 1] <= y)
@@ -51,7 +51,7 @@ def _is_enclosed(places: Array, ring: Array) -> Array:
 
 
 def _is_inside(places: Array, polygon: Polygon) -> Array:
-    """Which places lie in the outline of a polygon, its first ring, and in none of its holes."""
+    """Returns which places lie in a polygon: in its first ring, and in none of the others, its holes."""
     inside = _is_enclosed(places, polygon[0])
     for hole in polygon[1:]:
         inside[inside] = ~_is_enclosed(places[inside], hole)
@@ -59,7 +59,7 @@ def _is_inside(places: Array, polygon: Polygon) -> Array:
 
 
 def last_around(places: Array, polygons: List[Polygon]) -> Array:
-    """The last of the polygons that each place lies in; -1 if it lies in none."""
+    """Returns the last of the polygons that contain each place; -1 if there is none."""
     found = np.full(len(places), -1)
     order = np.argsort(places[:, 0])
     x, y = places[order].T
@@ -79,12 +79,13 @@ def last_around(places: Array, polygons: List[Polygon]) -> Array:
 
 
 def inside_any(places: Array, polygons: List[Polygon]) -> Array:
-    """Which places lie in one of the polygons."""
+    """Returns which places lie in at least one of the polygons."""
     return last_around(places, polygons) >= 0
 
 
 def _inlay_of(polygons: List[Polygon]) -> Optional[Tuple[int, int]]:
-    """(a polygon all of whose corners lie in another one, that one), the first of the first thousand that has any."""
+    """Finds a polygon that has all its corners in another one. Returns both, or None. Only the first thousand are
+    searched as outer polygons."""
     places = np.array([polygon[0][0] if polygon and len(polygon[0]) else (np.nan, np.nan) for polygon in polygons])
     for k, polygon in enumerate(polygons[:1000]):
         for found in np.nonzero(inside_any(places, [polygon]))[0].tolist():
@@ -94,7 +95,7 @@ def _inlay_of(polygons: List[Polygon]) -> Optional[Tuple[int, int]]:
 
 
 def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
-    """By the areas: those of valid polygons that do not overlap add up to what the even-odd rule has meshed."""
+    """Warns of overlaps if the areas of the polygons do not add up to the area that the even-odd rule has meshed."""
     meant = float(areas_of(polygons).sum())
     rings = [ring for polygon in polygons for ring in polygon if len(ring)]
     rounding = sum(np.spacing(np.abs(ring).max()) * np.abs(ring - np.roll(ring, 1, axis=0)).sum() for ring in rings)
@@ -112,7 +113,7 @@ def warn_of_overlaps(polygons: List[Polygon], meshed: float, who: str) -> None:
 
 
 def largest_of(label: Array, areas: Array) -> Array:
-    """For each triangle, the largest of its face."""
+    """Returns for each triangle the largest triangle of its face."""
     order = np.lexsort((areas, label))
     last = np.append(label[order][1:] != label[order][:-1], True)
     largest = np.empty(len(label), int)
@@ -122,13 +123,14 @@ def largest_of(label: Array, areas: Array) -> Array:
 
 def outline_of(points: Array, triangles: Array, neighbors: Array, walls: Array,
                polygons: List[Polygon]) -> Tuple[Array, Array]:
-    """Points and segments of the union's border, of a triangulation of all rings that fills their convex hull."""
+    """Returns points and segments of the border of the union, from a triangulation of all rings and their convex
+    hull."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     witness = largest_of(faces_of(neighbors, walls), areas)
     asked, of = np.unique(witness, return_inverse=True)
     inside = inside_any(((a + b + c) / 3)[asked], polygons)[of]
-    outside_there = ~np.append(inside, False)[neighbors]  # -1, nobody, is the last
+    outside_there = ~np.append(inside, False)[neighbors]  # index -1, no neighbor, is the last entry
     triangle, corner = np.nonzero(inside[:, None] & outside_there)
     ends = np.column_stack([triangles[triangle, (corner + 1) % 3], triangles[triangle, (corner + 2) % 3]])
     used, segments = np.unique(ends, return_inverse=True)

@@ -1,14 +1,14 @@
-"""What Mesh.check() found."""
+"""The result of Mesh.check()."""
 from __future__ import annotations
 
 from ._library import VerdictDetail
 
 
 class Verdict:
-    """A judgement by exact arithmetic. Truth value: the mesh is as it should be."""
+    """The result of a check in exact arithmetic. It is true if the mesh passed."""
 
-    n_faults: int           #: 0: the mesh is as it should be
-    text: str               #: the first fault, with the numbers of what is concerned; "" if there is none
+    n_faults: int           #: 0: the mesh passed
+    text: str               #: the first fault, with the numbers of its triangles, edges or points; "" if there is none
     n_points: int           #: points that are corners of triangles
     n_edges: int
     n_boundary_edges: int
@@ -17,8 +17,8 @@ class Verdict:
     smallest_area: float
     largest_area: float
     total_area: float
-    n_small: int            #: triangles below min_angle, ..
-    n_small_explained: int  #: .. and those of them that a small angle of the input explains
+    n_small: int            #: triangles with an angle below min_angle
+    n_small_explained: int  #: those of them that a small angle of the input explains
 
     def __init__(self, detail: VerdictDetail) -> None:
         for name, *_ in VerdictDetail._fields_:

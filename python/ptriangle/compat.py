@@ -1,8 +1,9 @@
-"""The functions of the package `triangle` (PyPI), so that `import ptriangle.compat as triangle` serves its users.
+"""Replaces the package `triangle` (PyPI): import ptriangle.compat as triangle.
 
-Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, refined on all cores. Different on
-purpose: what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not
-exist) is refused or skipped; usual mistakes are warnings; the switch u needs the argument `unsuitable`.
+Dictionaries have the same keys, types and shapes. Meshes differ: ptriangle refines them on all cores. Other
+differences: faults that end the interpreter in `triangle` are exceptions here. Invalid input (NaN, numbers of points
+that do not exist) is an error or is skipped. Common mistakes give warnings. The switch u needs the argument
+`unsuitable`.
 """
 from __future__ import annotations
 
@@ -21,11 +22,11 @@ from ._errors import InputError, exception_of
 from ._library import TriangulateIO, TriangulateOptions, library
 from ._notes import EmptyMeshWarning, IgnoredWarning, tell, warn
 
-__version__ = "20250106"  # of the package whose functions these are
+__version__ = "20250106"  # version of the package `triangle` that this module replaces
 __all__ = ["EmptyMeshWarning", "IgnoredWarning", "compare", "comparev", "convex_hull", "delaunay", "get_data", "load",
            "loads", "plot", "show_data", "triangulate", "voronoi"]
 
-# key: (type, list of the struct, count of the struct, columns: a number or the count that tells)
+# key: (type, list in the struct, count in the struct, columns: a number, or the name of their count)
 Arrays = Dict[str, Any]
 _Fields = Dict[str, Tuple[Any, str, str, Union[int, str]]]
 _FIELDS: _Fields = {
@@ -52,7 +53,7 @@ _LISTS = [name for name, kind, *_ in TriangulateIO._fields_ if kind is c_void_p]
 
 
 def _fill(io: TriangulateIO, key: str, given: Any) -> Any:
-    """Sets the fields of one key; the array that must live as long, or None."""
+    """Sets the fields of one key. Returns the array that must live as long as the struct, or None."""
     dtype, list_name, count_name, width = _FIELDS[key]
     rows = as_int32(given, key) if dtype is np.int32 else np.asarray(given, dtype)
     if rows.size == 0:
@@ -73,7 +74,7 @@ def _fill(io: TriangulateIO, key: str, given: Any) -> Any:
 
 
 def _taken(io: TriangulateIO, fields: _Fields) -> Arrays:
-    """The arrays of a struct, copied; the ones that are empty are left out."""
+    """Returns copies of the arrays of a struct, without empty ones."""
     taken = {}
     for key, (dtype, list_name, count_name, width) in fields.items():
         address = getattr(io, list_name)
@@ -87,7 +88,7 @@ def _taken(io: TriangulateIO, fields: _Fields) -> Arrays:
 
 
 def _release(io: TriangulateIO, borrowed: Set[Any]) -> None:
-    """Frees what the library has allocated."""
+    """Frees the arrays that the library has allocated."""
     for name in _LISTS:
         address = getattr(io, name)
         if address and address not in borrowed:
@@ -116,7 +117,7 @@ def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: L
 
 
 def _warn_of_no_effect(tri: Mapping[str, Any], switches: bytes, who: str) -> None:
-    """A forgotten p is the commonest mistake. Without it the library does not look at these arrays."""
+    """Warns of a missing switch p, the most common mistake. Without it the library ignores these arrays."""
     names = ["segments"] if b"r" in switches else ["segments", "holes", "regions"]
     given = [name for name in names if b"p" not in switches and np.size(tri.get(name, ())) > 0]
     if given:
@@ -125,7 +126,7 @@ def _warn_of_no_effect(tri: Mapping[str, Any], switches: bytes, who: str) -> Non
 
 def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
           unsuitable: Optional[Callable[..., Any]] = None) -> Tuple[Arrays, Arrays]:
-    """The mesh and, with the switch v, its Voronoi diagram."""
+    """Returns the mesh and, with the switch v, its Voronoi diagram."""
     data, out, vorout, kept = TriangulateIO(), TriangulateIO(), TriangulateIO(), []
     words: List[str] = []
     notes: List[bytes] = []
@@ -140,7 +141,7 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
     calls = Calls("triangulate()")
     options = _options_of(unsuitable, calls, words, notes)
-    borrowed = {data.holelist, data.regionlist}  # which `out` names as well
+    borrowed = {data.holelist, data.regionlist}  # `out` refers to these as well
     try:
         status = calls.run(library.triangulate_with, b"z" + opts, byref(data), byref(out), byref(vorout),
                            byref(options))
@@ -157,14 +158,14 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
 
 def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
                 unsuitable: Optional[Callable[..., Any]] = None) -> Arrays:
-    """Triangulates a dictionary of arrays by Triangle's switches; z is always set, and nothing is ever printed.
+    """Triangulates a dictionary of arrays with the switches of Triangle. z is always set, and nothing is printed.
 
     Keys of `tri`: vertices [n, 2]; optional vertex_attributes, vertex_markers, segments [s, 2], segment_markers,
     holes [h, 2], regions [r, 4]; with r also triangles, triangle_attributes, triangle_max_area. The result has those of
     vertices, vertex_attributes, vertex_markers, triangles, triangle_attributes, neighbors (n), segments and
     segment_markers, holes and regions (p), edges and edge_markers (e) that are not empty; markers are [n, 1].
 
-    unsuitable(a, b, c, area), for the switch u: must this triangle be refined?
+    unsuitable(a, b, c, area), for the switch u: returns True if this triangle must be refined.
 
     Mistakes are warnings of the class IgnoredWarning: a number with an exponent ("a%g" % 1e-5 is read as a1 and e;
     write "a%.20f"), segments, holes or regions without the switch p, duplicate points, an angle bound above 38 degrees.
@@ -174,17 +175,18 @@ def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
 
 
 def delaunay(pts: Any) -> Any:
-    """Triangles [m, 3] of the Delaunay triangulation of points."""
+    """Returns the triangles [m, 3] of the Delaunay triangulation of points."""
     return triangulate({"vertices": pts})["triangles"]
 
 
 def convex_hull(pts: Any) -> Any:
-    """Segments [h, 2] of the convex hull of points, clockwise order of their own."""
+    """Returns the segments [h, 2] of the convex hull of points, each in clockwise direction."""
     return triangulate({"vertices": pts}, "c")["segments"]
 
 
 def voronoi(pts: Any) -> Tuple[Any, Any, Any, Any]:
-    """Vertices [m, 2], edges [e, 2], numbers of the vertices at which rays begin [r], their directions [r, 2]."""
+    """Returns vertices [m, 2], edges [e, 2], numbers of the vertices at which rays begin [r], their directions [r,
+    2]."""
     _, diagram = _call({"vertices": pts}, "v")
     ends = diagram.get("edges", np.empty((0, 2), np.int32))
     is_ray = ends[:, 1] == -1
@@ -193,9 +195,9 @@ def voronoi(pts: Any) -> Tuple[Any, Any, Any, Any]:
 
 
 def get_data(name: str) -> Arrays:
-    """The arrays of an example: plate, ground or points, or the mesh of one, plate.1 and so on.
+    """Returns the arrays of an example (plate, ground or points) or of its mesh (plate.1 and so on).
 
-    Another name is an InputError: the examples of the package `triangle` ("A", "face", ...) are files of its own.
+    Other names raise InputError: the examples of the package `triangle` ("A", "face", ...) are not included.
     """
     directory = os.path.join(os.path.dirname(os.path.abspath(__file__)), "data")
     found = load(directory, name)
@@ -207,7 +209,7 @@ def get_data(name: str) -> Arrays:
 
 
 def show_data(name: str) -> None:
-    """Draws an example, and waits until the window is closed."""
+    """Draws an example, and returns when the window is closed."""
     import matplotlib.pyplot as plt
     plot(plt.axes(), **get_data(name))
     plt.show()

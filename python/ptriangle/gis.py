@@ -1,10 +1,10 @@
 """From maps to meshes and back: coasts and regions from files, sizes from depths, files for solvers.
 
-Coordinates must be lengths: read(path, crs="utm") projects degrees to metres. Packages are imported by the functions
-that need them: shapely by sea(), cleaned(), figure() and sampled(), geopandas by read(), rasterio by raster() (not for
-.asc), scipy by write() for .nc.
+Coordinates must be lengths: read(path, crs="utm") projects degrees to metres. Each function imports the packages that
+it needs: shapely by sea(), cleaned(), figure() and sampled(), geopandas by read(), rasterio by raster() (not for .asc),
+scipy by write() for .nc.
 
-    python -m ptriangle.gis MAP FILE.poly      # a figure for the programs, with a region for each polygon of the map
+    python -m ptriangle.gis MAP FILE.poly      # a figure with a region for each polygon of the map
 """
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ def _need(package: str, who: str) -> Any:
 
 
 def read(path: Any, crs: Any = None, **wanted: Any) -> Any:
-    """The GeoDataFrame of a shapefile, GeoPackage or GeoJSON file, in the coordinates `crs`: anything that pyproj knows
+    """The GeoDataFrame of a shapefile, GeoPackage or GeoJSON file, in the coordinate system `crs`: any name of pyproj
     ("EPSG:3035"), or "utm" for the UTM zone of the data. wanted: keywords of geopandas.read_file (layer, bbox, ..)."""
     frame = _need("geopandas", "gis.read()").read_file(path, **wanted)
     return frame if crs is None else frame.to_crs(frame.estimate_utm_crs() if crs == "utm" else crs)
 
 
 def _shapes(given: Any, who: str) -> List[Any]:
-    """Shapely's geometry of each item; None is skipped."""
+    """Returns the shapely geometry of each item; None is skipped."""
     shapely = _need("shapely", who)
     shapes = given.geometry.to_numpy() if hasattr(given, "geometry") and hasattr(given.geometry, "to_numpy") else \
         given if isinstance(given, (list, tuple, np.ndarray)) else [given]
@@ -56,18 +56,18 @@ def _shapes(given: Any, who: str) -> List[Any]:
 
 
 def _areas(given: Any, who: str) -> List[Any]:
-    """The shapes, each as a valid polygon, or several. Lines and points are dropped."""
+    """Returns the shapes, each as one or several valid polygons. Lines and points are left out."""
     shapely = _need("shapely", who)
     return [shape if shape.is_valid and "Polygon" in shape.geom_type else
             shapely.union_all(shapely.make_valid(shapely.get_parts(shape))).buffer(0) for shape in _shapes(given, who)]
 
 
 def cleaned(polygons: Any, min_edge: float) -> List[Any]:
-    """Polygons of shapely with less detail. An InputWarning reports the changes.
+    """Returns shapely polygons with less detail. An InputWarning reports the changes.
 
-    Corners are removed by the method of Visvalingam and Whyatt if they cut less than min_edge^2 / 2 off, on shared
-    borders from both polygons. No new crossings or contacts arise. Islands and lakes smaller than min_edge^2 are
-    removed. Polygons must not overlap."""
+    The method of Visvalingam and Whyatt removes corners whose triangle has an area below min_edge^2 / 2. On shared
+    borders it removes them from both polygons. No new crossings or contacts arise. Islands and lakes smaller than
+    min_edge^2 are removed. Polygons must not overlap."""
     who = "gis.cleaned()"
     shapely, before, min_edge = _need("shapely", who), _areas(polygons, who), length(who, "min_edge", min_edge)
     if not hasattr(shapely, "coverage_simplify"):
@@ -115,10 +115,11 @@ def figure(shapes: Any, markers: Any = None) -> Dict[str, Any]:
 
 def sea(land: Any, bounds: Sequence[float], *, min_edge: Optional[float] = None, coast: int = 1,
         open_boundary: int = 2, largest: bool = True) -> Dict[str, Any]:
-    """The sea in a box, as keywords of mesh(): points, segments, their markers, and holes="auto".
+    """Returns the sea in a box as keywords of mesh(): points, segments, their markers, and holes="auto".
 
-    land: polygons, which may overlap. bounds: x_min, y_min, x_max, y_max. min_edge: the land is cleaned() first. coast,
-    open_boundary: markers, of the sides of the box too. largest: without seas that are not connected with the largest.
+    land: polygons, which may overlap. bounds: x_min, y_min, x_max, y_max. min_edge: simplifies the land with cleaned()
+    first. coast, open_boundary: markers of the coast and of the sides of the box. largest: keeps only the largest
+    connected sea.
     """
     who = "gis.sea()"
     shapely = _need("shapely", who)
@@ -141,7 +142,7 @@ def sea(land: Any, bounds: Sequence[float], *, min_edge: Optional[float] = None,
 
 
 def _read_asc(path: str) -> Raster:
-    """An ESRI ASCII grid."""
+    """Reads an ESRI ASCII grid."""
     head: Dict[str, float] = {}
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -159,8 +160,8 @@ def _read_asc(path: str) -> Raster:
 
 
 def raster(path: Any, crs: Any = None, band: int = 1) -> Raster:
-    """Values and extent of a raster, as mesh(size=) takes them. An ESRI ASCII grid (.asc) needs no package; GeoTIFF,
-    NetCDF and the other formats of GDAL come through rasterio. crs: the coordinates that it is warped to."""
+    """Returns values and extent of a raster in the form of mesh(size=). An ESRI ASCII grid (.asc) needs no package.
+    GeoTIFF, NetCDF and the other formats of GDAL need rasterio. crs: the coordinate system of the result."""
     path = os.fspath(path)
     if path.lower().endswith(".asc") and crs is None:
         return _read_asc(path)
@@ -176,7 +177,7 @@ def raster(path: Any, crs: Any = None, band: int = 1) -> Raster:
 
 
 def sampled(values: Raster, points: npt.ArrayLike) -> Array:
-    """Values of a raster at places [n, 2]: bilinear between known values; the nearest known value elsewhere."""
+    """Returns values of a raster at places [n, 2]: bilinear between known values, otherwise the nearest known value."""
     who = "gis.sampled()"
     rows, (x_min, y_min, x_max, y_max) = numbers(values[0], who).astype(np.float64), values[1]
     at = numbers(points, who + ": points").astype(np.float64)
@@ -197,7 +198,7 @@ def sampled(values: Raster, points: npt.ArrayLike) -> Array:
     missing = ~inside | (weights < 1e-9)
     found = known / np.where(missing, 1, weights)
     if missing.any():
-        padded = np.pad(np.isfinite(rows), 1)  # values that are beside none: one of these is the nearest
+        padded = np.pad(np.isfinite(rows), 1)  # known values next to missing ones: one of these is the nearest
         rim = padded[1:-1, 1:-1] & ~(padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:])
         shapely, (row, column) = _need("shapely", who), np.nonzero(rim)
         if len(row) == 0:
@@ -209,14 +210,14 @@ def sampled(values: Raster, points: npt.ArrayLike) -> Array:
 
 
 def wave_sizes(depths: Raster, period: float, n: float = 20, min_depth: float = 1) -> Raster:
-    """Lengths of edges, of which n fit into a wavelength for this period (seconds): sqrt(g depth) period / n.
-    Depths are in metres, positive downwards; shallower places count as min_depth."""
+    """Returns edge lengths such that n edges fit into a wavelength for this period (seconds): sqrt(g depth) period / n.
+    Depths are in metres, positive downwards. Shallower places count as min_depth."""
     period, n = (length("gis.wave_sizes()", name, given) for name, given in (("period", period), ("n", n)))
     return np.sqrt(_GRAVITY * np.maximum(depths[0], min_depth)) * period / n, depths[1]
 
 
 def slope_sizes(depths: Raster, n: float = 15, min_depth: float = 1) -> Raster:
-    """Lengths of edges at slopes of the bottom: 2 pi depth / (n |gradient of depth|); infinite where it is flat."""
+    """Returns edge lengths at slopes of the bottom: 2 pi depth / (n |gradient of depth|); infinite at flat places."""
     rows, (x_min, y_min, x_max, y_max) = np.maximum(depths[0], min_depth), depths[1]
     along_y, along_x = np.gradient(rows, (y_max - y_min) / (rows.shape[0] - 1), (x_max - x_min) / (rows.shape[1] - 1))
     slope = np.hypot(along_x, along_y)
@@ -225,7 +226,7 @@ def slope_sizes(depths: Raster, n: float = 15, min_depth: float = 1) -> Raster:
 
 
 def _write_ugrid(path: str, points: Array, triangles: Array, depths: Optional[Array], metres: bool) -> None:
-    """NetCDF with the conventions of UGRID 1.0. metres: what the points are in; otherwise no unit is written."""
+    """Writes NetCDF by the conventions of UGRID 1.0. metres: points are in metres; if False, no unit is written."""
     with _need("scipy.io", "gis.write() of .nc").netcdf_file(path, "w", version=2) as file:
         file.Conventions = "CF-1.8 UGRID-1.0"
         for name, length in (("node", len(points)), ("face", len(triangles)), ("corner", 3)):
@@ -250,7 +251,7 @@ def _write_ugrid(path: str, points: Array, triangles: Array, depths: Optional[Ar
 def write(mesh: Mesh, path: Any, depths: Optional[npt.ArrayLike] = None,
           points: Optional[npt.ArrayLike] = None) -> None:
     """Writes a mesh with depths at its points: x.14 or x.grd (ADCIRC, SCHISM), x.2dm (SMS, QGIS), x.msh (Gmsh), x.nc
-    (UGRID), and all that Mesh.write() knows. points: other coordinates [n, 2], such as longitudes and latitudes."""
+    (UGRID), and all formats of Mesh.write(). points: other coordinates [n, 2], such as longitudes and latitudes."""
     who = "gis.write()"
     path, arrays = os.fspath(path), dict(mesh._arrays)
     if mesh.order != 1:
@@ -272,7 +273,7 @@ def write(mesh: Mesh, path: Any, depths: Optional[npt.ArrayLike] = None,
 
 def write_figure(polygons: Any, path: Any, *, attributes: Any = None, areas: Any = None,
                  grid: Optional[float] = None) -> None:
-    """Writes a .poly file with a region for each polygon, as mesh(overlay=True) sees them."""
+    """Writes a .poly file with a region for each polygon, as in mesh(overlay=True)."""
     who = "gis.write_figure()"
     if not os.fspath(path).lower().endswith(".poly"):
         raise InputError("%s: %s: the name does not end in .poly" % (who, path))
@@ -287,7 +288,7 @@ def _main() -> None:
     import argparse
     parser = argparse.ArgumentParser(prog="python -m ptriangle.gis", description="Writes a .poly file of a map.")
     parser.add_argument("map", help="a shapefile, GeoPackage or GeoJSON file")
-    parser.add_argument("poly", help="the figure that is written")
+    parser.add_argument("poly", help="the .poly file to write")
     parser.add_argument("--attributes", metavar="COLUMN", help="attributes of the regions (default: their numbers)")
     parser.add_argument("--areas", metavar="COLUMN", help="bounds on the areas of triangles")
     parser.add_argument("--grid", type=float, help="snaps borders to a grid of this width")

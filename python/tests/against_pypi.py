@@ -38,7 +38,7 @@ for line in sys.stdin:
 
 
 def ask(module, directory, cases):
-    """Results of all cases; a process that dies loses the case it was at, and a new one goes on."""
+    """Returns the results of all cases. If a process dies, its current case is lost, and a new process continues."""
     found, cases = {}, list(cases)
     while cases:
         text = "".join(json.dumps(case) + "\n" for case in cases)

@@ -1,4 +1,4 @@
-"""Numbers and names that the package repeats from ptriangle/tri.h are those of the header."""
+"""Numbers and names in the package agree with those in ptriangle/tri.h."""
 import re
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""ptriangle.mesh: what comes out is judged by the library's checker."""
+"""ptriangle.mesh: the checker of the library verifies the meshes."""
 import pickle
 import threading
 import time

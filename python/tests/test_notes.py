@@ -1,4 +1,4 @@
-"""Warnings of what was hardly meant so."""
+"""Warnings of probable mistakes in the input."""
 import math
 import warnings
 

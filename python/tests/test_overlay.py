@@ -1,4 +1,4 @@
-"""Polygons as regions: every triangle lies in the polygon that shapely finds around it."""
+"""Polygons as regions: shapely confirms the polygon of every triangle."""
 import pickle
 import re
 import warnings
@@ -11,7 +11,7 @@ shapely = pytest.importorskip("shapely")
 
 
 def last_around(m, shapes):
-    """The last shape around the centroid of each triangle, by shapely."""
+    """Returns the last shape that contains the centroid of each triangle, by shapely."""
     at = shapely.points(m.points[m.triangles].mean(axis=1))
     triangle, shape = shapely.STRtree(shapes).query(at, predicate="within")
     found = np.full(len(at), -1)
@@ -20,7 +20,7 @@ def last_around(m, shapes):
 
 
 def laid(shapes, **wanted):
-    """The mesh, judged: every triangle in its polygon, and the area that is left of each polygon."""
+    """Makes a mesh, and checks that every triangle lies in its polygon and that areas of polygons are right."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         m = ptriangle.mesh(polygons=shapes, **dict(dict(overlay=True, min_angle=25), **wanted))
@@ -37,7 +37,7 @@ def box(x, y, width, height):
 
 
 def jagged(a, b, random, depth=4):
-    """A line between two places whose pieces are displaced, by a tenth of their length at most."""
+    """Returns a line between two places whose parts are displaced by at most a tenth of their length."""
     if depth == 0:
         return [a]
     along = b - a
@@ -46,8 +46,8 @@ def jagged(a, b, random, depth=4):
 
 
 def municipalities(n):
-    """n^2 / 2 cells of a jittered net of hexagons with jagged borders, which both cells write down with the same
-    numbers; every tenth has a lake."""
+    """Returns n^2 / 2 cells of a jittered net of hexagons with jagged borders. Neighbouring cells have the same
+    coordinates on a border. Every tenth cell has a lake."""
     random = np.random.default_rng(7)
     place = {(i, j): np.array([i + 0.3 * ((i + j) % 2) + random.uniform(-0.1, 0.1), j + random.uniform(-0.15, 0.15)])
              for i in range(n + 2) for j in range(n + 2)}

@@ -1,4 +1,4 @@
-"""What Python people expect: signatures, words of errors, copies, pictures, files, geometries of others."""
+"""Python conventions: signatures, error messages, copies, pictures, files, geometries of other packages."""
 import copy
 import inspect
 import json

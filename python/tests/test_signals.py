@@ -1,4 +1,4 @@
-"""Ctrl-C, as users press it: a signal at any time ends the work with KeyboardInterrupt, and none is lost."""
+"""Ctrl-C: a signal at any time ends the call with KeyboardInterrupt, and no signal is lost."""
 import os
 import signal
 import subprocess
@@ -50,7 +50,7 @@ WAYS = {
 
 @pytest.fixture(autouse=True)
 def heard():
-    """A shell's job in the background begins with SIGINT ignored."""
+    """A background job of a shell starts with SIGINT ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -77,7 +77,7 @@ def test_handlers_of_other_signals_may_raise(way):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_many_interrupts_in_one_process(threads):
-    """None is lost, none comes as something else; each as soon as the next one may come."""
+    """No signal is lost, and each raises KeyboardInterrupt. The next one is sent as soon as possible."""
     found = []
     for k in range(N):
         timer = threading.Timer(0.02 + 0.0017 * (k % 30), os.kill, (os.getpid(), signal.SIGINT))

@@ -1,4 +1,4 @@
-"""Sizes: edges are as long as the field says, whatever form it has."""
+"""Sizes: edges have the length of the field, in all forms of a field."""
 import warnings
 
 import numpy as np
@@ -23,14 +23,14 @@ def made(**wanted):
 
 
 def ratios(m, field):
-    """The lengths of edges over those that are asked for at their middles."""
+    """Returns the lengths of edges divided by the desired lengths at their midpoints."""
     a, b = m.points[m.edges[:, 0]], m.points[m.edges[:, 1]]
     middle = (a + b) / 2
     return np.hypot(*(b - a).T) / field(*middle.T)
 
 
 def asked(m, field):
-    """How many equilateral triangles fill the domain with these edges."""
+    """Returns how many equilateral triangles with these edges fill the domain."""
     middle = m.points[m.triangles].mean(axis=1)
     return (m.areas / (np.sqrt(3) / 4 * field(*middle.T) ** 2)).sum()
 

@@ -1,5 +1,6 @@
-/* What crosses the borders of ranks. Lent: ghost layers around vertices, as far as these are own ones in the boxes of
- * another's blocks. Borrowed: the same on the other side, until it is given back. */
+/* The exchange of triangles between ranks. A rank lends ghost layers around its own vertices in boxes of blocks that
+ * another rank refines. The other rank borrows them and gives them back after the phase. No function here is
+ * collective: each fills the messages of the next exchange or reads those of the last one. */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -8,20 +9,21 @@
 
 /* --- lending */
 
-/* The rank that works in a box at a place, this one holding a part; -1: none. */
+/* Returns the other rank that refines the block containing q, of which this rank owns a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
 {
     const struct par_shift *s = &r->shift;
     return s->worker[s->partition ? par_block_at(s->partition, s->phase, q) : 0];
 }
 
+/* Adds a triangle to the talk, unless it is there already. False: no memory. */
 static bool tell_of(struct par_talk *talk, tri_triangle_id t)
 {
     return par_talk_number(talk, t) != TRI_NONE || par_talk_add_triangle(talk, t);
 }
 
-/* A telling of so many layers to rank w. A layer is own vertices around which it has to know all, as corners: each by a
- * triangle there and which of its corners it is, as a half-edge is by its edge. */
+/* The sending of ghost layers to rank w. A layer is a list of own vertices, all triangles around which are sent. Each
+ * vertex is given as a corner: a triangle and one of its corners, encoded like a half-edge. */
 struct telling {
     const struct par_ranks *ranks;
     int w;
@@ -33,7 +35,7 @@ static tri_vertex_id vertex_at(const struct tri_mesh *mesh, tri_halfedge corner)
     return mesh->tri[tri_of(corner)].v[tri_edge(corner)];
 }
 
-/* A vertex joins a layer, unless all around it has been told, or is not this rank's to tell. */
+/* Adds a vertex to a layer, unless all triangles around it have been sent or this rank must not send them. */
 static bool join_layer(const struct telling *telling, struct par_ids *layer, tri_halfedge corner)
 {
     const struct par_ranks *r = telling->ranks;
@@ -52,7 +54,7 @@ static bool join_corners(const struct telling *telling, struct par_ids *layer, t
            join_layer(telling, layer, tri_code(t, 2));
 }
 
-/* The same vertex as a corner of the next triangle around it, to one side or the other; TRI_NONE: there is none. */
+/* Returns the same vertex as a corner of the next triangle around it, to the left or right; TRI_NONE: no triangle. */
 static tri_halfedge turn_corner(const struct tri_mesh *mesh, tri_halfedge corner, bool left)
 {
     const int *ahead = left ? tri_next : tri_prev;
@@ -62,7 +64,7 @@ static tri_halfedge turn_corner(const struct tri_mesh *mesh, tri_halfedge corner
     return across < 0 ? TRI_NONE : tri_code(tri_of(across), ahead[tri_edge(across)]);
 }
 
-/* Tells of all triangles around an own vertex; their corners join the next layer. */
+/* Sends all triangles around an own vertex. Their corners join the next layer. */
 static bool tell_around(const struct telling *telling, tri_halfedge corner, struct par_ids *next)
 {
     const struct par_ranks *r = telling->ranks;
@@ -70,7 +72,7 @@ static bool tell_around(const struct telling *telling, tri_halfedge corner, stru
     struct par_talk *talk = &r->lent[telling->w];
     tri_halfedge at = corner;
     bool memory = true;
-    assert(par_is_own(&r->territory, mesh->xy[vertex_at(mesh, corner)])); /* so all triangles around it are here */
+    assert(par_is_own(&r->territory, mesh->xy[vertex_at(mesh, corner)])); /* so this rank holds all its triangles */
     do {
         memory = memory && tell_of(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
         at = turn_corner(mesh, at, true);
@@ -82,7 +84,7 @@ static bool tell_around(const struct telling *telling, tri_halfedge corner, stru
     return memory;
 }
 
-/* Its layers, the first of which is given. Frees that. */
+/* Sends layer after layer, starting with the given one, which is freed. */
 static bool tell_layers(const struct telling *telling, struct par_ids *layer)
 {
     const struct par_ranks *r = telling->ranks;
@@ -94,13 +96,13 @@ static bool tell_layers(const struct telling *telling, struct par_ids *layer)
         free(layer->item);
         *layer = next;
     }
-    for (int32_t i = 0; memory && i < layer->n; i++) /* around these not all has been told */
+    for (int32_t i = 0; memory && i < layer->n; i++) /* not all triangles around these were sent */
         memory = par_map_put(&r->lent[telling->w].surrounded, vertex_at(r->run->mesh, layer->item[i]), TRI_NONE);
     free(layer->item);
     return memory;
 }
 
-/* Whom a straddler concerns: everybody who works in a box that has a corner of it. */
+/* Sends each straddler to all ranks that refine a block containing one of its corners. */
 static bool tell_straddlers(const struct par_ranks *r)
 {
     const struct tri_mesh *mesh = r->run->mesh;
@@ -113,7 +115,7 @@ static bool tell_straddlers(const struct par_ranks *r)
     return memory;
 }
 
-/* The rank that is lent an entry of the worklist, or -1. */
+/* Returns the rank that is lent entry i of the worklist, or -1. */
 static int taker_of(const struct par_ranks *r, int32_t i)
 {
     int32_t block = r->shift.block_of[i];
@@ -136,7 +138,7 @@ static bool tell_surroundings(const struct par_ranks *r)
     return memory;
 }
 
-/* Whether the taker has an entry already is not known here: it finds the same key. */
+/* The borrower may have the same entry already. It detects duplicates by their equal keys. */
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *run = r->run;
@@ -165,7 +167,7 @@ enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
-/* --- more */
+/* --- requests for more layers */
 
 static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *talk)
 {
@@ -176,8 +178,8 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
     return bad;
 }
 
-/* What is asked for: a vertex, as a corner of a triangle that has been told, and the most layers of a telling that told
- * all around one of its neighbours. */
+/* A request for all triangles around a vertex. The vertex is given as a corner of a triangle that was sent. `layers` is
+ * the largest number of layers that were sent at once around one of its neighbours. */
 struct request {
     tri_halfedge corner;
     int32_t layers;
@@ -193,7 +195,7 @@ static void look_at(struct request *request, const struct par_talk *talk, const 
     }
 }
 
-/* Returns how many there are; TRI_NONE: no memory. */
+/* Reads the requests of rank w. Returns their number; TRI_NONE: no memory. */
 static int32_t read_requests(const struct par_ranks *r, int w, struct request *request)
 {
     const int32_t *number = (const int32_t *)(const void *)r->in[w].at;
@@ -219,15 +221,15 @@ static int32_t read_requests(const struct par_ranks *r, int w, struct request *r
     return memory ? n : TRI_NONE;
 }
 
-/* Where what has been told was not enough, twice as many layers are told of: so a block that eats its way into another
- * rank's part asks seldom, and one that asks a little here and there does not get that much everywhere. */
+/* Each repeated request at a place is answered with twice as many layers. A block that advances far into another rank's
+ * part thus needs few requests, and single requests elsewhere do not cause large answers. */
 static bool answer_requests(const struct par_ranks *r, int w)
 {
     struct request *request = malloc(r->in[w].n / sizeof(int32_t) * sizeof *request + 1);
     const int32_t n = request ? read_requests(r, w, request) : TRI_NONE;
     bool memory = n != TRI_NONE;
     for (int32_t i = 0; memory && i < n; i++) {
-        assert(request[i].corner != TRI_NONE); /* vertices are told as corners */
+        assert(request[i].corner != TRI_NONE); /* each sent vertex is a corner of a sent triangle */
         const struct telling telling = {r, w, request[i].layers > 0 ? 2 * request[i].layers : PAR_GHOST_LAYERS};
         struct par_ids layer = {0};
         memory = join_layer(&telling, &layer, request[i].corner);
@@ -252,7 +254,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
-/* --- what comes back */
+/* --- receiving changes to lent triangles */
 
 static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct par_message *message)
 {
@@ -272,7 +274,7 @@ static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct
 
 static bool is_left_alone(const struct tri_subsegment *s) { return s->v[0] != TRI_NONE && par_is_lone(s); }
 
-/* Subsegments beside which others have put what is all theirs. */
+/* Removes subsegments beside which other ranks have made triangles that only they hold. */
 static bool remove_lone_subs(struct par_ranks *r, const struct par_talk *talk)
 {
     bool memory = true;
@@ -348,7 +350,7 @@ enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, str
 
 /* --- giving back */
 
-/* A list becomes that of the set made of it: each once, in ascending order. */
+/* Replaces a list by the members of the set made from it: each once, in ascending order. */
 static void list_set(struct par_ids *list, const struct par_triangle_set *set, int32_t n_triangles)
 {
     int32_t n = 0;
@@ -360,7 +362,7 @@ static void list_set(struct par_ids *list, const struct par_triangle_set *set, i
     list->n = n;
 }
 
-/* Triangles that were made anew, and subsegments that were split, are no longer what was told. */
+/* Lists remade triangles and split subsegments as deleted in the message: they differ from those that were sent. */
 static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const struct par_triangle_set *changed,
                       struct par_message *message)
 {
@@ -379,7 +381,7 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     return memory;
 }
 
-/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
+/* Lists the other ranks that own corners of t, each once. Returns their number. On entry owner[0] is a first guess. */
 static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
     const struct tri_mesh *mesh = r->run->mesh;
@@ -399,7 +401,7 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
     return n;
 }
 
-/* Triangles lie in the order of the list, their corners do not: these are fetched ahead. */
+/* Triangles are accessed in list order, but their vertices are scattered in memory, so these are prefetched. */
 static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
     const struct tri_mesh *mesh = r->run->mesh;
@@ -415,7 +417,7 @@ static bool add_new(struct par_ranks *r, const struct par_ids *changed)
     return memory;
 }
 
-/* Was this left by a block at a border, in this phase? */
+/* Was the entry with this key left over by a border block of this phase? */
 static bool is_of_border(const struct par_ranks *r, uint64_t key)
 {
     const struct par_partition *p = r->shift.partition;
@@ -428,7 +430,7 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
 }
 
 #ifndef NDEBUG
-/* An own corner, or one of another rank's that knows the triangle: the others need not have its entry. */
+/* Does this rank own a corner of t, or does another owner of a corner hold t? Then one of them can keep its entry. */
 static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, const int *owner, int n)
 {
     bool is = par_own_corners(r, t) > 0;
@@ -438,8 +440,9 @@ static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, cons
 }
 #endif
 
-/* What such a block left goes to those who own a corner of it and know it. A block may leave a triangle beside a
- * subsegment of which one corner lies outside its box: that one's owner may know nothing of the block. */
+/* Sends entries that border blocks left over to the owners of the triangle's corners that hold the triangle. A block
+ * may leave over a triangle beside a subsegment with one corner outside its box. The owner of that corner may have no
+ * part of the block. */
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *run = r->run;
@@ -485,7 +488,7 @@ static void mark_vertex(uint64_t *word, tri_vertex_id v, bool on)
     word[v / 64] = on ? word[v / 64] | bit : word[v / 64] & ~bit;
 }
 
-/* The vertices of what goes go with it, unless a straddler has them. */
+/* Removes the vertices of dropped triangles, except corners of straddlers. */
 static bool remove_vertices(struct par_ranks *r, uint64_t *word)
 {
     struct tri_mesh *mesh = r->run->mesh;
@@ -496,7 +499,7 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
     for (int32_t w = 0; memory && w <= mesh->n_vertices / 64; w++)
         for (int bit = 0; memory && word[w] != 0 && bit < 64; bit++)
             if (word[w] >> bit & 1) {
-                assert(64 * w + bit >= r->n_common); /* these all ranks keep */
+                assert(64 * w + bit >= r->n_common); /* all ranks keep the coarse vertices */
                 mesh->on[64 * w + bit] = TRI_VERTEX_NONE;
                 memory = par_room_release(&r->run->spare, PAR_VERTICES, 64 * w + bit);
             }
@@ -512,7 +515,7 @@ static bool leave_sub(struct par_run *run, tri_sub_id s, tri_halfedge code)
     return !par_is_lone(sub) || par_remove_sub(run, s);
 }
 
-/* Its neighbours are cut off afterwards, all at once. */
+/* Drops a triangle. cut_off resets the links of its neighbours later, for all dropped triangles at once. */
 static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
     struct tri_triangle *triangle = &r->run->mesh->tri[t];
@@ -528,7 +531,8 @@ static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word
     return memory && par_room_release(&r->run->spare, PAR_TRIANGLES, t);
 }
 
-/* A triangle that stays beside one that has gone shares an edge without an own end with it: it is a straddler. */
+/* Resets links to dropped triangles. A remaining triangle beside a dropped one is a straddler, because neither end of
+ * their common edge is an own vertex. Hence only straddlers are visited. */
 static void cut_off(struct par_ranks *r)
 {
     struct tri_mesh *mesh = r->run->mesh;
@@ -541,7 +545,7 @@ static void cut_off(struct par_ranks *r)
     }
 }
 
-/* A triangle goes, or stays, as a straddler if others have it, too. */
+/* Drops t if it has no own corner. Otherwise keeps it, as a straddler if other ranks hold it as well. */
 static bool put_in_place(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
     int n = par_own_corners(r, t);
@@ -550,7 +554,7 @@ static bool put_in_place(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
     return n == 3 || par_ids_add(&r->straddlers, t);
 }
 
-/* What is borrowed, and has not changed. */
+/* Drops borrowed triangles that have not changed. */
 static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, uint64_t *word)
 {
     bool memory = true;
@@ -578,7 +582,7 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
     return memory;
 }
 
-/* Keeps the live ones first; returns how many: the others were erased. */
+/* Moves live triangles to the front of `changed` and returns their number. The others were erased. */
 static int32_t sort_erased(const struct tri_mesh *mesh, struct par_ids *changed)
 {
     int32_t n = 0;
@@ -625,7 +629,7 @@ enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
     keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
-            memory = put_in_place(r, t, word); /* all vertices stay: all ranks have them */
+            memory = put_in_place(r, t, word); /* all ranks keep the coarse vertices */
     if (memory)
         cut_off(r);
     free(word);

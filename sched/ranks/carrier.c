@@ -1,4 +1,4 @@
-/* What all carriers have in common: agreements, and exchanges that begin with one. */
+/* The part that is common to all carriers: agreements, and exchanges that begin with an agreement. */
 #include "sched/ranks/carrier.h"
 
 #include <assert.h>
@@ -54,6 +54,7 @@ struct par_carrier par_carrier_alone(int64_t *room)
 
 /* --- agreements */
 
+/* Records that the network has failed on this rank. Not collective: the other ranks may not notice. */
 static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
 {
     carrier->ended = carrier->lost = true;
@@ -66,7 +67,7 @@ enum tri_status par_ranks_no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what ranks exchange");
 }
 
-/* Whoever comes first waits here for the last. */
+/* Collective gather that measures the time this rank waits for the last one. */
 static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all)
 {
     double began = tri_seconds();
@@ -75,8 +76,8 @@ static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n,
     return good;
 }
 
-/* Everybody's error becomes that of one rank. Word by word: no memory may be left, and whoever stayed away would be
- * waited for. */
+/* Collective: replaces the error of each rank by that of rank `from`. The text is gathered one word at a time into
+ * preallocated memory: an allocation could fail, and a rank that left early would block the others. */
 static void share_error(struct par_carrier *carrier, int from, int64_t *all, struct tri_error *error)
 {
     enum { WORDS = sizeof(struct tri_error) / sizeof(int64_t) + 1 };
@@ -92,8 +93,8 @@ static void share_error(struct par_carrier *carrier, int from, int64_t *all, str
     memcpy(error, word, sizeof *error);
 }
 
-/* Collective: how each rank is, and its n <= PAR_FEW numbers, which of_each[n_ranks][PAR_ROOM] receives behind that.
- * The numbers need not be there where a rank has failed. */
+/* Collective: gathers the status of each rank and its n <= PAR_FEW numbers. In of_each[n_ranks][PAR_ROOM], the numbers
+ * follow the status. A rank that has failed sends no numbers, so `mine` may then be invalid. */
 static enum tri_status agree_with(struct par_carrier *carrier, const int64_t *mine, int32_t n, enum tri_status status,
                                   struct tri_error *error)
 {
@@ -122,6 +123,7 @@ enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, s
     return agree_with(carrier, NULL, 0, status, error);
 }
 
+/* Adds the messages to other ranks in `out` to this rank's traffic. */
 static void count(struct par_carrier *carrier, enum par_move move, const struct par_bytes *out)
 {
     for (int p = 0; p < carrier->n_ranks; p++)
@@ -131,7 +133,7 @@ static void count(struct par_carrier *carrier, enum par_move move, const struct 
         }
 }
 
-/* An agreement; *any: somebody has something for another. */
+/* Collective: an agreement that also sets *any if any rank has data for another. */
 static enum tri_status look_for_any(struct par_carrier *carrier, const struct par_bytes *out, bool *any,
                                     enum tri_status status, struct tri_error *error)
 {
@@ -145,7 +147,8 @@ static enum tri_status look_for_any(struct par_carrier *carrier, const struct pa
     return status;
 }
 
-/* Sizes are known before anything is sent, so that who has no memory for it can say so. */
+/* Collective: exchanges the sizes of messages and allocates the receive buffers, then agrees. Sizes are exchanged
+ * before any data, so that a rank without memory can report it before others send. */
 static enum tri_status exchange_sizes(struct par_carrier *carrier, const struct par_bytes *out, struct par_bytes *in,
                                       struct tri_error *error)
 {
@@ -167,7 +170,7 @@ static enum tri_status exchange_sizes(struct par_carrier *carrier, const struct 
     return par_agree(carrier, status, error);
 }
 
-/* What a network that has failed may still read or write is never freed. */
+/* After a network failure: forgets buffers without freeing them, because the network may still access them. */
 static void abandon(struct par_bytes *bytes, int n)
 {
     for (int p = 0; p < n; p++)

@@ -18,7 +18,7 @@ static bool pack_tile(struct par_relay *relay, const struct tri_tile *tile)
 
 /* --- batches */
 
-/* Whole tiles that have not been sent, about as many bytes as are good. */
+/* Returns the size in bytes of the next batch: whole tiles that have not been sent, until the batch is full. */
 static size_t next_batch(const struct par_relay *relay)
 {
     size_t most = relay->most_bytes > 0 ? relay->most_bytes : PAR_RELAY_BYTES, n = 0;
@@ -29,6 +29,7 @@ static size_t next_batch(const struct par_relay *relay)
     return n;
 }
 
+/* Rank 0: unpacks the tiles of a batch and passes them to the caller's sink in order. Not collective. */
 static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *batch, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -43,7 +44,8 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     return status;
 }
 
-/* Of the rank whose turn it is the next batch goes to rank 0. ends: this one has no more tiles to come. Collective. */
+/* Collective: the rank whose turn it is sends its next batch to rank 0, which passes it on. The turn moves to the next
+ * rank with the sender's last batch. ends: this rank's tiles are complete. */
 static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     const int rank = relay->carrier->rank, turn = relay->turn;
@@ -66,7 +68,7 @@ static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error
     return status;
 }
 
-/* Until all that is kept has been sent. */
+/* Ranks > 0: takes part in steps until it is this rank's turn, then sends all buffered tiles. Steps are collective. */
 static enum tri_status send_all(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -91,7 +93,7 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *stream,
     relay->in = calloc(n, sizeof *relay->in);
     if (!relay->out || !relay->in)
         return par_ranks_no_memory(error);
-    one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
+    one.n_ranks = 1; /* the sink sees one process */
     one.first_vertex = one.first_triangle = one.first_segment = NULL;
     if (relay->carrier->rank > 0 || !relay->to->begin)
         return TRI_OK;

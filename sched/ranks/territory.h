@@ -1,9 +1,9 @@
-/* Who owns which tiles.
+/* The distribution of tiles over ranks.
  *
- * Tiles, the boxes of the first phase, are counted column by column, rows upwards: the order in which they are handed
- * out. Every rank owns as many as every other, one behind the other; they are of about equal work. So what a rank owns
- * is a part of a column, some whole ones, and a part of another. Some ranks own nothing where there are more ranks than
- * tiles. */
+ * Tiles are the boxes of the first phase. They are numbered column by column, rows upwards, which is also the order in
+ * which they are handed out. Each rank owns a contiguous range of about the same number of tiles, because tiles need
+ * about equal work. The range covers the end of one column, some whole columns, and the start of another. If there are
+ * more ranks than tiles, some ranks own nothing. */
 #ifndef SCHED_RANKS_TERRITORY_H
 #define SCHED_RANKS_TERRITORY_H
 
@@ -17,7 +17,7 @@ struct par_territory {
     int32_t *start;            /* [n_ranks + 1] rank p owns tiles start[p] .. start[p + 1] - 1 */
     struct par_boxes {
         struct tri_fence item[3];
-    } *boxes;                  /* [n_ranks] what each owns */
+    } *boxes;                  /* [n_ranks] the boxes that cover a rank's tiles; unused ones are empty */
 };
 
 /* False: no memory. */
@@ -25,13 +25,13 @@ bool par_territory_init(struct par_territory *territory, const struct par_partit
                         const struct par_carrier *carrier);
 void par_territory_free(struct par_territory *territory);
 
-/* The tile that holds a place. O(log tiles). */
+/* Returns the number of the tile that contains q. O(log tiles). */
 int32_t par_tile_at(const struct par_territory *territory, struct tri_point q);
 
-/* Who owns a place? O(log tiles). */
+/* Returns the rank that owns the tile containing q. O(log tiles). */
 int par_owner_at(const struct par_territory *territory, struct tri_point q);
 
-/* Is it this one? */
+/* Does `rank` own the tile containing q? O(1). */
 static inline bool par_owns(const struct par_territory *territory, int rank, struct tri_point q)
 {
     const struct tri_fence *box = territory->boxes[rank].item;
@@ -43,13 +43,14 @@ static inline bool par_is_own(const struct par_territory *territory, struct tri_
     return par_owns(territory, territory->rank, q);
 }
 
-/* The first and the last rank that own a part of a box. False: nobody does, it is empty. O(columns). */
+/* Sets *first and *last to the lowest and the highest rank that own a part of the box. False: the box is empty.
+ * O(columns). */
 bool par_owners_in(const struct par_territory *territory, const struct tri_fence *box, int *first, int *last);
 
-/* Does this rank own a part of the box? */
+/* Does `rank` own a part of the box? */
 bool par_has_part(const struct par_territory *territory, const struct tri_fence *box, int rank);
 
-/* The first block of a rank's tiles, as column * n_rows + row of blocks. */
+/* Returns the block of a rank's first tile, as column * n_rows + row in the grid of blocks. */
 int32_t par_first_block(const struct par_territory *territory, int rank);
 
 #endif

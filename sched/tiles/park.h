@@ -1,13 +1,12 @@
-/* A mesh that may be larger than the memory it is allowed: its arrays are in memory as long as they fit, then in files.
+/* Parking: an out-of-core mode for a mesh larger than its memory limit. Arrays are in memory while they fit, then in
+ * memory-mapped files.
  *
- * Before arrays grow, the memory of the process is looked at. If the arrays and all else would no longer fit, all of
- * them move to files, one for each, which are mapped: whatever works on a mesh works on this one, too, and makes the
- * same. Disk space is taken before it is used: a full disk is an error of the
- * call that grows the mesh, not a signal. Files are as long as their arrays, and have no name once they are open:
- * nothing is left of them, however the process ends. From then on whoever works on the mesh, and one more thread, look
- * at how much the process has in memory, and unmap all pages of the files when that is too much; who touches one finds
- * it again. The system writes pages to disk and drops them as it needs memory. So the less work jumps about in the
- * mesh, the quicker it is. */
+ * Before arrays grow, the memory use of the process is checked. If it would exceed the limit, each array moves to a
+ * mapped file. All code works on the mapped arrays unchanged, with the same result. Disk space is allocated before it
+ * is used, so a full disk is an error of the call that grows the mesh, not a signal. The files are unlinked once they
+ * are open, so none is left behind if the process dies. From then on, tasks and one more thread check the memory use,
+ * and evict all pages of the files if it is too large. A page is mapped again at its next access. The system writes
+ * dirty pages to disk as it needs memory. Work with good locality is therefore much faster. */
 #ifndef SCHED_TILES_PARK_H
 #define SCHED_TILES_PARK_H
 
@@ -17,27 +16,27 @@
 
 struct par_park;
 
-/* From here on the mesh is watched. folder: where the files will be; borrowed; NULL: a mesh that does not fit is
- * TRI_NO_MEMORY for whoever grows it. memory: bytes that the process may have in memory. TRI_NO_MEMORY. */
+/* Starts to limit the memory of a mesh. folder: the folder for files, borrowed; NULL: growing a mesh beyond the limit
+ * fails with TRI_NO_MEMORY. memory: the limit of the process in bytes. TRI_NO_MEMORY. */
 enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *folder, int64_t memory,
                               struct tri_error *error);
 
-/* Beside the arrays so many bytes will be needed, which the storage of the mesh may be asked for: if they do not fit,
- * the arrays move. TRI_CANNOT_WRITE, TRI_NO_MEMORY. NULL: nothing happens. */
+/* Announces that `bytes` more will be needed besides the arrays, possibly from the mesh's storage. If they do not fit,
+ * the arrays move to files. park NULL: does nothing. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, size_t bytes, struct tri_error *error);
 
-/* The same threads; before each task what has been touched of the mesh is let go, if that is too much. Lives as long as
- * the park and what `inner` names. */
+/* Returns an executor on the threads of `inner` that evicts pages before a task if too many are in memory. Valid as
+ * long as the park and the context of `inner`. */
 struct tri_executor par_park_executor(struct par_park *park, struct tri_executor inner);
 
-/* Why there was no room: instead of the status, TRI_NO_MEMORY, that the mesh gave it. Any other status stays. */
+/* Replaces TRI_NO_MEMORY, reported by the mesh, by the error of the park that caused it. Keeps any other status. */
 enum tri_status par_park_status(const struct par_park *park, enum tri_status status, struct tri_error *error);
 
-/* The most bytes of disk so far; 0: the mesh never left memory. */
+/* Returns the largest use of disk so far in bytes; 0: the mesh never left memory. */
 int64_t par_park_bytes(const struct par_park *park);
 
-/* The files go, and what the mesh had in them: then it is no mesh, to be freed and no more. mesh NULL: it has been
- * freed. park NULL: nothing happens. */
+/* Removes the files and the arrays in them. Afterwards the mesh may only be freed. mesh NULL: it was freed already.
+ * park NULL: does nothing. */
 void par_park_close(struct par_park *park, struct tri_mesh *mesh);
 
 #endif

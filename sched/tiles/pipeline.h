@@ -1,7 +1,7 @@
-/* Things that are made by several threads at once, in any order, and taken in their order by one: the caller's.
+/* A pipeline: several threads make items concurrently in any order; the caller's thread consumes them in order.
  *
- * Few are made ahead of those that have been taken: each has a slot until then. Whoever finds nothing to make, or to
- * take, waits for the others. */
+ * Each item occupies a slot from its making until it has been consumed. The number of slots bounds how many items are
+ * made ahead. A thread that has nothing to make or to consume waits. */
 #ifndef SCHED_TILES_PIPELINE_H
 #define SCHED_TILES_PIPELINE_H
 
@@ -9,15 +9,15 @@
 #include "triangle/base/status.h"
 
 struct par_pipeline {
-    int32_t n;        /* things */
+    int32_t n;        /* items */
     int32_t n_slots;  /* at least 1 */
-    int32_t n_threads; /* of the executor, of which the caller's thread is one */
+    int32_t n_threads; /* threads of the executor, including the caller's */
     enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error);
-    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* NULL: nobody does */
+    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* NULL: not consumed */
     void *context;
 };
 
-/* Until all are taken, or one of the calls returns something else than TRI_OK, which is returned then. */
+/* Returns when all items have been consumed, or with the first status other than TRI_OK of `make` or `take`. */
 enum tri_status par_pipeline_run(const struct par_pipeline *pipeline, const struct tri_executor *executor,
                                  struct tri_error *error);
 

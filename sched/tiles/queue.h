@@ -1,9 +1,9 @@
-/* A sink behind a queue: tiles are copied, and another thread hands them on in their order, so that whoever makes them
- * does not wait for a disk.
+/* A sink with a bounded queue. Tiles are copied, and a second thread passes them on in order, so that the thread that
+ * makes tiles does not wait for a disk.
  *
- * The queue is bounded: who hands out tiles faster than they are taken waits. What `to` returns comes back with the
- * next tile or at the end. `to` is told of the beginning and the end by the caller's thread, and between them of tiles
- * by the other one alone. Where there are no more threads, all is done by the caller's. */
+ * If the queue is full, the caller blocks until there is space. A status returned by the target sink `to` is returned
+ * to the caller with the next tile or at the end. The caller's thread calls `begin` and `end` of `to`; between these,
+ * only the second thread calls `take`. If no thread can be started, the caller's thread calls `take` as well. */
 #ifndef SCHED_TILES_QUEUE_H
 #define SCHED_TILES_QUEUE_H
 
@@ -14,24 +14,25 @@ struct tri_thread;
 
 struct par_queue {
     const struct tri_sink *to; /* borrowed */
-    int64_t most_bytes;        /* that wait; one tile may be larger */
+    int64_t most_bytes;        /* limit of `bytes`; a single larger tile is accepted */
     int32_t n_attributes;
-    struct tri_thread *thread; /* NULL: there is none; what follows is shared with it, inside the monitor */
+    struct tri_thread *thread; /* NULL: no second thread; it shares the fields below, protected by the monitor */
     struct tri_monitor *monitor;
-    bool closing;              /* no more tiles come: it ends when none is left */
+    bool closing;              /* no more tiles will be added: the thread ends when the queue is empty */
     struct par_queued *first, *last;
-    int64_t bytes;             /* of the tiles that wait, and of the one that is handed on */
-    enum tri_status status;    /* what `to` has said; tiles are dropped from then on */
+    int64_t bytes;             /* size of the queued tiles and of the one being passed on */
+    enum tri_status status;    /* first error of `to`, after which tiles are dropped; or TRI_OK */
     struct tri_error error;
 };
 
-/* *queue may not move. False: no memory. */
+/* Initialises a queue. *queue must not move in memory afterwards. False: no memory. */
 bool par_queue_begin(struct par_queue *queue, const struct tri_sink *to, int64_t most_bytes);
 
-/* Its sink; lives as long as the queue. TRI_NO_MEMORY, and what `to` says. A second beginning is handed on, too. */
+/* Returns the queue's sink, valid as long as the queue. Its functions return TRI_NO_MEMORY or the status of `to`. Its
+ * `begin` starts the second thread; a second call of `begin` is passed on as well. */
 struct tri_sink par_queue_sink(struct par_queue *queue);
 
-/* Ends the thread; tiles that wait are dropped. */
+/* Ends the thread. Queued tiles are dropped. */
 void par_queue_free(struct par_queue *queue);
 
 #endif

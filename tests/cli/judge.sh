@@ -223,4 +223,4 @@ fi
 
 # --- segments may be missing where faces flatter than rounding were removed: the checker reports it
 "$bin/trianglecheck" --help >.out
-matches 'they are outside the mesh, or within rounding of its boundary'
+matches 'outside the mesh or within rounding error of its boundary'

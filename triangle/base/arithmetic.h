@@ -1,8 +1,9 @@
-/* What exactness asks of the compiler: each operation on doubles is rounded to a double, once, as it is written.
+/* Compile-time checks that the compiler rounds each operation on doubles to a double, once, as the source states.
  *
- * FLT_EVAL_METHOD 0 and 1 are that (1 carries out operations on float as double, which changes none on double); 2, the
- * registers of the x87, keeps more bits than a double has. Options of the family of -ffast-math reorder sums, divide by
- * multiplying, and take infinities for impossible. Contraction cannot be seen from here: -ffp-contract=off. */
+ * FLT_EVAL_METHOD 0 and 1 do this. (Method 1 computes float operations in double, which changes no operation on
+ * doubles.) Method 2, the registers of the x87, keeps more bits than a double has. The -ffast-math options reorder
+ * sums, divide by multiplying, and assume that there are no infinities. Contraction cannot be detected here: compile
+ * with -ffp-contract=off. */
 #ifndef TRIANGLE_BASE_ARITHMETIC_H
 #define TRIANGLE_BASE_ARITHMETIC_H
 
@@ -14,7 +15,7 @@
 #endif
 
 #ifdef __clang__
-#pragma STDC FP_CONTRACT OFF /* gcc does not know the pragma; -std=c11 switches contraction off there */
+#pragma STDC FP_CONTRACT OFF /* gcc ignores this pragma, but -std=c11 disables contraction there */
 #endif
 
 _Static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1,

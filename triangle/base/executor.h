@@ -1,7 +1,7 @@
-/* How work in independent pieces is run: the one thing that this folder asks of whoever owns threads.
+/* The interface for running independent pieces of work, on threads that the caller owns.
  *
- * triangle/ knows no threads. What can be done in pieces is cut into numbered tasks and handed to a caller's executor;
- * a NULL executor stands for doing one task after another. No result may depend on the order in which tasks run. */
+ * triangle/ starts no threads. Work that can be divided is cut into numbered tasks and passed to the caller's executor.
+ * A NULL executor runs one task after another. No result may depend on the order in which tasks run. */
 #ifndef TRIANGLE_BASE_EXECUTOR_H
 #define TRIANGLE_BASE_EXECUTOR_H
 
@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 struct tri_executor {
-    /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads, and returns
-     * when all have returned; what they wrote is then visible to the caller. Tasks do not fail and do not call run. */
+    /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads. Returns when
+     * all tasks have returned; their writes are then visible to the caller. Tasks do not fail and do not call run. */
     void (*run)(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context);
-    void *self;
+    void *self; /* first argument of run */
 };
 
 static inline void tri_execute(const struct tri_executor *executor, size_t n_tasks,
@@ -26,11 +26,11 @@ static inline void tri_execute(const struct tri_executor *executor, size_t n_tas
         task(context, i);
 }
 
-/* Work on n items in as many shares as are worth a task each, but no more than TRI_MOST_SHARES. */
+/* Work on n items is cut into shares of about TRI_WORTH_A_TASK items, at most TRI_MOST_SHARES. */
 enum { TRI_MOST_SHARES = 64, TRI_WORTH_A_TASK = 1 << 15 };
 
 struct tri_range {
-    int32_t first, last; /* first .. last - 1 */
+    int32_t first, last; /* items first .. last - 1 */
 };
 
 static inline size_t tri_shares(int32_t n)
@@ -39,7 +39,7 @@ static inline size_t tri_shares(int32_t n)
     return shares < most ? shares : most;
 }
 
-/* The items of share i of so many, equal but for one item. */
+/* The items of share i when n items are cut into `shares` parts whose sizes differ by at most one item. */
 static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
 {
     int64_t k = (int64_t)i, of = (int64_t)shares;
@@ -47,7 +47,7 @@ static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
     return range;
 }
 
-/* The items of share i < tri_shares(n). */
+/* The items of share i, for i < tri_shares(n). */
 static inline struct tri_range tri_share(size_t i, int32_t n) { return tri_share_of(i, tri_shares(n), n); }
 
 #endif

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gives *array room for n items; `array` is the address of the pointer. False: no memory; then nothing has changed. */
+/* Resizes *array to hold n items; `array` is the address of the pointer. Returns false if there is no memory; then
+ * nothing has changed. */
 static inline bool tri_resize(void *array, size_t n, size_t item)
 {
     void *items;
@@ -22,8 +23,9 @@ static inline bool tri_resize(void *array, size_t n, size_t item)
     return true;
 }
 
-/* Makes room for `need` items at least in *array, which has room for *capacity: half as many more than are needed, so
- * that filling it one by one costs O(1) each. False: no memory; then nothing has changed. */
+/* Grows *array, which has room for *capacity items, to hold at least `need`. Allocates half as much again, so that
+ * filling the array one item at a time costs O(1) each. Returns false if there is no memory; then nothing has
+ * changed. */
 static inline bool tri_grow_far(void *array, int64_t *capacity, int64_t need, size_t item)
 {
     if (need <= *capacity)
@@ -35,7 +37,7 @@ static inline bool tri_grow_far(void *array, int64_t *capacity, int64_t need, si
     return true;
 }
 
-/* The same where an int32_t counts; false also for more than that. */
+/* The same with counts of type int32_t. Also returns false if the new capacity does not fit that type. */
 static inline bool tri_grow(void *array, int32_t *capacity, int32_t need, size_t item)
 {
     int64_t wanted = *capacity;
@@ -45,14 +47,14 @@ static inline bool tri_grow(void *array, int32_t *capacity, int32_t need, size_t
     return true;
 }
 
-/* An array among those that grow together: the address of the pointer, and the size of an item. */
+/* One of several arrays that grow together: the address of its pointer, and the size of an item. */
 struct tri_growing {
-    void *array;
-    size_t item;
+    void *array; /* address of the pointer to the items */
+    size_t item; /* bytes of an item */
 };
 
-/* The same for n arrays that are filled side by side; each gets room for `over` more items besides. False: no memory,
- * and *capacity is as before; no item is lost. */
+/* Grows n arrays that are filled side by side. Each gets room for `over` additional items. Returns false if there is no
+ * memory; then *capacity is unchanged, and no item is lost. */
 static inline bool tri_grow_together(const struct tri_growing *array, int n, int32_t *capacity, int32_t need,
                                      int32_t over)
 {

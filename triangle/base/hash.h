@@ -12,8 +12,9 @@ static inline uint64_t tri_mix(uint64_t hash, uint64_t word)
     return hash ^ hash >> 29;
 }
 
-/* A hash over bytes that goes on from another one: 0 to begin with. It depends on how they are dealt to calls. For
- * finding damage, not for enemies. Four words at a time have a hash each: none waits for another's product. */
+/* Returns the hash of n bytes, continuing from `hash` (0 at the start). The result depends on how the bytes are divided
+ * among calls. It detects damage and does not resist attackers. Four words at a time go into separate hashes, so that
+ * no multiplication waits for another. */
 static inline uint64_t tri_hash(uint64_t hash, const void *bytes, size_t n)
 {
     enum { LANES = 4 };

@@ -1,11 +1,12 @@
-/* Heap sort with a context for the comparison, in place: cannot fail, O(n log n) always, the same on every machine. */
+/* In-place heap sort whose comparison receives a context. It cannot fail, always takes O(n log n), and gives the same
+ * result on every machine. */
 #ifndef TRIANGLE_BASE_HEAP_SORT_H
 #define TRIANGLE_BASE_HEAP_SORT_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Does a come before b? A strict weak order. */
+/* Returns true if a comes before b; must be a strict weak order. */
 typedef bool tri_before(const void *context, int32_t a, int32_t b);
 
 static inline void tri_heap_swap(int32_t *a, int32_t *b)
@@ -17,7 +18,7 @@ static inline void tri_heap_swap(int32_t *a, int32_t *b)
 
 static inline void tri_heap_sort(int32_t *item, int32_t n, tri_before *before, const void *context)
 {
-    for (int32_t heap = n, root = n / 2; heap > 1;) { /* first the heap is made, then its greatest item taken away */
+    for (int32_t heap = n, root = n / 2; heap > 1;) { /* builds the heap, then removes its maximum each time */
         if (root > 0)
             root--;
         else

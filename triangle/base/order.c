@@ -1,11 +1,11 @@
-/* INVARIANT: the ring of level k is the ring of level k - 1 without the items of height k;
- * the sentinel stands in all. */
+/* INVARIANT: The ring of level k is the ring of level k - 1 without the items of height k. The sentinel is in all
+ * rings. */
 #include "triangle/base/order.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
-/* Levels of an item: one more with a chance of 1 to 3 each time. */
+/* Number of levels of an item. Each further level has a probability of 1/3. */
 static int height(int32_t s)
 {
     uint32_t x = (uint32_t)s * 0x9e3779b1u;
@@ -74,7 +74,7 @@ void tri_order_insert(struct tri_order *o, int32_t s, int32_t below)
 {
     int32_t at = below < 0 ? o->n : below;
     for (int level = 0, top = height(s); level < top; level++) {
-        while (at < o->n && height(at) <= level) /* the nearest one below that stands in this ring */
+        while (at < o->n && height(at) <= level) /* the nearest item below in this ring */
             at = *below_of(o, at, level - 1);
         int32_t above = *above_of(o, at, level);
         *below_of(o, s, level) = at;

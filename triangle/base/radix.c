@@ -1,6 +1,5 @@
-/* Passes by the highest digit put items together that fit the cache, in parallel; these are then sorted from their
- * lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at
- * the end. */
+/* Passes by the highest digits, in parallel, group the items into buckets that fit the cache. Each bucket is then
+ * sorted from the lowest digit to the highest. Items move between two arrays, of which one must hold the result. */
 #include "triangle/base/radix.h"
 
 #include <assert.h>
@@ -8,21 +7,21 @@
 #include <string.h>
 
 enum {
-    DIGIT = 10,           /* bits of a pass from the lowest digit up, at most */
-    WIDE_DIGIT = 8,       /* of a pass from the highest digit down */
+    DIGIT = 10,           /* maximum number of bits in a pass of the sort from the lowest digit */
+    WIDE_DIGIT = 8,       /* bits in a pass by the highest digit */
     BUCKETS = 1 << WIDE_DIGIT,
-    SHARES = 16,          /* of a pass from the highest digit down: few, since their counts lie on the stack */
-    FEW = 64,             /* items that are sorted by insertion */
-    MANY = 1 << 18,       /* items that do not fit the cache, and are worth several tasks */
-    LARGE_SHARE = 8       /* a bucket with more than one in so many of them is worth them, too */
+    SHARES = 16,          /* number of shares in such a pass; small, since their counts are on the stack */
+    FEW = 64,             /* up to this many items are sorted by insertion */
+    MANY = 1 << 18,       /* more items than this do not fit the cache, and are worth several tasks */
+    LARGE_SHARE = 8       /* a bucket with more than 1 / LARGE_SHARE of the items is also sorted by several tasks */
 };
 
-/* Items from[0 .. n), and the array beside them that the next pass writes to. */
+/* Items from[0 .. n), and the array that the next pass writes to. */
 struct run {
-    uint64_t *from, *to;
+    uint64_t *from, *to; /* items, and the array for the next pass */
     int32_t n;
-    int low, high; /* bits to sort by; all items agree in those above */
-    bool home;
+    int low, high; /* the bits to sort by, low .. high - 1; all items agree in higher bits */
+    bool home;     /* from is the array for the result */
 };
 
 static void insert_all(const struct run *run)
@@ -55,7 +54,7 @@ static void stable_pass(struct run *run, int shift, int digit)
     run->home = !run->home;
 }
 
-/* Items that fit the cache. */
+/* Sorts items that fit the cache. */
 static void sort_run(struct run run)
 {
     int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
@@ -69,12 +68,12 @@ static void sort_run(struct run run)
         memcpy(run.to, run.from, (size_t)run.n * sizeof *run.from);
 }
 
-/* A pass over many items, in shares. */
+/* A pass over many items, divided into shares. */
 struct wide_pass {
     const struct run *run;
-    int shift;
-    uint64_t mask;
-    int32_t at[SHARES][BUCKETS]; /* where the next item of a share goes */
+    int shift;                   /* number of bits below the digit */
+    uint64_t mask;               /* bits of the digit after shifting */
+    int32_t at[SHARES][BUCKETS]; /* where the next item of each share and bucket goes */
 };
 
 static void count_share(void *context, size_t share)
@@ -95,8 +94,8 @@ static void move_share(void *context, size_t share)
     }
 }
 
-/* Moves the items of the run into buckets; end[b] is where bucket b ends. A function of its own, since its frame is
- * large and the sort recurses. */
+/* Moves the items of the run into buckets; end[b] is the end of bucket b. This is a separate function because its frame
+ * is large and the sort is recursive. */
 static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS], const struct tri_executor *executor)
 {
     struct wide_pass pass = {.run = run, .shift = shift, .mask = (UINT64_C(1) << (run->high - shift)) - 1};
@@ -114,11 +113,11 @@ static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS],
     tri_execute(executor, SHARES, move_share, &pass);
 }
 
-/* A run whose items are in buckets. */
+/* A run whose items have been moved into buckets. */
 struct bucketed {
     const struct run *run;
-    int shift;
-    int32_t end[BUCKETS];
+    int shift;            /* number of bits below the digit, by which buckets are not sorted yet */
+    int32_t end[BUCKETS]; /* where each bucket ends */
 };
 
 static struct run bucket_run(const struct bucketed *b, size_t bucket)
@@ -142,7 +141,7 @@ static void sort_bucket(void *context, size_t bucket)
         sort_any(run, NULL);
 }
 
-/* Buckets with a large share of the items follow one by one, each with all threads. */
+/* Sorts small buckets in parallel, then the large buckets one after another, each with all threads. */
 static void sort_any(struct run run, const struct tri_executor *executor)
 {
     if (run.n <= MANY || run.high == run.low) {

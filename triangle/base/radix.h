@@ -4,7 +4,7 @@
 
 #include "triangle/base/executor.h"
 
-/* Bits of a number that is not negative, at least one. */
+/* Returns the number of bits of a number >= 0, at least one. */
 static inline int tri_bits_of(int32_t number)
 {
     int bits = 1;
@@ -13,9 +13,10 @@ static inline int tri_bits_of(int32_t number)
     return bits;
 }
 
-/* Sorts items[n] by their bits low .. high - 1, 0 <= low < high <= 64; those that agree in them keep their order. Bits
- * at and above high must be zero. What lies below low comes along: an index, mostly. scratch[n]. Cannot fail.
- * O(n (high - low)): for keys that are spread one pass through memory, and up to four in the cache. */
+/* Sorts items[n] by their bits low .. high - 1, with 0 <= low < high <= 64. Items that agree in these bits keep their
+ * order. Bits from high on must be zero. Bits below low move with the item and are usually an index. scratch has room
+ * for n items. Cannot fail. Takes O(n (high - low)): for evenly spread keys one pass through memory and up to four in
+ * the cache. */
 void tri_radix_sort(uint64_t *items, uint64_t *scratch, int32_t n, int low, int high,
                     const struct tri_executor *executor);
 

@@ -1,10 +1,10 @@
-/* Draws by lot that are the same on every machine: rounds of random samples (Amenta, Choi & Rote 2003). */
+/* Pseudo-random numbers that are the same on every machine, for rounds of random samples (Amenta, Choi & Rote 2003). */
 #ifndef TRIANGLE_BASE_SCATTER_H
 #define TRIANGLE_BASE_SCATTER_H
 
 #include <stdint.h>
 
-/* A bijection without pattern: neighbouring numbers have nothing in common afterwards. */
+/* A bijection that scatters numbers: the results for neighbouring numbers look unrelated. */
 static inline uint32_t tri_scatter(uint32_t i)
 {
     i ^= i >> 16;

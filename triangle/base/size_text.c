@@ -1,9 +1,9 @@
-/* Units of 1000, as disks and most tools count. */
+/* Units are powers of 1000, as for disks and in most tools. */
 #include "triangle/base/size_text.h"
 
 #include <stdio.h>
 
-/* In the last unit there is, "over 1000" of it: bounds may ask for any number. */
+/* Values beyond the last unit become "over 1000" of it, because bounds of the user may ask for any number. */
 static struct tri_size_text in_units(double value, const char *const *unit, int n)
 {
     struct tri_size_text text;

@@ -1,4 +1,4 @@
-/* The one way to report a failure. */
+/* The functions that report failures. */
 #include "triangle/base/status.h"
 
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* The part of the door (system.h) that is the same on all systems: built on the functions that differ. */
+/* The functions of system.h that are the same on all systems and use those that differ. */
 #include "triangle/base/system.h"
 
 #include <assert.h>
@@ -23,7 +23,7 @@ void tri_path_folder(const char *path, char folder[TRI_PATH])
         snprintf(folder, TRI_PATH, "%.*s", length > 0 ? (int)length : 1, length > 0 ? path : ".");
 }
 
-/* --- files in memory */
+/* --- mapped files */
 
 static bool has_file(struct tri_mapped_file *f, const char *folder)
 {

@@ -1,13 +1,15 @@
-/* The one door to the operating system: files, folders, maps, memory, time, threads, the terminal, interrupts.
+/* The only interface to the operating system: files, folders, maps, memory, time, threads, the terminal, interrupts.
  *
- * No other file names a function or a header of a system (tests/house_rules.sh). system_posix.c implements it for
- * POSIX, system_windows.c and system_windows_threads.c for Windows; system.c has the functions that both share.
- * The second half, for programs alone, is in system_posix_process.c and system_windows_process.c.
+ * No other file uses a function or a header of an operating system (tests/house_rules.sh). system_posix.c implements
+ * this header for POSIX, system_windows.c and system_windows_threads.c implement it for Windows. system.c has the
+ * functions that both share. The second half, for programs only, is in system_posix_process.c and
+ * system_windows_process.c.
  *
- * ERRORS. A function that fails returns false, NULL, -1 or TRI_NO_FILE, and errno says why, by the codes of C's
- * library. EINTR: an interrupt came first; functions that do not name it go on instead.
- * NAMES of files hold '/' between folders; on Windows they are UTF-8, and '\' and "C:" are known, too. What a function
- * returns as char * is malloc'ed. */
+ * ERRORS. A function that fails returns false, NULL, -1 or TRI_NO_FILE and sets errno to a code of the C library. A
+ * comment that names EINTR says that an interrupt ends the call with this error. All other functions continue after an
+ * interrupt.
+ * NAMES of files have '/' between folders. On Windows they are UTF-8, and '\' and "C:" are accepted as well.
+ * MEMORY. Results of type char * are allocated with malloc. */
 #ifndef TRIANGLE_BASE_SYSTEM_H
 #define TRIANGLE_BASE_SYSTEM_H
 
@@ -15,90 +17,96 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TRI_PATH = 4096 }; /* bytes of a path that somebody has room for */
+enum { TRI_PATH = 4096 }; /* bytes of a buffer for a path */
 
 /* --- files */
 
-typedef intptr_t tri_file; /* an open file or folder, which no other program inherits; to be closed */
+typedef intptr_t tri_file; /* an open file or folder, not inherited by other programs; must be closed */
 #define TRI_NO_FILE ((tri_file)-1)
 
 enum tri_opening {
-    TRI_OPEN_READ,   /* a pipe is waited for until somebody writes it; EINTR */
-    TRI_OPEN_LOOK,   /* to read; nothing is waited for */
-    TRI_OPEN_DEVICE, /* to write what has no places: a device or pipe, until somebody reads it; EINTR */
-    TRI_OPEN_JOIN,   /* to write what others write as well; no link is followed */
-    TRI_OPEN_NEW     /* to read and write, made here: EEXIST where the name is taken, by a file or a link */
+    TRI_OPEN_READ,   /* to read; for a pipe, waits until a writer opens it; EINTR */
+    TRI_OPEN_LOOK,   /* to read, without waiting */
+    TRI_OPEN_DEVICE, /* to write to a device or pipe, which has no offsets; waits until a reader opens it; EINTR */
+    TRI_OPEN_JOIN,   /* to write a file that other processes write as well; does not follow links */
+    TRI_OPEN_NEW     /* to read and write a new file; EEXIST if a file or link has this name */
 };
 tri_file tri_file_open(const char *path, enum tri_opening opening);
 
-/* A new, empty file in the folder without a name, to read and write: it goes with whoever has it open, however that
- * ends. Where the file system knows no such files, a process that is killed outright may leave an empty
- * ptriangle-XXXXXX; Windows shows the name until then. */
+/* Creates an empty file without a name in the folder, to read and write. It disappears when the last process closes it
+ * or dies. On file systems without nameless files, a killed process may leave an empty file ptriangle-XXXXXX. On
+ * Windows the name is visible until the file is closed. */
 tri_file tri_scratch_file(const char *folder);
 
-/* TRI_NO_FILE is fine. Some file systems report only here that what was written found no room: false. */
+/* Accepts TRI_NO_FILE. Returns false if the file system reports only now that there was no space for the data. */
 bool tri_file_close(tri_file file);
 
 enum tri_file_kind { TRI_REGULAR, TRI_FOLDER, TRI_OTHER_FILE };
 
 struct tri_file_facts {
     enum tri_file_kind kind;
-    uint64_t size;         /* bytes */
-    uint64_t device, node; /* both are equal: it is one file */
-    unsigned names;        /* how many it has */
-    unsigned permissions;  /* for tri_file_permit */
+    uint64_t size;         /* in bytes */
+    uint64_t device, node; /* two files are the same if both are equal */
+    unsigned names;        /* number of names (hard links) */
+    unsigned permissions;  /* passed to tri_file_permit */
 };
 
-/* Of the file behind all links. */
+/* Return the facts of a file. tri_path_look follows all links. */
 bool tri_path_look(const char *path, struct tri_file_facts *facts);
 bool tri_file_look(tri_file file, struct tri_file_facts *facts);
 
-/* Gives the file the permissions of another one. */
+/* Gives `file` the permissions of the file described by `as`. */
 bool tri_file_permit(tri_file file, const struct tri_file_facts *as);
 
-/* Reads n bytes at a place; fewer only at the end of the file. How many. */
+/* Reads n bytes at offset `place` and returns the number of bytes read. It is less than n only at the end of the
+ * file. */
 int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place);
 
-/* Reads n bytes that have been written. EIO: there are fewer. */
+/* Reads n bytes that are known to be in the file; EIO if the file is shorter. tri_write_at writes n bytes. */
 bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place);
 bool tri_write_at(tri_file file, const void *at, size_t n, uint64_t place);
 
-/* The next bytes, up to n, of what has no places, or of a file from its begin on; 0: the end. EINTR. */
+/* Reads up to n bytes that follow, from a pipe or device, or from a file that is read from its start. Returns their
+ * number, 0 at the end. EINTR. */
 int64_t tri_read_next(tri_file file, void *at, size_t n);
 
-/* Writes as much as the system takes at once: at a place, or next. EINTR. */
+/* Write as many bytes as the system accepts in one call, at offset `place` or after the previous bytes, and return
+ * their number. EINTR. */
 int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place);
 int64_t tri_write_next(tri_file file, const void *at, size_t n);
 
-/* The file has so many bytes afterwards: the first, or zeros behind all. */
+/* Truncates or extends the file to `size` bytes. New bytes are zero. */
 bool tri_file_cut(tri_file file, uint64_t size);
 
-/* What has been written is on the disk afterwards; of a folder, the names in it. True where nobody can ask for that. */
+/* Returns after the written data, or for a folder its list of names, is on the disk. Returns true if the system has no
+ * such operation. */
 bool tri_file_sync(tri_file file);
 
-/* Hints: the system begins to write n bytes (0: all) to the disk; these are there afterwards. */
+/* Hints: the first function makes the system start writing n bytes (0: all) to the disk, the second waits for it. */
 void tri_file_send_off(tri_file file, uint64_t place, uint64_t n);
 void tri_file_await(tri_file file, uint64_t place, uint64_t n);
 
-/* The same file once more, to be written past the system's cache: sizes, places and memory are multiples of
- * TRI_PAGE_BYTES then. TRI_NO_FILE: there is no such way. Closing either drops the lock of the file. */
+/* Opens the same file again, to be written without the system's cache. Then sizes, offsets and addresses must be
+ * multiples of TRI_PAGE_BYTES. Returns TRI_NO_FILE if the system does not support this. Closing either file releases
+ * the lock of the file. */
 enum { TRI_PAGE_BYTES = 4096 };
 tri_file tri_file_direct(tri_file file);
 
-/* Memory for it, which free() takes. NULL: there is none. */
+/* Allocates a buffer for such a file; call free() afterwards. NULL: no memory. */
 void *tri_page_alloc(size_t bytes);
 
-/* Writing that goes on while its caller does: the bytes are lent until it is waited for. NULL: it cannot be had. The
- * second frees it, and returns how many bytes have been written. */
+/* Asynchronous writing. tri_behind_start returns NULL if the system cannot do it; otherwise the bytes must stay
+ * unchanged until tri_behind_wait. tri_behind_wait frees the handle and returns the number of bytes written. */
 struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place);
 size_t tri_behind_wait(struct tri_behind *behind);
 
-/* A lock of the whole file, against other processes. It goes when this one closes the file, by any opening of it, or
+/* Locks the whole file against other processes. The lock ends when this process closes the file, through any handle, or
  * dies. */
 enum tri_lock { TRI_LOCKED, TRI_LOCKED_BY_ANOTHER, TRI_NO_LOCKS };
 enum tri_lock tri_file_lock(tri_file file);
 
-/* Do bytes that two processes write into one page of this file keep apart, if the other one opened it on that host? */
+/* Returns true if two processes may write different bytes of one page of this file, when the other process opened the
+ * file on `host`. Network file systems may lose such bytes. */
 bool tri_file_keeps_apart(tri_file file, const char *host);
 
 /* --- names of files */
@@ -106,48 +114,50 @@ bool tri_file_keeps_apart(tri_file file, const char *host);
 enum tri_access { TRI_THERE, TRI_READABLE, TRI_WRITABLE, TRI_TAKES_FILES };
 bool tri_path_allows(const char *path, enum tri_access access);
 
-/* May be called by handlers of interrupts. */
+/* May be called by interrupt handlers. */
 bool tri_path_remove(const char *path);
 
-/* Whatever has the new name loses it, in one step. */
+/* Replaces the file at the new name, if there is one, in a single step. */
 bool tri_path_rename(const char *from, const char *to);
 
-/* A second name of the file. */
+/* Gives the file a second name. */
 bool tri_path_link(const char *path, const char *second);
 
-/* The path behind all symbolic links, existing or not. EPERM: one of them is of another user, who is neither the
- * administrator nor owns the folder; ENAMETOOLONG, ELOOP. */
+/* Returns the path with all symbolic links resolved; the file need not exist. EPERM: a link belongs to another user who
+ * is neither the administrator nor the owner of the folder. Other errors: ENAMETOOLONG, ELOOP. */
 char *tri_path_resolve(const char *path);
 
-/* The path of a file that is there, from the root on. */
+/* Returns the absolute path of an existing file. */
 char *tri_path_from_root(const char *path);
 
-/* Of the folder's part of a path, with the last '/'; 0: the working folder. */
+/* Returns the length of the folder part of a path, including the last '/'; 0 if the path has no folder part. */
 size_t tri_path_folder_length(const char *path);
 
-/* The folder itself, or that of a file which is there or will be. */
+/* Stores the folder itself if path is a folder. Otherwise stores the folder of the file, which need not exist. */
 void tri_path_folder(const char *path, char folder[TRI_PATH]);
 
 /* --- folders */
 
 bool tri_folder_make(const char *path);
-bool tri_folder_remove(const char *path); /* which is empty */
+bool tri_folder_remove(const char *path); /* the folder must be empty */
 
-/* The folder at this path, which may be a link to it. own: EPERM, if it is another user's. */
+/* Opens the folder at this path, which may be a link. If `own` is set, a folder of another user is an error (EPERM). */
 tri_file tri_folder_open(const char *path, bool own);
 
-/* By an open folder: what others do with its path meanwhile, or put into it, leads nowhere else. Names hold no slash;
- * no link is followed, and no file but a regular one of this user is opened: EPERM. */
+/* Access to files through an open folder. Then other processes cannot redirect it by changing the folder's path or by
+ * adding links. Names hold no slash. No link is followed, and files that are not regular or belong to another user are
+ * not opened (EPERM). */
 enum tri_folder_opening {
     TRI_FOLDER_READ,
     TRI_FOLDER_CHANGE, /* to read and write */
-    TRI_FOLDER_EXTEND  /* the same, made unless it is there; EPERM also where it has a second name */
+    TRI_FOLDER_EXTEND  /* the same, and creates the file if it does not exist; EPERM also if the file has a second
+                        * name */
 };
 tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_opening opening);
 
-/* A new, empty file to write; a file of that name is removed from the folder. tri_folder_end gives the new one the name
- * once it is complete and on the disk: if the process dies before, nothing is left. Systems without files that have no
- * name (NFS) give it the name at once. */
+/* Creates an empty file to write, after removing any file of that name from the folder. tri_folder_end gives the new
+ * file its name once it is complete and on the disk. If the process dies before, no file is left. File systems without
+ * nameless files (NFS) give it the name at once. */
 tri_file tri_folder_create(tri_file folder, const char *name);
 bool tri_folder_end(tri_file folder, const char *name, tri_file file);
 
@@ -155,10 +165,11 @@ bool tri_folder_has(tri_file folder, const char *name);
 bool tri_folder_drop(tri_file folder, const char *name);
 bool tri_folder_rename(tri_file folder, const char *from, const char *to);
 
-/* Calls for each name in it, until one call returns false. False: it cannot be listed. */
+/* Calls each(user, name) for every name in the folder until one call returns false. Returns false if the folder cannot
+ * be listed. */
 bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name), void *user);
 
-/* --- files in memory */
+/* --- mapped files */
 
 /* Reserves disk space for the file's bytes from `from` up to `size`. Returns 0 or an errno: EFBIG beyond a limit. */
 int tri_file_reserve(tri_file file, uint64_t from, uint64_t size);
@@ -166,133 +177,140 @@ int tri_file_reserve(tri_file file, uint64_t from, uint64_t size);
 /* Maps the first `size` bytes of the file, to read and write; NULL and errno on failure. */
 void *tri_file_map(tri_file file, size_t size);
 void tri_file_unmap(void *at, size_t size);
-void tri_file_release_pages(void *at, size_t size); /* the system may drop the pages from memory; the bytes stay */
+void tri_file_release_pages(void *at, size_t size); /* the pages may leave memory; the bytes stay in the file */
 
 /* An array in a scratch file that is mapped into memory, so that it may be larger than memory. */
 struct tri_mapped_file {
-    tri_file file; /* TRI_NO_FILE: none yet */
-    size_t size;   /* bytes of disk that are reserved or written */
-    void *at;      /* mapping of all of them; NULL: not mapped */
+    tri_file file; /* TRI_NO_FILE: not created yet */
+    size_t size;   /* bytes reserved or written on the disk */
+    void *at;      /* mapping of the whole file; NULL: not mapped */
 };
 
-/* Reserves disk space up to `size` bytes, which is more than now, and maps all of it; makes the file in the folder if
- * there is none. A full disk or a limit is an error here, not a signal when the array is written. Returns 0 or an
- * errno; then the old mapping stays. */
+/* Reserves disk space up to `size` bytes, more than the current size, and maps all of it. Creates the file in the
+ * folder on the first call. A full disk or a limit is reported here instead of raising a signal when the array is
+ * written. Returns 0 or an errno. After an error the old mapping stays. */
 int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t size);
 
-/* Writes n bytes behind the others; the file must not be mapped. */
+/* Appends n bytes. The file must not be mapped. */
 bool tri_mapped_file_append(struct tri_mapped_file *f, const char *folder, const void *bytes, size_t n);
 
-/* Maps what has been written, if anything has and it is not mapped. */
+/* Maps the bytes written so far, if there are any and they are not mapped yet. */
 bool tri_mapped_file_map(struct tri_mapped_file *f);
 
-/* Lets the system drop the pages from memory; the bytes stay. Nothing happens without a mapping. */
+/* Lets the system remove the pages from memory; the bytes stay in the file. Does nothing without a mapping. */
 void tri_mapped_file_release_pages(const struct tri_mapped_file *f);
 
-/* Unmaps and closes the file, which deletes it; errno stays. */
+/* Unmaps and closes the file, which deletes it. Keeps errno. */
 void tri_mapped_file_close(struct tri_mapped_file *f);
 
-/* --- memory and disk: bytes */
+/* --- memory and disk, in bytes */
 
-/* Memory that may be used on top of what is: the least that is left under the limits of the machine, swap included, of
- * the process and of the groups that it is in. What of these cannot be read limits nothing; HUGE_VAL: nothing could
- * be. The second: what they give to begin with. */
+/* tri_memory_left returns how much more memory the process may use: the least amount left under the limits of the
+ * machine (including swap), of the process, and of its control groups. Limits that cannot be read are ignored.
+ * HUGE_VAL: no limit can be read. tri_memory_total returns the same with nothing in use. */
 double tri_memory_left(void);
 double tri_memory_total(void);
 
-/* What ends first of these. Beyond the limits of a process a request for memory fails at once; mapped files count as
- * address space, too. */
+/* Which of these limits would be reached first. Beyond the limits of a process, memory allocation fails at once. Mapped
+ * files count as address space. */
 enum tri_memory_end { TRI_ENDS_SYSTEM, TRI_ENDS_DATA, TRI_ENDS_ADDRESS_SPACE };
 enum tri_memory_end tri_memory_end(void);
 
-/* What the process has in memory now; 0: not known. *of_files (unless NULL): pages of files in it, libraries, too. */
+/* Memory that the process uses now; 0: unknown. *of_files (unless NULL): the part of it that holds pages of files,
+ * including libraries. */
 double tri_memory_used(double *of_files);
-int64_t tri_memory_peak(void); /* the most so far; 0: not known */
+int64_t tri_memory_peak(void); /* maximum so far; 0: unknown */
 
-/* Memory that was freed goes back to the system. */
+/* Returns freed memory to the system. */
 void tri_memory_trim(void);
 
-/* Where the process has limits all threads share one heap from now on: one for each would take 64 MB of address space.
- * To be called before they allocate. */
+/* If the process has memory limits, makes all threads share one heap from now on, because a heap for each thread would
+ * take 64 MB of address space. Call this before threads allocate memory. */
 void tri_memory_share_heap(void);
 
-/* For the stacks of so many threads, touched or not, less those that are there. */
+/* Stack memory of `threads` threads, used or not, without that of threads that already run. */
 double tri_memory_of_stacks(int threads);
 
-/* Free on the file system that holds this file or folder; HUGE_VAL: not known. */
+/* Free space on the file system that holds this file or folder; HUGE_VAL: unknown. */
 double tri_disk_left(const char *path);
 
-/* The folder for scratch files: TMPDIR, otherwise /tmp, or on Windows what GetTempPath says. */
+/* The folder for scratch files: TMPDIR, otherwise /tmp, or on Windows the folder from GetTempPath. */
 const char *tri_scratch_folder(void);
 
-/* --- time: no decision about a mesh depends on it */
+/* --- time; no decision about a mesh may depend on it */
 
-double tri_seconds(void);         /* on the clock */
-double tri_thread_seconds(void);  /* of processor time that this thread has had: others at work do not count */
-double tri_process_seconds(void); /* of processors that all threads have taken */
+double tri_seconds(void);         /* wall clock */
+double tri_thread_seconds(void);  /* processor time of this thread */
+double tri_process_seconds(void); /* processor time of all threads of this process */
 
-/* False: an interrupt has come before the time is over. */
+/* Sleeps. Returns false if an interrupt came first. */
 bool tri_pause(double seconds);
 
-/* --- threads, for sched/ alone */
+/* --- threads, for sched/ only */
 
-int tri_processors(void); /* that this process may use; at least 1 */
+int tri_processors(void); /* number that this process may use, at least 1 */
 
-/* Starts a thread that interrupts do not find, but for those that its own fault raises: they are for the others. NULL:
- * there are no more. */
+/* Starts a thread that blocks all interrupts except those that its own faults raise, so that other threads handle them.
+ * Returns NULL if no thread can be started. */
 struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user);
-void tri_thread_join(struct tri_thread *thread); /* waits for its end, and frees it */
+void tri_thread_join(struct tri_thread *thread); /* waits for the end of the thread and frees it */
 
-/* A lock and a condition: what others wait for may have changed. */
+/* A mutex with a condition variable. */
 struct tri_monitor *tri_monitor_new(void); /* NULL: no memory */
-void tri_monitor_free(struct tri_monitor *monitor); /* NULL is fine */
+void tri_monitor_free(struct tri_monitor *monitor); /* accepts NULL */
 void tri_monitor_enter(struct tri_monitor *monitor);
 void tri_monitor_leave(struct tri_monitor *monitor);
-void tri_monitor_wait(struct tri_monitor *monitor);   /* inside: leaves, waits until somebody wakes all, and enters */
-void tri_monitor_wake(struct tri_monitor *monitor);   /* all that wait */
+void tri_monitor_wait(struct tri_monitor *monitor);   /* in the lock: unlocks, waits to be woken, locks again */
+void tri_monitor_wake(struct tri_monitor *monitor);   /* wakes all waiting threads */
+
+/* --- functions of the program */
+
+#ifdef __APPLE__
+void (*tri_find_function(const char *name))(void); /* by its name; NULL: the program has none */
+#endif
 
 /* --- processes and hosts */
 
-long tri_process(void); /* the number of this one */
-bool tri_process_is_gone(long process); /* on this host, as far as can be seen */
-bool tri_host_name(char *name, size_t room); /* cut, if it is longer; false: not known */
+long tri_process(void); /* id of this process */
+bool tri_process_is_gone(long process); /* true if no process of this host has this id, as far as can be determined */
+bool tri_host_name(char *name, size_t room); /* a name that is too long is cut; false: unknown */
 
-/* ------ from here on in system_posix_process.c or system_windows_process.c, for drivers/ alone */
+/* ------ The functions below are in system_posix_process.c or system_windows_process.c, for drivers/ only. */
 
-/* What main() was given, in UTF-8; no memory: as it was. */
+/* Returns the arguments of main() in UTF-8, or unchanged if there is no memory. */
 char **tri_arguments(int argc, char **argv);
 
-/* What the system's shells have around a word that is more than letters. */
+/* The quotation mark for shell words that hold other characters than letters. */
 const char *tri_word_quote(void);
 
-/* The path of the program's executable, by whatever links it was found. */
+/* Stores the path of the program's executable, with links resolved. */
 bool tri_own_path(char path[TRI_PATH]);
 
 /* --- the terminal */
 
-/* A closed standard input, output or error becomes one that holds nothing: else a file would get its number. */
+/* Opens an empty device for each standard stream that is closed, so that no file gets its number. */
 void tri_standard_open(void);
-bool tri_standard_is_one(void);          /* output and error lead to one place */
-bool tri_standard_is_terminal(void);     /* standard error */
-bool tri_standard_reader_is_gone(void);  /* who read standard output through a pipe has closed it */
-tri_file tri_standard_error_again(void); /* a second opening of it; TRI_NO_FILE where it is closed */
+bool tri_standard_is_one(void);          /* true if output and error lead to the same file or terminal */
+bool tri_standard_is_terminal(void);     /* of standard error */
+bool tri_standard_reader_is_gone(void);  /* true if the reader of the pipe at standard output has closed it */
+tri_file tri_standard_error_again(void); /* opens standard error a second time; TRI_NO_FILE if it is closed */
 
-/* --- interrupts: what asks a program to end, or tells of its crash */
+/* --- interrupts: requests to end the program, and crashes */
 
-/* Handlers are called at any time, on any thread, amid anything: of functions here they call tri_path_remove, tri_say
- * and tri_alarm alone. */
+/* Handlers may be called at any time and on any thread. Of the functions here they may call only tri_path_remove,
+ * tri_say and tri_alarm. */
 struct tri_interrupts {
-    void (*asked)(int number); /* somebody asks for the end; > 0: what has, below 128 */
-    void (*time_is_up)(void);  /* since tri_alarm */
+    void (*asked)(int number); /* the program should end; number > 0: the signal that requests it, below 128 */
+    void (*time_is_up)(void);  /* the time set by tri_alarm is over */
     void (*crashed)(void);     /* the program ends when this returns */
 };
 
-/* From now on handlers hear of all that would end the program, but for what its caller has it ignore. Too large a file,
- * and a reader of standard output that went away, are errors of writing. False: there is no alarm. To be called
- * once. */
+/* Installs the handlers for all interrupts that would end the program, except those that the parent process made it
+ * ignore. A file that is too large, or a standard output whose reader has closed it, become write errors. Returns false
+ * if there is no alarm. Call this once. */
 bool tri_interrupts_catch(const struct tri_interrupts *handlers);
-const char *tri_interrupt_name(int number); /* "SIGTERM"; NULL: none has this number */
-void tri_alarm(double seconds); /* from now; the last one counts */
-void tri_say(const char *text); /* on standard error, past all buffers */
+const char *tri_interrupt_name(int number); /* such as "SIGTERM"; NULL: unknown number */
+void tri_alarm(double seconds); /* calls time_is_up after this time; a later call replaces an earlier one */
+void tri_say(const char *text); /* writes to standard error without buffers */
 
 #endif

@@ -1,5 +1,4 @@
-/* The system is POSIX 2008, with what Linux has beside it where it has that: files without a name, /proc, writing past
- * the cache. */
+/* POSIX 2008, with extensions of Linux where available: files without a name, /proc, writing without the cache. */
 #define _GNU_SOURCE /* O_TMPFILE, O_DIRECT, mkostemp, sync_file_range, madvise, malloc_trim, CPU_COUNT */
 #include "triangle/base/system.h"
 
@@ -24,9 +23,22 @@
 #ifdef __linux__
 #include <sys/vfs.h>
 #endif
+#ifdef __APPLE__
+#include <dlfcn.h>
+#include <mach/mach.h>
+
+/* Darwin reserves space behind the end of a file. Returns 0, or an errno, as POSIX does. */
+static int posix_fallocate(int file, off_t place, off_t n)
+{
+    fstore_t space = {.fst_flags = F_ALLOCATEALL, .fst_posmode = F_PEOFPOSMODE, .fst_length = n};
+    if (fcntl(file, F_PREALLOCATE, &space) != 0 && errno != ENOTSUP)
+        return errno;
+    return ftruncate(file, place + n) == 0 ? 0 : errno;
+}
+#endif
 
 #ifndef O_DIRECT
-#define O_DIRECT 0 /* the system has no such thing */
+#define O_DIRECT 0 /* not available on this system */
 #endif
 #ifndef SYNC_FILE_RANGE_WRITE
 #define SYNC_FILE_RANGE_WRITE 0
@@ -41,15 +53,15 @@ tri_file tri_file_open(const char *path, enum tri_opening opening)
     static const int flags[] = {
         [TRI_OPEN_READ] = O_RDONLY, [TRI_OPEN_LOOK] = O_RDONLY | O_NONBLOCK, [TRI_OPEN_DEVICE] = O_WRONLY | O_NOCTTY,
         [TRI_OPEN_JOIN] = O_WRONLY | O_NOFOLLOW, [TRI_OPEN_NEW] = O_RDWR | O_CREAT | O_EXCL};
-    return open(path, flags[opening] | O_CLOEXEC, 0666); /* of which the process's mask takes */
+    return open(path, flags[opening] | O_CLOEXEC, 0666); /* the permissions are reduced by the process's umask */
 }
 
 bool tri_file_close(tri_file file)
 {
-    return file == TRI_NO_FILE || close((int)file) == 0 || errno == EINTR; /* after which it is closed all the same */
+    return file == TRI_NO_FILE || close((int)file) == 0 || errno == EINTR; /* after EINTR it is closed, too */
 }
 
-/* Closes a file that is not to be used; errno says why. */
+/* Closes a file that must not be used and sets errno to `why`. */
 static tri_file refuse(int file, int why)
 {
     close(file);
@@ -86,7 +98,7 @@ bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
     return fchmod((int)file, (mode_t)as->permissions) == 0;
 }
 
-/* --- what is in them */
+/* --- reading and writing */
 
 int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
 {
@@ -127,6 +139,10 @@ bool tri_file_cut(tri_file file, uint64_t size) { return ftruncate((int)file, (o
 bool tri_file_sync(tri_file file)
 {
     int result;
+#ifdef F_FULLFSYNC /* Darwin: its fsync() leaves data in the cache of the disk */
+    if (fcntl((int)file, F_FULLFSYNC) == 0)
+        return true;
+#endif
     do
         result = fsync((int)file);
     while (result != 0 && errno == EINTR);
@@ -169,7 +185,7 @@ struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uin
         return NULL;
     behind->control.aio_fildes = (int)file;
     behind->control.aio_offset = (off_t)place;
-    behind->control.aio_buf = (void *)at; /* is read alone */
+    behind->control.aio_buf = (void *)at; /* is only read */
     behind->control.aio_nbytes = n;
     behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
     if (aio_write(&behind->control) == 0)
@@ -218,7 +234,8 @@ bool tri_file_keeps_apart(tri_file file, const char *host)
 
 /* --- scratch files */
 
-/* The name is taken back before a signal to this thread can end the process (but for SIGKILL). */
+/* Removes the name of a new file. Signals to this thread are blocked meanwhile, so that only SIGKILL can leave the
+ * file. */
 static tri_file make_nameless(char *path)
 {
     sigset_t all, before;
@@ -232,7 +249,7 @@ static tri_file make_nameless(char *path)
     return file;
 }
 
-/* The first n bytes of a path, and a name; NULL: no memory. */
+/* Returns the first n bytes of a path, followed by a name; NULL: no memory. */
 static char *joined(const char *path, size_t n, const char *name)
 {
     const size_t length = strlen(name) + 1;
@@ -253,7 +270,7 @@ tri_file tri_scratch_file(const char *folder)
     if (file >= 0)
         return file;
 #endif
-    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* for any system and file system */
+    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* works on any file system */
     const tri_file made = path ? make_nameless(path) : TRI_NO_FILE;
     const int fault = errno;
     free(path);
@@ -292,7 +309,8 @@ static bool stat_directory(const char *path, struct stat *status)
     return stat(name, status) == 0;
 }
 
-/* Made by this user, the administrator or who owns the directory? Anybody else's may lead to what only we can write. */
+/* Returns true if the link belongs to this user, the administrator or the owner of the folder. A link of another user
+ * might lead to a file that only this user can write. */
 static bool is_trusted_link(const char *path)
 {
     struct stat at, directory;
@@ -300,7 +318,7 @@ static bool is_trusted_link(const char *path)
            (at.st_uid == geteuid() || at.st_uid == 0 || at.st_uid == directory.st_uid);
 }
 
-/* What a symbolic link at path points to; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
+/* Returns the target of the symbolic link at path. NULL and errno: no link (EINVAL, ENOENT), or another error. */
 static char *follow_link(const char *path)
 {
     char target[TRI_PATH];
@@ -361,7 +379,7 @@ tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_open
         return TRI_NO_FILE;
     if (fstat(file, &at) != 0)
         return refuse(file, errno);
-    const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* the other may be one that somebody linked */
+    const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* another user may have made a link */
     return S_ISREG(at.st_mode) && at.st_uid == geteuid() && alone ? file : refuse(file, EPERM);
 }
 
@@ -370,7 +388,7 @@ tri_file tri_folder_create(tri_file folder, const char *name)
     if (!tri_folder_drop(folder, name) && errno != ENOENT)
         return TRI_NO_FILE;
 #ifdef O_TMPFILE
-    if (access("/proc/self/fd", X_OK) == 0) { /* by which it will get its name */
+    if (access("/proc/self/fd", X_OK) == 0) { /* tri_folder_end names the file through this path */
         const int unnamed = openat((int)folder, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
         if (unnamed >= 0)
             return unnamed;
@@ -398,7 +416,7 @@ bool tri_folder_rename(tri_file folder, const char *from, const char *to)
 
 bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name), void *user)
 {
-    const int again = openat((int)folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* which closedir() closes */
+    const int again = openat((int)folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* closedir() closes this copy */
     DIR *list = again >= 0 ? fdopendir(again) : NULL;
     if (!list && again >= 0)
         (void)refuse(again, errno);
@@ -410,9 +428,9 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
     return true;
 }
 
-/* --- files in memory */
+/* --- mapped files */
 
-/* A file beyond the limit would bring a signal. */
+/* Checks the size limit first, because a file beyond the limit would raise a signal. */
 int tri_file_reserve(tri_file file, uint64_t from, uint64_t size)
 {
     struct rlimit limit;
@@ -436,6 +454,18 @@ void tri_file_release_pages(void *at, size_t size) { madvise(at, size, MADV_DONT
 
 /* --- memory */
 
+#ifdef __APPLE__
+double tri_memory_used(double *of_files)
+{
+    mach_task_basic_info_data_t task;
+    mach_msg_type_number_t n = MACH_TASK_BASIC_INFO_COUNT;
+    if (of_files)
+        *of_files = 0;
+    return task_info(mach_task_self(), MACH_TASK_BASIC_INFO, (task_info_t)&task, &n) == KERN_SUCCESS
+               ? (double)task.resident_size
+               : 0;
+}
+#else
 double tri_memory_used(double *of_files)
 {
     char text[128];
@@ -450,6 +480,7 @@ double tri_memory_used(double *of_files)
         *of_files = known ? (double)files * page : 0;
     return known ? (double)all * page : 0;
 }
+#endif
 
 void tri_memory_trim(void)
 {
@@ -477,6 +508,16 @@ bool tri_pause(double seconds)
     time.tv_nsec = (long)(1e9 * (seconds - (double)time.tv_sec));
     return nanosleep(&time, NULL) == 0;
 }
+
+#ifdef __APPLE__
+void (*tri_find_function(const char *name))(void)
+{
+    void *const found = dlsym(RTLD_DEFAULT, name);
+    void (*function)(void);
+    memcpy(&function, &found, sizeof function);
+    return function;
+}
+#endif
 
 /* --- processes and hosts */
 

@@ -1,5 +1,5 @@
-/* What programs alone ask of the system: limits, the terminal, interrupts. Facts of memory and load are in small files
- * of the kernel's, read line by line. */
+/* Functions for programs only: memory limits, the terminal, interrupts. Facts about memory come from small text files
+ * of the kernel, which are read line by line. */
 #define _GNU_SOURCE /* mallopt, F_DUPFD_CLOEXEC */
 #include "triangle/base/system.h"
 
@@ -18,15 +18,22 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#include <mach/mach.h>
+#include <sys/sysctl.h>
+#include <sys/time.h>
+#endif
 
 /* --- memory and disk */
 
 enum { LINE_BYTES = 512 };
 
-/* What is asked of every limit: what is left below it, or all that it gives. */
+/* Which amount is computed for a limit: the memory left below it, or all of it. */
 enum extent { LEFT, ALL };
 
-/* The number behind the word that begins a line of a file; -1: there is none. word "": the first line's number. */
+/* Returns the number after `word` at the start of a line of the file; -1 if there is none. word "": the first line's
+ * number. */
 static double find_number(const char *path, const char *word)
 {
     char line[LINE_BYTES];
@@ -45,6 +52,20 @@ static double find_number(const char *path, const char *word)
     return value;
 }
 
+#ifdef __APPLE__
+static double of_machine(enum extent extent)
+{
+    uint64_t total;
+    size_t bytes = sizeof total;
+    if (extent == ALL)
+        return sysctlbyname("hw.memsize", &total, &bytes, NULL, 0) == 0 ? (double)total : HUGE_VAL;
+    vm_statistics64_data_t pages;
+    mach_msg_type_number_t n = HOST_VM_INFO64_COUNT;
+    if (host_statistics64(mach_host_self(), HOST_VM_INFO64, (host_info64_t)&pages, &n) != KERN_SUCCESS)
+        return HUGE_VAL;
+    return ((double)pages.free_count + pages.inactive_count + pages.purgeable_count) * (double)sysconf(_SC_PAGESIZE);
+}
+#else
 static double of_machine(enum extent extent)
 {
     static const char file[] = "/proc/meminfo";
@@ -55,6 +76,7 @@ static double of_machine(enum extent extent)
     double available = find_number(file, "MemAvailable:"), swap = find_number(file, "SwapFree:");
     return available < 0 ? HUGE_VAL : 1024 * (available + fmax(swap, 0));
 }
+#endif
 
 static double of_limit(int resource, double used)
 {
@@ -74,10 +96,11 @@ static double of_address_space(enum extent extent)
 static double of_data(enum extent extent) { return of_limit(RLIMIT_DATA, extent == LEFT ? of_status("VmData:") : 0); }
 
 struct files {
-    const char *limit, *usage, *cache; /* the last: the word in memory.stat for what the kernel gives back */
+    const char *limit, *usage, *cache; /* file names, and the name in memory.stat of the cache that the kernel can
+                                        * free */
 };
 
-/* Of a group, and every group above it. path is shortened. */
+/* Returns the least amount over a group and all groups above it. Shortens path. */
 static double of_group(char *path, size_t root, const struct files *files, enum extent extent)
 {
     double least = HUGE_VAL;
@@ -98,8 +121,8 @@ static double of_group(char *path, size_t root, const struct files *files, enum 
     }
 }
 
-/* The group that this process is in, by a line of /proc/self/cgroup; where the tree is mounted at the group itself, as
- * in containers, its path does not exist, and the root is all that is looked at. */
+/* Returns the amount for the group in a line of /proc/self/cgroup. In containers the tree is often mounted at the group
+ * itself. Then the path of the group does not exist, and only the root is examined. */
 static double of_group_line(const char *line, enum extent extent)
 {
     static const struct files first = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "},
@@ -157,14 +180,14 @@ void tri_memory_share_heap(void)
 
 double tri_memory_of_stacks(int threads)
 {
-    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* the first is glibc's, on most processors */
+    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* 2 MB is the default of glibc */
     const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
     return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : unlimited);
 }
 
 double tri_memory_total(void) { return least_of(ALL); }
 
-/* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
+/* ru_maxrss is in units of 1024 bytes, on Darwin in bytes. */
 int64_t tri_memory_peak(void)
 {
     struct rusage usage;
@@ -201,6 +224,16 @@ char **tri_arguments(int argc, char **argv)
 
 const char *tri_word_quote(void) { return "'"; }
 
+#ifdef __APPLE__
+bool tri_own_path(char path[TRI_PATH])
+{
+    uint32_t room = TRI_PATH;
+    const bool whole = _NSGetExecutablePath(path, &room) == 0;
+    if (!whole)
+        path[0] = '\0';
+    return whole;
+}
+#else
 bool tri_own_path(char path[TRI_PATH])
 {
     const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);
@@ -208,6 +241,7 @@ bool tri_own_path(char path[TRI_PATH])
     path[whole ? n : 0] = '\0';
     return whole;
 }
+#endif
 
 /* --- the terminal */
 
@@ -215,7 +249,7 @@ void tri_standard_open(void)
 {
     for (int file = 0; file <= STDERR_FILENO; file++)
         if (fcntl(file, F_GETFD) < 0 && errno == EBADF)
-            (void)!open("/dev/null", O_RDWR); /* takes the lowest number that is free */
+            (void)!open("/dev/null", O_RDWR); /* uses the lowest free number */
 }
 
 bool tri_standard_is_one(void)
@@ -239,8 +273,12 @@ void tri_say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text))
 
 /* --- interrupts */
 
-static struct tri_interrupts handlers; /* set before the first signal can come */
+static struct tri_interrupts handlers; /* set before the first signal can arrive */
+#ifdef __APPLE__
+static volatile double alarm_time; /* when the alarm is due, by tri_seconds(); 0: none is set */
+#else
 static timer_t timer;
+#endif
 
 static const struct kind {
     int number;
@@ -262,18 +300,34 @@ const char *tri_interrupt_name(int number)
     return NULL;
 }
 
+#ifdef __APPLE__ /* no timer_create(); an alarm of another process is known by coming too early */
+static bool make_timer(void) { return true; }
+static bool is_alarm(const siginfo_t *info) { return (void)info, alarm_time > 0 && tri_seconds() > alarm_time - 1; }
+
+void tri_alarm(double seconds)
+{
+    struct itimerval once = {.it_value.tv_sec = (time_t)seconds};
+    once.it_value.tv_usec = (int)fmax(1e6 * (seconds - (double)once.it_value.tv_sec), 1);
+    alarm_time = seconds > 0 ? tri_seconds() + seconds : 0;
+    setitimer(ITIMER_REAL, &once, NULL);
+}
+#else
+static bool make_timer(void) { return timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; } /* sends SIGALRM */
+static bool is_alarm(const siginfo_t *info) { return info->si_code == SI_TIMER; }
+
 void tri_alarm(double seconds)
 {
     struct itimerspec once = {.it_value.tv_sec = (time_t)seconds};
     once.it_value.tv_nsec = (long)(1e9 * (seconds - (double)once.it_value.tv_sec));
     timer_settime(timer, 0, &once, NULL);
 }
+#endif
 
 static void handle_end(int number, siginfo_t *info, void *context)
 {
     const int reason = errno;
     (void)context;
-    if (number == SIGALRM && info->si_code == SI_TIMER)
+    if (number == SIGALRM && is_alarm(info))
         handlers.time_is_up();
     else
         handlers.asked(number);
@@ -292,10 +346,10 @@ static void catch_end(int number)
     struct sigaction action = {.sa_sigaction = handle_end, .sa_flags = SA_SIGINFO}, old;
     sigfillset(&action.sa_mask);
     if (sigaction(number, NULL, &old) == 0 && (number == SIGALRM || old.sa_handler != SIG_IGN))
-        sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that nobody reads must end */
+        sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that has no reader must end */
 }
 
-/* Handlers of others, such as those of sanitizers, stay. */
+/* Handlers that are already installed, such as those of sanitizers, stay. */
 static void catch_crash(int number)
 {
     struct sigaction action = {.sa_handler = handle_crash}, old;
@@ -308,7 +362,7 @@ bool tri_interrupts_catch(const struct tri_interrupts *to)
 {
     sigset_t alarm;
     handlers = *to;
-    const bool has_timer = timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; /* sends SIGALRM */
+    const bool has_timer = make_timer();
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
     for (int i = 0; i < N_ENDS; i++)
@@ -317,6 +371,6 @@ bool tri_interrupts_catch(const struct tri_interrupts *to)
         catch_crash(crashes[i]);
     sigemptyset(&alarm);
     sigaddset(&alarm, SIGALRM);
-    sigprocmask(SIG_UNBLOCK, &alarm, NULL); /* a caller's mask is inherited */
+    sigprocmask(SIG_UNBLOCK, &alarm, NULL); /* the caller may have blocked it */
     return has_timer;
 }

@@ -1,7 +1,8 @@
-/* The system is Windows 10 or newer. Names are UTF-8, and hold '/' or '\' between folders, and ':' behind a drive.
+/* Windows 10 or newer. Names are UTF-8, with '/' or '\' between folders and ':' after a drive letter.
  *
- * Every file is opened so that others may read, write, rename and remove it meanwhile, as POSIX has it. Who owns what
- * is not asked: access lists guard it. Interrupts run in threads of their own: nothing here ends with EINTR. */
+ * Every file is opened so that other programs may read, write, rename and remove it meanwhile, as on POSIX. Owners are
+ * not checked, because access control lists protect files. Interrupts run in threads of their own, so no function here
+ * ends with EINTR. */
 #define WIN32_LEAN_AND_MEAN
 #define _WIN32_WINNT 0x0A00
 #include <windows.h>
@@ -16,7 +17,7 @@
 
 enum {
     SHARE = FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
-    WIDE = TRI_PATH + 8, /* of a path in UTF-16, with what stands before its root */
+    WIDE = TRI_PATH + 8, /* of a path in UTF-16, including the prefix before its root */
     LOOK = FILE_READ_ATTRIBUTES
 };
 
@@ -44,7 +45,7 @@ static int fault_of(DWORD code)
     return EIO;
 }
 
-/* errno says what the system said. */
+/* Sets errno from the last Windows error and returns false. */
 static bool fail(void)
 {
     errno = fault_of(GetLastError());
@@ -87,7 +88,7 @@ static tri_file open_path(const char *path, DWORD access, DWORD way, DWORD flags
     return to_wide(path, wide) ? open_wide(wide, access, way, flags) : TRI_NO_FILE;
 }
 
-/* Closes a file that is not to be used; errno says why. */
+/* Closes a file that must not be used and sets errno to `why`. */
 static tri_file refuse(tri_file file, int why)
 {
     (void)tri_file_close(file);
@@ -99,7 +100,7 @@ static tri_file refuse(tri_file file, int why)
 
 static const DWORD given[] = {STD_INPUT_HANDLE, STD_OUTPUT_HANDLE, STD_ERROR_HANDLE};
 
-/* What the program was started with, by the names that Linux has for it; TRI_NO_FILE: another name. */
+/* Returns stdin, stdout or stderr if this is its name on Linux, otherwise TRI_NO_FILE. */
 static tri_file standard(const char *path)
 {
     static const char *const names[] = {"in", "out", "err"};
@@ -131,7 +132,7 @@ bool tri_file_close(tri_file file)
     return file == TRI_NO_FILE || is_standard(file) || CloseHandle(handle_of(file)) || fail();
 }
 
-/* What the program was started with has no places, whatever it leads to. */
+/* Standard streams count as having no offsets, regardless of their target. */
 bool tri_file_look(tri_file file, struct tri_file_facts *facts)
 {
     const DWORD type = GetFileType(handle_of(file));
@@ -164,14 +165,14 @@ bool tri_path_look(const char *path, struct tri_file_facts *facts)
     return known;
 }
 
-/* A new file is its folder's, as to who may do what. */
+/* A new file inherits its permissions from its folder. */
 bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
 {
     (void)file, (void)as;
     return true;
 }
 
-/* --- what is in them */
+/* --- reading and writing */
 
 static OVERLAPPED at_place(uint64_t place)
 {
@@ -184,7 +185,7 @@ static int64_t read_some(tri_file file, void *at, size_t n, OVERLAPPED *place)
 {
     DWORD got = 0;
     if (ReadFile(handle_of(file), at, piece_of(n), &got, place) || GetLastError() == ERROR_HANDLE_EOF ||
-        GetLastError() == ERROR_BROKEN_PIPE) /* both are ends */
+        GetLastError() == ERROR_BROKEN_PIPE) /* both mean the end */
         return (int64_t)got;
     (void)fail();
     return -1;
@@ -241,7 +242,7 @@ bool tri_file_cut(tri_file file, uint64_t size)
     return SetFileInformationByHandle(handle_of(file), FileEndOfFileInfo, &end, sizeof end) || fail();
 }
 
-/* Only what was opened to be written can be asked for that: no folder. */
+/* Only handles that are open for writing can be flushed. Folders are not. */
 bool tri_file_sync(tri_file file)
 {
     if (FlushFileBuffers(handle_of(file)))
@@ -259,7 +260,7 @@ tri_file tri_file_direct(tri_file file)
     return TRI_NO_FILE;
 }
 
-void *tri_page_alloc(size_t bytes) { return malloc(bytes); } /* free() takes none that is aligned */
+void *tri_page_alloc(size_t bytes) { return malloc(bytes); } /* free() cannot release aligned blocks */
 
 struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place)
 {
@@ -273,7 +274,7 @@ size_t tri_behind_wait(struct tri_behind *behind)
     return 0;
 }
 
-/* Locked bytes can be read and written by nobody else: so it is one behind all that a file can hold. */
+/* No other process can read or write locked bytes, so the lock covers one byte beyond the largest possible file. */
 enum tri_lock tri_file_lock(tri_file file)
 {
     OVERLAPPED last = at_place(INT64_MAX - 1);
@@ -290,7 +291,7 @@ bool tri_file_keeps_apart(tri_file file, const char *host)
     return tri_host_name(here, sizeof here) && strcmp(here, host) == 0;
 }
 
-/* The system removes it when its last handle is closed, also after a kill: until then it has a name. */
+/* Windows removes the file when its last handle is closed, also after a kill. Until then it has a name. */
 tri_file tri_scratch_file(const char *folder)
 {
     enum { MOST = 1000 };
@@ -310,7 +311,7 @@ tri_file tri_scratch_file(const char *folder)
 
 /* --- names of files */
 
-/* By asking for it. */
+/* Opens the path to find out. */
 bool tri_path_allows(const char *path, enum tri_access allowed)
 {
     static const DWORD access[] = {[TRI_THERE] = LOOK, [TRI_READABLE] = GENERIC_READ, [TRI_WRITABLE] = GENERIC_WRITE,
@@ -319,7 +320,7 @@ bool tri_path_allows(const char *path, enum tri_access allowed)
     return file != TRI_NO_FILE && tri_file_close(file);
 }
 
-/* A file that is to be read alone goes, too, as on POSIX. */
+/* Also removes read-only files, as on POSIX. */
 static bool remove_wide(const wchar_t *path)
 {
     if (DeleteFileW(path))
@@ -330,10 +331,10 @@ static bool remove_wide(const wchar_t *path)
     return fail();
 }
 
-/* Scanners for viruses and indexers hold new files for moments. */
+/* Retries, because virus scanners and indexers hold new files open for short times. */
 static bool rename_wide(const wchar_t *from, const wchar_t *to)
 {
-    enum { TRIES = 10 }; /* one second in all */
+    enum { TRIES = 10 }; /* one second in total */
     for (int i = 0;; i++) {
         if (MoveFileExW(from, to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH))
             return true;
@@ -373,14 +374,14 @@ static char *copy_of(const wchar_t *wide)
     return NULL;
 }
 
-/* From the root on, behind all links, in the form that takes the longest names: "\\?\C:\..." */
+/* Stores the absolute path with links resolved, in the form for the longest names: "\\?\C:\..." */
 static bool final_path(tri_file file, wchar_t wide[WIDE])
 {
     const DWORD n = GetFinalPathNameByHandleW(handle_of(file), wide, WIDE, FILE_NAME_NORMALIZED);
     return n == 0 ? fail() : n < WIDE || fail_by(ENAMETOOLONG);
 }
 
-/* In the form that people know: "C:\...", "\\server\..." */
+/* Returns the path in the usual form: "C:\...", "\\server\..." */
 static wchar_t *plain(wchar_t *path)
 {
     if (wcsncmp(path, L"\\\\?\\UNC\\", 8) == 0) {
@@ -401,7 +402,7 @@ char *tri_path_from_root(const char *path)
     return found;
 }
 
-/* Only administrators and who they trust make links: all are followed. */
+/* Only administrators and users they trust can create links, so all links are followed. */
 char *tri_path_resolve(const char *path)
 {
     wchar_t wide[WIDE];
@@ -414,7 +415,7 @@ char *tri_path_resolve(const char *path)
 
 size_t tri_path_folder_length(const char *path)
 {
-    size_t n = path[0] && path[1] == ':' ? 2 : 0; /* of a drive */
+    size_t n = path[0] && path[1] == ':' ? 2 : 0; /* drive letter and ':' */
     for (size_t i = n; path[i]; i++)
         if (path[i] == '/' || path[i] == '\\')
             n = i + 1;
@@ -445,7 +446,7 @@ tri_file tri_folder_open(const char *path, bool own)
     return refuse(folder, ENOTDIR);
 }
 
-/* Where the folder is by now. */
+/* Stores the path of a file in the folder, at the folder's current place. */
 static bool path_in(tri_file folder, const char *name, wchar_t path[WIDE])
 {
     wchar_t last[WIDE];
@@ -526,7 +527,7 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
     return true;
 }
 
-/* --- files in memory */
+/* --- mapped files */
 
 /* Disk space is allocated when a file grows. */
 int tri_file_reserve(tri_file file, uint64_t from, uint64_t size)
@@ -543,7 +544,7 @@ void *tri_file_map(tri_file file, size_t size)
     if (!at)
         (void)fail();
     if (map)
-        CloseHandle(map); /* the view keeps it */
+        CloseHandle(map); /* the view keeps the mapping */
     return at;
 }
 

@@ -1,8 +1,8 @@
-/* What programs alone ask of the system: limits, the terminal, interrupts. */
+/* Functions for programs only: memory limits, the terminal, interrupts. */
 #define WIN32_LEAN_AND_MEAN
 #define _WIN32_WINNT 0x0A00
 #include <windows.h>
-/* behind windows.h */
+/* must follow windows.h */
 #include <psapi.h>
 #include <shellapi.h>
 
@@ -24,7 +24,7 @@ static bool to_utf8(const wchar_t *wide, char path[TRI_PATH])
 
 /* --- memory and disk */
 
-/* What the group of processes is allowed that this one is in; HUGE_VAL: all. */
+/* Returns the memory limit of the job that contains this process; HUGE_VAL: no limit. */
 static double of_job(void)
 {
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION job;
@@ -35,7 +35,7 @@ static double of_job(void)
                 flags & JOB_OBJECT_LIMIT_JOB_MEMORY ? (double)job.JobMemoryLimit : HUGE_VAL);
 }
 
-/* Memory and page file, of which every process is given its own when it asks. */
+/* Physical memory and page file. Windows commits both when a process allocates memory. */
 double tri_memory_left(void)
 {
     MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
@@ -59,7 +59,7 @@ int64_t tri_memory_peak(void)
 
 void tri_memory_share_heap(void) {}
 
-double tri_memory_of_stacks(int threads) /* of which what is not touched costs nothing */
+double tri_memory_of_stacks(int threads) /* untouched stack pages cost nothing */
 {
     (void)threads;
     return 0;
@@ -77,7 +77,7 @@ double tri_disk_left(const char *path)
                : HUGE_VAL;
 }
 
-/* The user's own, where TMPDIR is not set. */
+/* TMPDIR, or the user's own folder if it is not set. */
 const char *tri_scratch_folder(void)
 {
     static char own[TRI_PATH];
@@ -90,7 +90,7 @@ const char *tri_scratch_folder(void)
 
 /* --- the program */
 
-int _dowildcard = 0; /* of mingw's: an asterisk in a word is an asterisk */
+int _dowildcard = 0; /* for mingw: do not expand asterisks in arguments */
 
 char **tri_arguments(int argc, char **argv)
 {
@@ -108,7 +108,7 @@ char **tri_arguments(int argc, char **argv)
     return all ? all : argv;
 }
 
-const char *tri_word_quote(void) { return "\""; } /* those of both, and no name of a file can hold one */
+const char *tri_word_quote(void) { return "\""; } /* the quotation mark of both shells; file names cannot contain it */
 
 bool tri_own_path(char path[TRI_PATH])
 {
@@ -123,7 +123,7 @@ static UINT page_before; /* the console's code page; 0: it was UTF-8 */
 
 static void restore_page(void) { (void)SetConsoleOutputCP(page_before); }
 
-/* Lines end with one byte, and names are shown as they are. */
+/* Disables translation of line ends, and shows names in UTF-8. */
 void tri_standard_open(void)
 {
     static const DWORD handles[] = {STD_INPUT_HANDLE, STD_OUTPUT_HANDLE, STD_ERROR_HANDLE};
@@ -150,7 +150,7 @@ bool tri_standard_is_one(void)
         return false;
     if (type == FILE_TYPE_DISK)
         return of_output.device == of_error.device && of_output.node == of_error.node;
-    BOOL(WINAPI *compare)(HANDLE a, HANDLE b) = NULL; /* pipes and consoles; there since Windows 10 */
+    BOOL(WINAPI *compare)(HANDLE a, HANDLE b) = NULL; /* works for pipes and consoles; exists since Windows 10 */
     const FARPROC found = GetProcAddress(GetModuleHandleA("kernelbase"), "CompareObjectHandles");
     memcpy(&compare, &found, sizeof compare);
     return (tri_standard_is_terminal() && _isatty(1)) || output == error || (compare && compare(output, error));
@@ -185,14 +185,14 @@ void tri_say(const char *text)
     (void)WriteFile(GetStdHandle(STD_ERROR_HANDLE), text, (DWORD)strlen(text), &n, NULL);
 }
 
-/* --- interrupts: the console's and the clock's come in threads of their own */
+/* --- interrupts: the console and the timer call them in threads of their own */
 
-static struct tri_interrupts handlers; /* set before the first can come */
+static struct tri_interrupts handlers; /* set before the first interrupt can arrive */
 static PTP_TIMER timer;
 
 static const struct kind {
     DWORD event;
-    int number; /* of the signal that POSIX sends then */
+    int number; /* of the corresponding POSIX signal */
     const char *name;
 } ends[] = {
     {CTRL_C_EVENT, 2, "Ctrl-C"},
@@ -225,7 +225,7 @@ static void CALLBACK on_alarm(PTP_CALLBACK_INSTANCE instance, void *user, PTP_TI
     handlers.time_is_up();
 }
 
-/* The system ends the process when this returns, unless a key was pressed; else in five seconds. */
+/* Windows ends the process when this handler returns, or after five seconds, unless a key caused the event. */
 static BOOL WINAPI on_console(DWORD event)
 {
     for (int i = 0; i < N_ENDS; i++)
@@ -256,7 +256,7 @@ bool tri_interrupts_catch(const struct tri_interrupts *to)
     timer = CreateThreadpoolTimer(on_alarm, NULL, NULL);
     (void)SetConsoleCtrlHandler(on_console, TRUE);
     (void)SetUnhandledExceptionFilter(on_fault);
-    (void)SetErrorMode(SEM_FAILCRITICALERRORS); /* an empty drive is an error, not a question */
+    (void)SetErrorMode(SEM_FAILCRITICALERRORS); /* an empty drive is an error, without a dialog */
     signal(SIGABRT, on_abort);
     return timer != NULL;
 }

@@ -1,8 +1,8 @@
-/* Beside files: memory, time, processes, threads. */
+/* Windows: memory, time, processes and threads. */
 #define WIN32_LEAN_AND_MEAN
 #define _WIN32_WINNT 0x0A00
 #include <windows.h>
-/* behind windows.h */
+/* must follow windows.h */
 #include <psapi.h>
 
 #include "triangle/base/system.h"
@@ -14,7 +14,7 @@
 
 /* --- memory */
 
-/* What is in memory beyond the process's own is of files: at least that. */
+/* Memory beyond the private memory of the process belongs to files: this is a lower bound. */
 double tri_memory_used(double *of_files)
 {
     PROCESS_MEMORY_COUNTERS_EX memory = {.cb = sizeof memory};
@@ -67,7 +67,7 @@ bool tri_process_is_gone(long process)
 {
     const HANDLE it = OpenProcess(SYNCHRONIZE, FALSE, (DWORD)process);
     if (!it)
-        return GetLastError() == ERROR_INVALID_PARAMETER; /* else it is another user's */
+        return GetLastError() == ERROR_INVALID_PARAMETER; /* any other error: the process belongs to another user */
     const bool gone = WaitForSingleObject(it, 0) == WAIT_OBJECT_0;
     CloseHandle(it);
     return gone;
@@ -87,7 +87,7 @@ bool tri_host_name(char *name, size_t room)
     return true;
 }
 
-/* --- threads */
+/* argument of run */
 
 int tri_processors(void)
 {
@@ -115,7 +115,7 @@ static unsigned __stdcall begin_thread(void *it)
 
 struct tri_thread *tri_thread_start(void *(*run)(void *user), void *user)
 {
-    enum { STACK = 8 << 20 }; /* bytes of address space, as Linux has it */
+    enum { STACK = 8 << 20 }; /* bytes of address space, as on Linux */
     struct tri_thread *thread = malloc(sizeof *thread);
     if (!thread)
         return NULL;

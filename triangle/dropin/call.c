@@ -3,10 +3,15 @@
 
 #include <stdio.h>
 
+#include "triangle/base/system.h"
 #include "triangle/dropin/io.h"
 
-/* The client's size test for switch u; NULL if the linker finds none. */
+/* The client's size test for switch u; NULL if the linker finds none. On macOS no linked function may be missing. */
+#ifdef __APPLE__
+#define triunsuitable ((int (*)(REAL *, REAL *, REAL *, REAL))tri_find_function("triunsuitable"))
+#else
 extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
+#endif
 
 struct io_run {
     const struct tri_switches *switches; /* the parsed switches */

@@ -4,9 +4,9 @@
  * fixed vertex, the angle around it over 60 degrees. A flip changes the degrees of the four corners of a quadrilateral.
  * It is made if it lowers the sum of their excesses; then the corners move to better places.
  *
- * INVARIANT. The flip and the moves are taken back unless they lower the energy of the corners' stars (star.h) and
- * break the bound on angles in no more triangles than before. All triangles stay counter-clockwise (exactly). Fixed
- * vertices stay; no subsegment and no border of regions is crossed. */
+ * INVARIANT. The flip and the moves are undone unless the energy of the corners' stars (star.h) has decreased, no
+ * triangle in them violates the angle bound, and the smallest q has not decreased or is good. All triangles stay
+ * counter-clockwise (exactly). Fixed vertices stay; no subsegment and no border of regions is crossed. */
 #include "triangle/refine/degrees.h"
 
 #include <assert.h>
@@ -129,7 +129,7 @@ static bool flips_well(const struct tri_smooth *s, struct tri_flips *flips, tri_
     tri_flip_edge(flips, t, e);
     settle(s, flips->block, &now);
     judge(s, flips->block, &now);
-    if (memcmp(now.moves, p->moves, sizeof now.moves) == 0 && now.energy < p->energy && now.n_bad <= p->n_bad &&
+    if (memcmp(now.moves, p->moves, sizeof now.moves) == 0 && now.energy < p->energy && now.n_bad == 0 &&
         (now.least >= p->least || now.least > TRI_SMOOTH_GOOD))
         return true;
     for (int k = 0; k < 4; k++)

@@ -4,8 +4,8 @@
  * the sum of 1 / q over its triangles.
  *
  * POSITION. Let e be the edge opposite the vertex x in one of its triangles, l its length, t the height of x over it,
- * and x* the apex of the equilateral triangle over e. Then 1 / q = 1 + |x - x*|^2 / (sqrt(3) l t). For constant t the sum
- * is smallest at the mean of all x* with weights 1 / (l t). The gradient with respect to t shifts each x* along the
+ * and x* the apex of the equilateral triangle over e. Then 1 / q = 1 + |x - x*|^2 / (sqrt(3) l t). For constant t the
+ * sum is smallest at the mean of all x* with weights 1 / (l t). The gradient with respect to t shifts each x* along the
  * normal of e. Two such steps are made. No size field is needed: graded rims keep their grading. */
 #ifndef TRIANGLE_REFINE_STAR_H
 #define TRIANGLE_REFINE_STAR_H

@@ -1,7 +1,8 @@
-/* What the WebAssembly module exports: figures come as files in memory, meshes leave as arrays or as files.
+/* The functions that the WebAssembly module exports. Figures are read from files in memory; meshes are returned as
+ * arrays or as files.
  *
- * One figure, one mesh and one error exist at a time; each call replaces them. web/src/mesher.ts is the only caller.
- * The layout of structs never leaves this file: every number has a function of its own. */
+ * One figure, one mesh and one error exist at a time; each call replaces them. web/src/mesher.ts is the only caller. No
+ * caller depends on the layout of structs, because each number has its own function. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +15,7 @@
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
 
-/* The host's: progress of a run, 0 to 1, and its triangles. */
+/* Defined by the host: receives the progress of a run, 0 to 1, and the number of triangles. */
 __attribute__((import_module("host"), import_name("progress"))) void web_progress(double done, double triangles);
 
 static struct tri_figure figure;
@@ -42,7 +43,7 @@ void EXPORT(web_file_remove)(const char *name) { (void)tri_path_remove(name); }
 
 /* --- the figure and the mesh */
 
-/* Reads the figure from a file in memory, by its ending. */
+/* Reads the figure from a file in memory. The ending of its name selects the format. */
 int EXPORT(web_read)(const char *name)
 {
     if (figure.size)
@@ -60,7 +61,8 @@ static int compare_markers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The segments' markers, with 1 for 0: a length cannot name 0, and 1 is what boundary segments get. NULL: no memory. */
+/* Returns the markers of segments, with 0 replaced by 1, the marker of boundary segments, because a size field cannot
+ * refer to marker 0. NULL: no memory. */
 static int32_t *named_markers(void)
 {
     int32_t *markers = malloc(((size_t)figure.segments.n + 1) * sizeof *markers);
@@ -71,7 +73,7 @@ static int32_t *named_markers(void)
     return markers;
 }
 
-/* One source of lengths for each of these markers: all segments ask for this length. NULL: no memory. */
+/* Returns one size field with this length for each of the markers. NULL: no memory. */
 static struct tri_size_field *fields_near(const int32_t *markers, double length, double growth, int64_t *n)
 {
     const size_t n_segments = (size_t)figure.segments.n;
@@ -98,14 +100,14 @@ static void tell_progress(void *user, double done, int64_t triangles)
 
 enum { CONFORMING = 1, PROTECT = 2, EVEN_ODD = 4, REGION_AREAS = 8 };
 
-/* markers: of the segments; NULL: the figure's */
+/* markers: of the segments; NULL: those of the figure */
 static int make_mesh(const struct tri_settings *settings, const int32_t *markers, int flags)
 {
     struct tri_figure given = figure;
     double *regions = NULL;
     if (markers)
         given.segment_markers = tri_ints_of(markers, figure.segments.n, 1);
-    if (!(flags & REGION_AREAS) && figure.regions.n > 0) { /* the regions' own bounds do not count */
+    if (!(flags & REGION_AREAS) && figure.regions.n > 0) { /* area bounds of regions do not apply */
         regions = malloc((size_t)figure.regions.n * 4 * sizeof *regions);
         for (int64_t i = 0; regions && i < figure.regions.n; i++) {
             memcpy(regions + 4 * i, figure.regions.at + i * figure.regions.stride, 3 * sizeof *regions);
@@ -118,8 +120,8 @@ static int make_mesh(const struct tri_settings *settings, const int32_t *markers
     return status;
 }
 
-/* Meshes the figure. Bounds that are 0 are none; size is the edge length: everywhere if growth is 0, else on all
- * segments, and growing by this for a distance of 1. */
+/* Meshes the figure. A bound of 0 means no bound. size: the edge length; it applies everywhere if growth is 0.
+ * Otherwise it applies on all segments, and grows by `growth` per unit of distance from them. */
 int EXPORT(web_mesh)(double min_angle, double max_area, double size, double growth, int flags)
 {
     struct tri_settings settings = tri_no_settings();
@@ -148,7 +150,7 @@ int EXPORT(web_mesh)(double min_angle, double max_area, double size, double grow
     return status;
 }
 
-/* How many triangles do not keep this bound on angles for this reason (enum tri_reason). */
+/* Returns the number of triangles that violate this angle bound for this reason (enum tri_reason). */
 int EXPORT(web_unmet)(double min_angle, int flags, int reason)
 {
     struct tri_settings settings = tri_no_settings();
@@ -159,7 +161,7 @@ int EXPORT(web_unmet)(double min_angle, int flags, int reason)
     return mesh && tri_mesh_count_bad(mesh, &settings, by_reason, TRI_REASONS) > 0 ? (int)by_reason[reason] : 0;
 }
 
-/* Writes the mesh into files in memory, as tri_file_write does; holes and regions are those of the figure. */
+/* Writes the mesh, with the holes and regions of the figure, into files in memory, like tri_file_write. */
 int EXPORT(web_write)(const char *name, int first)
 {
     struct tri_figure out = tri_no_figure();

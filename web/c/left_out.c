@@ -1,4 +1,4 @@
-/* What the module leaves out for its size: readers of other programs' meshes. */
+/* Replaces readers of other programs' meshes, which would make the module larger. */
 #include "triangle/text/formats.h"
 
 #define NO_READER(name)                                                                                      \

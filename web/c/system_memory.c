@@ -1,4 +1,4 @@
-/* The door to the system (triangle/base/system.h) where there is none: files lie in memory, under their names.
+/* Implements triangle/base/system.h without an operating system: files with names are kept in memory.
  *
  * A name that does not exist yet looks like a device, so the library's writers append to it in place: they make no
  * temporary file, rename nothing and lock nothing. The functions that would do so fail here. Every file has one user at
@@ -152,7 +152,7 @@ size_t tri_path_folder_length(const char *path)
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* --- of the real systems: folders, locks, disks, other processes. Nothing in the module calls these */
+/* --- folders, locks, disks, other processes: nothing in the module calls these */
 
 static bool refuse(void)
 {

@@ -1,5 +1,5 @@
-// Rings drawn with the mouse or a finger: a click adds a corner, a click on the first closes the ring, corners can be
-// dragged. Rings in rings are holes.
+// Rings drawn with the mouse or a finger. A click adds a corner, a click on the first corner closes the ring, and
+// corners can be dragged. Rings in rings are holes.
 import type { Ring } from "./input";
 import type { View } from "./view";
 
@@ -7,7 +7,7 @@ export class Drawing {
   on = false;
   rings: Ring[] = [];
   private open: Ring = [];
-  private held: [number, number] | null = null; // ring and corner that the hand drags
+  private held: [number, number] | null = null; // ring and corner being dragged
   private mouse: [number, number] | null = null;
 
   constructor(private view: View, private under: HTMLElement, private canvas: HTMLCanvasElement,
@@ -49,7 +49,7 @@ export class Drawing {
     return Math.hypot(x - px, y - py) <= reach;
   }
 
-  /** True: the event is for the drawing. */
+  /** Returns true if the event belongs to the drawing. */
   down(e: PointerEvent): boolean {
     if (!this.on || e.button !== 0) return false;
     const { offsetX: px, offsetY: py } = e;

@@ -1,19 +1,19 @@
-// Figures from outlines: GeoJSON, DXF, SVG, rings that were drawn. All become the text of a .poly file.
+// Converts outlines (GeoJSON, DXF, SVG, drawn rings) to the text of a .poly file.
 import DxfParser from "dxf-parser";
 import { SVGPathData } from "svg-pathdata";
 
 export interface Figure {
   name: string;
   poly: string;
-  /** Rings tell what is inside; otherwise holes and regions of the file do. */
+  /** Rings define the domain (even-odd rule); otherwise holes and regions of the file do. */
   evenOdd: boolean;
-  /** Whose lines errors count. */
+  /** The text whose lines errors refer to. */
   file?: string;
   /** The text is a .node file. */
   node?: boolean;
-  /** What was left out. */
+  /** Note about parts that were left out. */
   note?: string;
-  /** Of the example that it is. */
+  /** Name of the example. */
   key?: string;
 }
 export type Ring = [number, number][];
@@ -28,7 +28,7 @@ function extentOf(lines: Line[]): number {
   return Math.max(high[0]! - low[0]!, high[1]! - low[1]!);
 }
 
-/** Coordinates to nine digits of the extent: places that differ by rounding alone are one. */
+/** Rounds coordinates to nine digits of the extent, so that places that differ only by rounding are equal. */
 function rounded(lines: Line[]): Line[] {
   const extent = extentOf(lines), known = extent > 0 && extent < Infinity;
   const unit = known ? 10 ** (8 - Math.floor(Math.log10(extent))) : 1;
@@ -36,7 +36,7 @@ function rounded(lines: Line[]): Line[] {
   return lines.map((l) => ({ ...l, points: l.points.map(([x, y]) => [round(x), round(y)]) }));
 }
 
-/** Ends of lines that lie within 1e-6 of the extent become one place. */
+/** Merges ends of lines that are closer than 1e-6 of the extent. */
 function joined(lines: Line[]): Line[] {
   const reach = extentOf(lines) * 1e-6, cells = new Map<string, [number, number]>();
   for (const { points } of lines.filter((l) => !l.closed))
@@ -49,7 +49,7 @@ function joined(lines: Line[]): Line[] {
   return lines;
 }
 
-/** Points that lie at one place become one, so that lines that meet are joined. */
+/** Merges equal points, so that lines that meet are joined. */
 function toPoly(lines: Line[]): string {
   const places = new Map<string, number>(), points: string[] = [], segments: string[] = [];
   const number = ([x, y]: [number, number]) => {
@@ -191,7 +191,7 @@ function pathLines(d: string): Line[] {
 
 const units: Record<string, number> = { "": 1, px: 1, mm: 96 / 25.4, cm: 96 / 2.54, in: 96, pt: 4 / 3, pc: 16 };
 
-/** Shapes that are empty, or that cannot be read, are dropped, as browsers do. */
+/** Leaves out empty and unreadable shapes, as browsers do. */
 function fromSvg(text: string): Line[] {
   const lines: Line[] = [];
   let fault = "";
@@ -225,7 +225,7 @@ function fromSvg(text: string): Line[] {
   return rounded(lines);
 }
 
-/** Which format it is, by its content: names lie. */
+/** Detects the format by the content, because file names may be wrong. */
 export function parse(name: string, text: string): Figure {
   const start = text.slice(0, 2000).trimStart(), stem = name.replace(/\.[a-z0-9]+$/i, "") || "figure";
   const outlines = (lines: Line[]): Figure => ({ name: stem, poly: toPoly(lines), evenOdd: true });
@@ -239,7 +239,7 @@ export function parse(name: string, text: string): Figure {
   if (/^(#|[-+.\d])/.test(start)) {
     const rows = text.split("\n").map((row) => row.replace(/#.*/, "").trim()).filter(Boolean);
     const n = parseInt(rows[0] ?? "");
-    if (n === 0) throw new Error("its points are in another file: paste those of the .node file into it");
+    if (n === 0) throw new Error("its points are in another file: paste the points of the .node file into it");
     const node = /\.node$/i.test(name) || (!/\.poly$/i.test(name) && rows.length === n + 1);
     return { name: stem, poly: text, evenOdd: false, file: name, ...(node && { node }) };
   }

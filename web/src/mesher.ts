@@ -1,5 +1,6 @@
-// The mesher in WebAssembly, for node, browsers and workers. Figures come as text of .poly or .node files; meshes leave
-// as typed arrays, or as the bytes of a file in any format that ptriangle writes. Same input, same bytes everywhere.
+// The mesher in WebAssembly, for node, browsers and workers. Figures are passed as the text of .poly or .node files.
+// Meshes are returned as typed arrays, or as the bytes of a file in any format that ptriangle writes. The same input
+// gives the same bytes on all platforms.
 
 export interface Settings {
   /** No smaller angle, in degrees; 0: no bound. 30 is a good choice, 34 works on nearly all figures. */
@@ -8,19 +9,19 @@ export interface Settings {
   maxArea?: number;
   /** Length of edges; 0: no bound. With growth, the length on all segments. */
   size?: number;
-  /** How much edges grow for a distance of 1 away from the segments; 0: the size holds everywhere. */
+  /** Growth of edges per unit of distance from the segments; 0: the size applies everywhere. */
   growth?: number;
   /** Every triangle is Delaunay, not only constrained Delaunay. */
   conforming?: boolean;
-  /** The boundary gets no new points. */
+  /** Inserts no new points on the boundary. */
   protect?: boolean;
   /** Points inside an odd number of rings are in the domain. Otherwise the figure's holes decide. */
   evenOdd?: boolean;
-  /** The regions' own bounds on areas count. */
+  /** Applies the area bounds of regions. */
   regionAreas?: boolean;
 }
 
-/** A figure or a bound was refused; line counts from 1, 0 if the error concerns no line. */
+/** A figure or a bound is invalid; line counts from 1, 0 if the error concerns no line. */
 export class MeshError extends Error {
   constructor(readonly status: number, message: string, readonly line: number) {
     super(message);
@@ -37,7 +38,7 @@ export interface Mesh {
   regions: Float64Array;
   segments: Int32Array;
   segmentMarkers: Int32Array;
-  /** Remarks on the result, a line each, or "". */
+  /** Warnings about the result, one per line, or "". */
   notes: string;
 }
 
@@ -73,9 +74,9 @@ export class Mesher {
   private hasFigure = false;
   private constructor(private readonly c: Exports) {}
 
-  /** Starts the module: its bytes, or a module that is compiled already. */
+  /** Starts the module, given as bytes or as a compiled module. */
   static async load(wasm: BufferSource | WebAssembly.Module, progress: Progress = () => {}): Promise<Mesher> {
-    const nothing = () => 52; // "not supported", to the parts of the C library that would print
+    const nothing = () => 52; // "not supported", for functions of the C library that print
     const imports = {
       host: { progress },
       wasi_snapshot_preview1: { fd_close: nothing, fd_seek: nothing, fd_write: nothing },
@@ -89,7 +90,7 @@ export class Mesher {
 
   get version(): string { return this.text(this.c.web_version()); }
 
-  /** Reads a figure; the name's ending, .poly or .node, names the format. The last figure and its mesh go. */
+  /** Reads a figure. The ending of the name, .poly or .node, selects the format. Frees the last figure and its mesh. */
   read(name: string, content: string | Uint8Array): void {
     const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content;
     this.hasFigure = false;
@@ -104,12 +105,12 @@ export class Mesher {
     });
   }
 
-  /** Points of the figure that was read, and the segments between them. */
+  /** Returns the points of the figure, and the segments between them. */
   figure(): { points: Float64Array; segments: Int32Array } {
     return { points: this.reals(6), segments: this.ints(7) };
   }
 
-  /** Meshes the figure that was read. Without bounds: its constrained Delaunay triangulation. */
+  /** Meshes the figure. Without bounds the result is its constrained Delaunay triangulation. */
   mesh(s: Settings = {}): Mesh {
     if (!this.hasFigure) throw new MeshError(3, "no figure has been read", 0);
     for (const key of ["minAngle", "maxArea", "size", "growth"] as const)
@@ -118,14 +119,14 @@ export class Mesher {
     return this.current();
   }
 
-  /** Triangles that do not keep these bounds on angles, by reason: small angles of the figure, narrow gaps, protected
-   * segments, points that would run away, precision, deferred. */
+  /** Returns the number of triangles that violate this angle bound, by reason: small angles of the figure, narrow gaps,
+   * protected segments, a bound that needs endless points, precision, deferred. */
   unmet(s: Settings): number[] {
     return Array.from({ length: 6 }, (_, reason) =>
       this.c.web_unmet(s.minAngle ?? 0, this.flags(s), reason));
   }
 
-  /** The mesh once more, for instance after memory has grown. */
+  /** Returns new views of the mesh, for instance after memory has grown. */
   current(): Mesh {
     return {
       points: this.reals(0), pointMarkers: this.ints(1), triangles: this.ints(2), regions: this.reals(3),
@@ -133,7 +134,7 @@ export class Mesher {
     };
   }
 
-  /** The mesh as files: x.vtu, x.msh, x.2dm, x.14 and x.grd are one; "x" is x.node, x.ele and x.poly. */
+  /** Returns the mesh as files: x.vtu, x.msh, x.2dm, x.14 and x.grd are one file; "x" is x.node, x.ele and x.poly. */
   write(name: string, first: 0 | 1 = 1): Map<string, Uint8Array> {
     this.named(name, (at) => this.check(this.c.web_write(at, first)));
     const files = new Map<string, Uint8Array>();

@@ -15,9 +15,9 @@ const short = (v: number) => v === 0 ? "" : String(Number(v.toPrecision(3)));
 
 interface Example { key: string; name: string; poly: string }
 let examples: Example[] = [];
-let figure: Figure | null = null, drawn: Figure | null = null; // drawn: what the drawing's rings became
-let result: Result & { figure: Figure; job: Job } | null = null; // what is shown
-let extent = 1; // of the figure, the larger side
+let figure: Figure | null = null, drawn: Figure | null = null; // drawn: the figure made from the drawn rings
+let result: Result & { figure: Figure; job: Job } | null = null; // the result on display
+let extent = 1; // larger side of the figure
 const settings = { minAngle: 30, maxArea: 0, size: 0, growth: 0.12, conforming: false, protect: false };
 
 // --- the Worker
@@ -131,13 +131,13 @@ function boxOf(p: Float64Array): number[] {
   return box.every(Number.isFinite) ? box : [0, 0, 1, 1];
 }
 
-/** Why angles are smaller than asked. */
+/** Returns why angles are smaller than the bound. */
 function unmet(r: Result & { job: Job }): string {
   const bound = r.job.settings.minAngle!;
   if (Math.floor(r.minAngle * 100 + 1e-6) >= bound * 100) return ""; // by rounding alone
   const reasons = ["at small angles of the figure", "in gaps too narrow to fill",
-    "at the boundary, which is to keep its points",
-    "because points would run away", "where coordinates end to resolve"];
+    "at the boundary, which gets no new points",
+    "because the bound would need endless points", "where coordinates are too imprecise"];
   const parts = r.unmet.slice(0, 5)
     .map((n, i) => n ? `${number.format(n)} triangle${n > 1 ? "s" : ""} ${reasons[i]}` : "").filter(Boolean);
   return parts.length ? `Below ${bound}°: ${parts.join(", ")}.` : "";
@@ -255,7 +255,7 @@ view.onframe = () => {
   if (result && !result.triangles && !drawing.on) outline(result.outline);
 };
 
-/** The figure where there is no mesh; its open ends are marked. */
+/** Shows the figure if there is no mesh, and marks its open ends. */
 function outline(p: Float64Array): void {
   const c = $("over").getContext("2d")!, ends = new Map<string, [number, number]>();
   c.beginPath();
@@ -326,7 +326,7 @@ function startPage(): void {
   show("empty", true);
   $("name").textContent = "";
 }
-/** Without a figure the start page comes back. */
+/** Shows the figure, or the start page if there is none. */
 function leaveDrawing(): void {
   if (drawing.on) drawing.leave();
   if (!figure) startPage();
@@ -334,7 +334,7 @@ function leaveDrawing(): void {
 $("examples").onclick = () => { drawing.leave(); startPage(); };
 $("draw").onclick = () => {
   if (drawing.on) { leaveDrawing(); return; }
-  if (figure && figure === drawn) { drawing.enter(drawing.rings); return; } // goes on
+  if (figure && figure === drawn) { drawing.enter(drawing.rings); return; } // continues the drawing
   show("empty", false);
   show("error", false);
   if (busy) stop();
@@ -379,7 +379,7 @@ addEventListener("keydown", (e) => {
 const ofExample = (e: Example): Figure => ({ ...e, evenOdd: false });
 
 let painter: Worker | null = null;
-/** The thumbnails, meshed by a Worker of their own. */
+/** Makes the thumbnails in a separate Worker. */
 function gallery(): void {
   painter?.terminate();
   const own = painter = new Worker(source), canvases: HTMLCanvasElement[] = [];
@@ -441,7 +441,7 @@ $("download").onclick = async () => {
     format === "zip" ? save(name + ".zip", zip(answer.files)) : save(answer.files[0]![0], answer.files[0]![1]);
 };
 
-/** Of what is shown. */
+/** Returns the part of the link after #: the figure and settings on display. */
 async function hash({ figure, job: { settings: s } }: NonNullable<typeof result>): Promise<string> {
   const words = new URLSearchParams({ angle: String(s.minAngle) });
   if (s.maxArea) words.set("area", String(s.maxArea));
@@ -454,7 +454,7 @@ async function hash({ figure, job: { settings: s } }: NonNullable<typeof result>
   return "#" + words;
 }
 
-/** The address follows the mesh; large figures go into a link only when it is asked for. */
+/** Updates the address after each mesh. A large figure is put into a link only on request. */
 async function remember(): Promise<void> {
   if (!result || (!result.figure.key && result.figure.poly.length > 20000)) return;
   history.replaceState(null, "", await hash(result));

@@ -1,9 +1,9 @@
-// What leaves the page: links, zip files, downloads.
+// Output of the page: links, zip files, downloads.
 async function through(bytes: Uint8Array, stream: CompressionStream | DecompressionStream): Promise<Uint8Array> {
   return new Uint8Array(await new Response(new Blob([bytes as BlobPart]).stream().pipeThrough(stream)).arrayBuffer());
 }
 
-/** Text as letters that a link may hold, and back. */
+/** Encode text as characters that are valid in a link, and decode it. */
 export async function pack(text: string): Promise<string> {
   const bytes = await through(new TextEncoder().encode(text), new CompressionStream("deflate-raw"));
   let binary = "";
@@ -27,7 +27,7 @@ function crc(bytes: Uint8Array): number {
   return ~c >>> 0;
 }
 
-/** A zip file without compression. */
+/** Makes a zip file without compression. */
 export function zip(files: [string, Uint8Array][]): Uint8Array {
   const parts: Uint8Array[] = [], directory: Uint8Array[] = [];
   let at = 0;

@@ -1,6 +1,6 @@
 // The picture: WebGL2 with pan and zoom. A frame draws at most BUDGET triangles. If more are in sight, the last picture
-// moves along. Once the hand rests, a new one is made of slices, one a frame. Edges fade where they would fill the
-// triangles; there the shade shows the density.
+// moves along. When the input stops, a new picture is drawn in slices, one per frame. Edges fade if they would fill the
+// triangles; then the shade shows the density.
 import type { Layout } from "./worker";
 
 const BUDGET = 60000;
@@ -82,8 +82,8 @@ export class View {
   private buffers: WebGLBuffer[];
   private array: WebGLVertexArrayObject;
   private palette: WebGLTexture;
-  private many: WebGLFramebuffer;  // several samples a pixel
-  private plain: WebGLFramebuffer; // what they come to: the picture
+  private many: WebGLFramebuffer;  // several samples per pixel
+  private plain: WebGLFramebuffer; // their average: the picture
   private picture: WebGLTexture;
   private samples: WebGLRenderbuffer;
   private size = [0, 0];
@@ -159,7 +159,7 @@ export class View {
     this.request();
   }
 
-  /** Screen and figure, in CSS pixels from the upper left corner. */
+  /** Convert between screen and figure. Screen positions are CSS pixels from the upper left corner. */
   toFigure(px: number, py: number): [number, number] {
     const c = this.camera;
     return [c.x + (px - this.canvas.clientWidth / 2) / c.scale, c.y - (py - this.canvas.clientHeight / 2) / c.scale];
@@ -201,7 +201,7 @@ export class View {
     requestAnimationFrame(() => { this.requested = false; this.frame(); });
   }
 
-  /** Chunks in sight, and how many triangles they have. */
+  /** Returns the visible chunks and their number of triangles. */
   private visible(): { list: number[]; triangles: number } {
     const { x, y, scale } = this.camera, hw = this.canvas.clientWidth / 2 / scale,
       hh = this.canvas.clientHeight / 2 / scale;
@@ -271,7 +271,7 @@ export class View {
     gl.bindVertexArray(null);
   }
 
-  /** The last picture, where the camera sees it now. */
+  /** Draws the last picture at its place under the current camera. */
   private paste(): void {
     const gl = this.gl, t = this.taken, c = this.camera;
     if (!t) return;

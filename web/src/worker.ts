@@ -1,14 +1,14 @@
-// The Worker: meshes, measures, and lays the triangles out for the view.
+// The Worker: meshes, measures, and arranges the triangles for the view.
 import { Mesh, MeshError, Mesher, Settings } from "./mesher";
 
-/** A figure, by the name of a .poly or .node file, and what its mesh is to keep. */
+/** A figure, with the name of a .poly or .node file, and the bounds of its mesh. */
 export interface Job { id: number; name: string; text: string; settings: Settings }
 export type Question =
   | { kind: "start"; module: WebAssembly.Module }
   | { kind: "mesh"; job: Job }
-  | { kind: "write"; id: number; job: Job; name: string }; // the mesh of this job, made again if it is gone
+  | { kind: "write"; id: number; job: Job; name: string }; // writes the mesh of this job, made again if necessary
 
-/** Triangles in chunks that lie together. Positions are relative to each chunk's origin, so that any zoom is exact. */
+/** Triangles in chunks of neighbours. Positions are relative to the origin of the chunk, so any zoom is exact. */
 export interface Layout {
   positions: Float32Array; // [triangles][3][2]
   values: Uint8Array;      // [triangles][3][4]: angle, quality, region, which edges are segments
@@ -32,7 +32,7 @@ const CHUNK = 2048, BINS = 60;
 const say = (answer: Answer, transfer: Transferable[] = []) =>
   (self as unknown as Worker).postMessage(answer, transfer);
 
-/** Edges that are segments, as a set of pairs by open addressing. */
+/** The set of edges that are segments, a hash table with open addressing. */
 function pairSet(segments: Int32Array): (a: number, b: number) => boolean {
   let size = 16;
   while (size < segments.length * 2) size *= 2;
@@ -55,7 +55,7 @@ const spread = (v: number) => {
   return (v | (v << 1)) & 0x55555555;
 };
 
-/** Triangles along a Morton curve, by counting. */
+/** Sorts triangles along a Morton curve by counting sort. */
 function order(p: Float64Array, t: Int32Array, box: number[]): Uint32Array {
   const n = t.length / 3, bits = n > 50000 ? 10 : 7, cells = 1 << bits;
   const scale = cells / (Math.max(box[2]! - box[0]!, box[3]! - box[1]!) * 3 * 1.0001 || 1);
@@ -133,8 +133,8 @@ function measure(mesh: Mesh): Omit<Result, "id" | "ms" | "outline" | "unmet" | "
   };
 }
 
-/** Even-odd figures get hole points: other programs, and ptriangle without even-odd, find the same domain then. Holes
- * are what the triangulation of all that is enclosed has, and that of the domain has not: a point for each face. */
+/** Adds hole points to figures with the even-odd rule, so that other programs find the same domain. The holes are faces
+ * that the triangulation of the whole enclosed area has, but that of the domain does not: one point for each. */
 function withHoles(mesher: Mesher, text: string): string {
   const all = mesher.mesh(), p = all.points.slice(), t = all.triangles.slice(), segments = all.segments.slice();
   const domain = mesher.mesh({ evenOdd: true }).triangles;
@@ -163,7 +163,7 @@ function withHoles(mesher: Mesher, text: string): string {
     [...largest.values()].map(([, x, y], i) => `${i + 1} ${x} ${y}\n`).join(""));
 }
 
-let loading: Promise<Mesher>, meshed = 0; // the job whose mesh is there
+let loading: Promise<Mesher>, meshed = 0; // number of the job whose mesh is in memory
 let last = 0;
 
 function run(mesher: Mesher, { id, name, text, settings }: Job): Result {
