@@ -1,7 +1,7 @@
 #!/bin/sh
-# Tries the recipes of packaging/ as far as this machine can, on an archive of the last commit. Conan and rattler-build
-# come from PyPI. Homebrew and vcpkg cannot be installed from a registry of packages: stand-ins for their functions run
-# the same commands of CMake, and the tests of the formula.
+# Tests the recipes of packaging/ as far as this machine can, on an archive of the last commit. Conan and rattler-build
+# come from PyPI. Homebrew and vcpkg are not available from a package registry. Stubs for their functions run the same
+# CMake commands, and the tests of the formula.
 # Usage: tools/recipes.sh [conan|conda|homebrew|vcpkg ...]     default: all; in build/recipes
 set -eu
 cd "$(dirname "$0")/.."
@@ -14,12 +14,12 @@ mkdir -p "$work"
 git archive --prefix="ptriangle-$version/" -o "$archive" HEAD
 sum=$(sha256sum <"$archive" | cut -d ' ' -f 1)
 
-python() { # python PACKAGE...: a virtual environment that has them
+python() { # python PACKAGE...: makes a virtual environment with these packages
     [ -x "$work/venv/bin/python" ] || python3 -m venv "$work/venv"
     "$work/venv/bin/python" -m pip --disable-pip-version-check -q install "$@" || { echo "recipes: no PyPI"; exit 1; }
 }
 
-with_archive() { # with_archive FILE: names the archive instead of the address of the release
+with_archive() { # with_archive FILE: replaces the address of the release by the archive
     sed -i -e "s|https://ptriangle.invalid/releases/ptriangle-[^\"]*\.tar\.gz|file://$archive|" \
         -e "s|0\{64\}|$sum|" "$1"
 }
@@ -43,7 +43,7 @@ for recipe; do
             grep "ptriangle $version: .* triangles" "$work/conan/log"
         done
         ;;
-    conda) # rendered and judged by rattler-build; to build it needs the channel conda-forge
+    conda) # rendered and checked by rattler-build; a build would need the channel conda-forge
         python py-rattler-build
         "$work/venv/bin/python" - packaging/conda-forge/recipe.yaml <<'END'
 import sys
@@ -66,7 +66,7 @@ END
             -P tests/recipes/vcpkg.cmake >"$work/vcpkg/log" 2>&1 || { tail -n 30 "$work/vcpkg/log"; exit 1; }
         (cd "$work/vcpkg/packages" && find . -type f | sort)
         ;;
-    *) echo "recipes: no trial for $recipe" >&2; exit 2 ;;
+    *) echo "recipes: no test for $recipe" >&2; exit 2 ;;
     esac
 done
-echo "recipes: as they should be"
+echo "recipes: passed"

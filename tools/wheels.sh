@@ -63,7 +63,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_EXE_LINKER_FLAGS_INIT -s)
 set(CMAKE_SHARED_LINKER_FLAGS_INIT -s)
 END
-    # No file is installed whose paths must be changed.
+    # No installed file needs changed paths.
     [ $kernel = Linux ] || echo "set(CMAKE_INSTALL_NAME_TOOL true)" >>"$2/toolchain.cmake"
 }
 

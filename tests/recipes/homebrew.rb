@@ -1,4 +1,4 @@
-# Stand-in for Homebrew: runs install and test of a formula. The source tree is the current folder.
+# Stub for Homebrew: runs install and test of a formula. The source tree is the current folder.
 # Usage: homebrew.rb FORMULA WORK_DIR
 require "fileutils"
 require "pathname"

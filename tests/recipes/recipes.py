@@ -1,5 +1,5 @@
-"""All recipes of packaging/, and all other files that state it, have the version of CMakeLists.txt. Their options are
-options of CMake. The Spack recipe runs as Python, with stand-ins for the functions of Spack. tools/recipes.sh tries the
+"""All recipes of packaging/, and all other files that contain the version, agree with CMakeLists.txt. Their options are
+options of CMake. The Spack recipe runs as Python, with stubs for the functions of Spack. tools/recipes.sh tests the
 recipes themselves.
 
 Usage: recipes.py SOURCE_ROOT
@@ -13,7 +13,7 @@ import types
 
 
 class CMakePackage:
-    """Takes the place of Spack's: notes what is defined."""
+    """Stub for a function of Spack. Records the definitions."""
 
     def __init__(self, on):
         self.spec = types.SimpleNamespace(satisfies=lambda text: on == (text[0] == "+"))
@@ -53,7 +53,7 @@ def check_spack(root, options):
 
 
 def stated_versions(root):
-    """(file, version) for each place that states the version of this tree."""
+    """(file, version) for each file that contains the version of this tree."""
     places = {
         "debian/changelog": r"\Aptriangle \(([^)]+)\)",
         "CITATION.cff": r"^version: (.*)$",
@@ -70,7 +70,7 @@ def stated_versions(root):
         yield from ((file.name, version) for version in found)
     for file in (root / "packaging").rglob("*.*"):
         found = re.findall(r"(?:[vV]ersion\W+|ptriangle-)(\d+\.\d+\.\d+)\b(?!\.\d)", file.read_text())
-        yield from ((file.name, version) for version in found if version != "1.10.0")  # that of winget's manifests
+        yield from ((file.name, version) for version in found if version != "1.10.0")  # the version of winget's manifests
     yield "packaging/vcpkg/vcpkg.json", json.loads((root / "packaging/vcpkg/vcpkg.json").read_text())["version"]
 
 
@@ -85,7 +85,7 @@ def main():
         for name in re.findall(r"(?:-D|\b)(PTRIANGLE_[A-Z0-9_]+)", file.read_text()):
             assert name in options, f"{file.name}: CMake has no option {name}"
     check_spack(root, options)
-    print("recipes: as they should be")
+    print("recipes: passed")
 
 
 main()

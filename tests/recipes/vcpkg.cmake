@@ -1,4 +1,4 @@
-# Stand-in for vcpkg: runs a portfile. The functions do what those of vcpkg do, for one build, Release.
+# Stub for vcpkg: runs a portfile. The functions do the same as vcpkg's, for one Release build.
 # Usage: cmake -DARCHIVE=... -DWORK=... -DVERSION=... -DPORT=FOLDER -P vcpkg.cmake
 cmake_minimum_required(VERSION 3.22)
 set(folder ${PORT})
