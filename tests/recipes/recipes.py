@@ -70,7 +70,7 @@ def stated_versions(root):
         yield from ((file.name, version) for version in found)
     for file in (root / "packaging").rglob("*.*"):
         found = re.findall(r"(?:[vV]ersion\W+|ptriangle-)(\d+\.\d+\.\d+)\b(?!\.\d)", file.read_text())
-        yield from ((file.name, version) for version in found if version != "1.10.0")  # the version of winget's manifests
+        yield from ((file.name, version) for version in found if version != "1.10.0")  # of winget's manifests
     yield "packaging/vcpkg/vcpkg.json", json.loads((root / "packaging/vcpkg/vcpkg.json").read_text())["version"]
 
 
