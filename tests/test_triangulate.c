@@ -869,7 +869,7 @@ static void test_the_reason_for_an_empty_mesh_is_reported(void **state)
 }
 
 /* Segments refer to points at the ends of the range of int, counted from 1. */
-static void test_extreme_indices_are_refused(void **state)
+static void test_segments_with_extreme_indices_are_skipped(void **state)
 {
     (void)state;
     static int ends[] = {1, 2, 2, 3, 3, 4, 4, 1, INT32_MIN, 1, 1, INT32_MAX, 0, 2, 9, 1};
@@ -1460,7 +1460,7 @@ int main(void)
         cmocka_unit_test(test_unusual_input_is_reported),
         cmocka_unit_test(test_negative_counts_mean_none),
         cmocka_unit_test(test_without_vorout_there_is_no_diagram),
-        cmocka_unit_test(test_extreme_indices_are_refused),
+        cmocka_unit_test(test_segments_with_extreme_indices_are_skipped),
         cmocka_unit_test(test_messages_without_options_go_to_stderr),
         cmocka_unit_test(test_the_reason_for_an_empty_mesh_is_reported),
 #ifdef SUPPORT_WRAP
