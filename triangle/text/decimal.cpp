@@ -66,8 +66,8 @@ char *print_unsigned(char *at, uint64_t n)
     return end;
 }
 
-/* libc++ before LLVM 20 has std::from_chars for integers only, and its std::to_chars adds 100 kB of tables. Apple's is a
- * part of macOS, and older versions of macOS lack both functions. */
+/* libc++ before LLVM 20 has std::from_chars for integers only, and its std::to_chars adds 100 kB of tables. Apple's
+ * libc++ is a part of macOS, and older versions of macOS lack both functions. */
 #if defined(_LIBCPP_VERSION) && (_LIBCPP_VERSION < 200000 || defined(__apple_build_version__))
 #define PTRIANGLE_NO_CHARCONV
 #endif
