@@ -250,7 +250,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     memory = memory && par_messages_tell(r, r->lent, message) && par_messages_send(r, r->lent, message);
     par_messages_free(r, message);
     if (bad)
-        return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank asks for what is not here");
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank requests vertices that were not sent to it");
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
@@ -341,7 +341,7 @@ enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, str
         int h = par_owner_at(&r->territory, r->run->mesh->xy[vertices->item[i]]);
         int32_t number = h == r->territory.rank ? 0 : par_map_get(&r->borrowed[h].vertex_at, vertices->item[i]);
         if (number == TRI_NONE)
-            return tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "no rank holds the neighbour of an edge");
         if (h != r->territory.rank && !par_bytes_add(&r->out[h], &number, sizeof number))
             return par_ranks_no_memory(error);
     }

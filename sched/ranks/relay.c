@@ -37,7 +37,7 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     for (size_t at = 0; !status && at < batch->n;) {
         const size_t n = par_tile_unpack(batch->at + at, batch->n - at, relay->n_attributes, &tile);
         if (n == 0)
-            return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no tile");
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank has sent an invalid tile");
         status = relay->to->take(relay->to->user, &tile, error);
         at += n;
     }
