@@ -38,6 +38,7 @@ static int32_t tile_of(const struct handing *h, tri_vertex_id v)
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
 
+/* Returns the last tile that contains one of n vertices, to which their triangle or subsegment belongs. */
 static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 {
     return par_last_tile(h->tiles->partition, h->mesh, v, n);

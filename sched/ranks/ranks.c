@@ -3,7 +3,8 @@
  * ALGORITHM. Before a step of a phase, all ranks agree which rank refines each border block (a block over the tiles of
  * several ranks). This assignment is a shift. The other owners lend the triangles that the block needs. The worker
  * refines the block, requests more ghost layers if a cavity reaches beyond them, and gives back the changed triangles.
- * The last call is a shift of one block, the whole plane.
+ * The last call is a shift of one block, the whole plane. Chernikov and Chrisochoides (ICS 2004, section 3) move strips
+ * between neighbours at the same points.
  *
  * INVARIANT. The invariant of ranks.h holds before and after each shift. */
 #include "sched/ranks/ranks.h"
@@ -101,8 +102,8 @@ static void find_work(struct par_ranks *r, int64_t *word)
 /* Is bit b set? */
 static bool is_in(const int64_t *word, int32_t b) { return (uint64_t)word[b / 64] >> b % 64 & 1; }
 
-/* Completes the shift. word: the border blocks that contain an entry of any rank's worklist. Border blocks without
- * entries need no worker, so each rank has its own part of them. */
+/* Completes the shift. word: the border blocks that contain an entry of any rank's worklist. A border block
+ * without entries needs no worker. */
 static void assign_blocks(struct par_ranks *r, const int64_t *word)
 {
     struct par_shift *s = &r->shift;
@@ -219,7 +220,8 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-/* Collective: the function `more` of struct par_share. Fetches the triangles for which border blocks pause. */
+/* The function `more` of struct par_share: fetches the triangles for which border blocks pause. Collective: ranks
+ * without such blocks take part from serve_others. */
 static enum tri_status fetch_more(void *user, const struct par_ids *asked, struct tri_error *error)
 {
     bool any;
@@ -357,8 +359,8 @@ static enum tri_status fetch_asked(void *user, struct tri_error *error)
     return status;
 }
 
-/* Refines the remaining worklist by one call without fences, as one process does. The worklist is empty on all ranks
- * except the lowest rank that owns a tile, which has borrowed all entries. */
+/* Refines the remaining worklist by one call without fences, as one process does. The lowest rank that owns a
+ * tile does this, since it has borrowed the entries of the others, whose worklists are now empty. */
 static enum tri_status refine_left(struct par_ranks *r, struct tri_error *error)
 {
     struct par_run *run = r->run;
@@ -439,7 +441,7 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
 static enum tri_status take_part(struct par_ranks *r, struct tri_error *error)
 {
     bool again;
-    const char *words = "the ranks have not been given the same figure and settings";
+    const char *words = "the ranks were given different inputs or settings";
     const bool is_of_sizes = par_is_of_sizes(r->run->place.next);
     enum tri_status status = par_expect_same(r->carrier, r->of_run, words, TRI_OK, error);
     status = status ? status : par_take_up(r, &again, error);

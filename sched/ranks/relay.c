@@ -1,4 +1,4 @@
-/* Tiles on their way are bytes (sched/tiles/tile_arrays.h). */
+/* A sink that sends tiles to rank 0. Tiles are sent as bytes in the format of sched/tiles/tile_arrays.h. */
 #include "sched/ranks/relay.h"
 
 #include <stdlib.h>
@@ -6,6 +6,7 @@
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 
+/* Appends a tile to the buffered ones. False: no memory. */
 static bool pack_tile(struct par_relay *relay, const struct tri_tile *tile)
 {
     const size_t n = par_tile_bytes(tile, relay->n_attributes);
