@@ -432,8 +432,8 @@ static int64_t count_triangles(const struct par_ranks *r)
     return n;
 }
 
-/* Rank 0 only: writes the state file and the manifest. told: hash and number of triangles of each rank. done: counters
- * of all ranks. */
+/* Rank 0 only: writes the state file and the manifest. done: counters of all ranks. told: hash and number of triangles
+ * of each rank. */
 static enum tri_status write_state(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
                                    struct tri_error *error)
 {

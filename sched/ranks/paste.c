@@ -222,7 +222,7 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
     return v;
 }
 
-/* False: no memory. */
+/* Adds the message's vertices to the talk, and those that this rank does not hold to the mesh. False: no memory. */
 static bool paste_vertices(struct pasting *p)
 {
     bool memory = true;
@@ -265,7 +265,7 @@ static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle 
     return t;
 }
 
-/* False: no memory. */
+/* Adds the message's triangles to the talk, and those that this rank does not hold to the mesh. False: no memory. */
 static bool paste_triangles(struct pasting *p)
 {
     bool memory = true;

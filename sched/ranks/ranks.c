@@ -4,7 +4,7 @@
  * several ranks). This assignment is a shift. The other owners lend the triangles that the block needs. The worker
  * refines the block, requests more ghost layers if a cavity reaches beyond them, and gives back the changed triangles.
  * The last call is a shift of one block, the whole plane. Chernikov and Chrisochoides (ICS 2004, section 3) move strips
- * between neighbours at the same points.
+ * between neighbours at the same points of the schedule.
  *
  * INVARIANT. The invariant of ranks.h holds before and after each shift. */
 #include "sched/ranks/ranks.h"
@@ -335,7 +335,7 @@ struct last_call {
     bool lost;               /* out of memory in a callback: a list is incomplete */
 };
 
-/* Callbacks of struct tri_part. */
+/* Callbacks of struct tri_part, for the last call. */
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct last_call *call = user;

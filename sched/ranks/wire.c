@@ -1,5 +1,6 @@
 /* The encoding of messages. Integers are encoded with seven bits in each byte, lowest bits first. The same functions
- * write and read a message, so both directions have the same format. No function is collective. */
+ * write and read a message: to code a number means to write it, or to read it if the coder has no output. No function
+ * is collective. */
 #include "sched/ranks/talk.h"
 
 #include <assert.h>
@@ -17,7 +18,7 @@ struct coder {
     bool failed;                       /* writing: no memory; reading: the message is invalid */
     const struct tri_mesh *mesh;       /* its counts of regions and segments limit the valid numbers */
     int32_t n_common;                  /* vertices of the coarse mesh */
-    int32_t vertices, triangles, subs; /* shared numbers used by earlier messages: the first new ones */
+    int32_t vertices, triangles, subs; /* first new shared numbers; earlier messages used the lower ones */
 };
 
 /* --- numbers */
@@ -56,7 +57,7 @@ static uint64_t get_number(struct coder *c)
     return 0;
 }
 
-/* Writes *n, or reads it. So do the following functions. */
+/* Codes any number. */
 static void code(struct coder *c, uint64_t *n)
 {
     if (c->to)
@@ -157,7 +158,7 @@ enum { COMMON, FREE, OTHER, KINDS };
  * so only the differing bits (XOR) are coded, without leading bytes of zeros. */
 enum { REALS = 3, LENGTHS = sizeof(uint64_t) + 1 }; /* a length is 0 to 8 bytes */
 struct reals {
-    uint64_t bits[REALS]; /* as in memory */
+    uint64_t bits[REALS]; /* the bit patterns of the doubles */
 };
 
 /* Returns the length of a word without leading bytes of zeros. */
@@ -240,7 +241,7 @@ static int parent_of(const struct par_told_triangle *t, int32_t first)
     return e;
 }
 
-/* Returns the flags of triangle i. top: the number of the next new vertex. region: that of the previous triangle. */
+/* Returns the flags of triangle i. top: the number of the next new vertex. region: the region of triangle i - 1. */
 static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, int32_t top, int32_t region)
 {
     const struct par_told_triangle *t = &m->triangle[i];
@@ -257,7 +258,7 @@ static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, 
     return (uint64_t)flags;
 }
 
-/* number: that of triangle t. */
+/* Codes the neighbours of t. number: the shared number of t. */
 static void code_links(struct coder *c, struct par_told_triangle *t, int32_t number, int flags)
 {
     bool last_is_parent = flags & LAST_IS_PARENT;
@@ -272,7 +273,8 @@ static void code_links(struct coder *c, struct par_told_triangle *t, int32_t num
     }
 }
 
-/* *top: the number of the next new vertex. New vertices are numbered in the order in which triangles mention them. */
+/* Codes the corners of t. *top: the number of the next new vertex. New vertices are numbered in the order in which the
+ * triangles mention them. */
 static void code_corners(struct coder *c, struct par_message *m, struct par_told_triangle *t, int flags, int32_t *top)
 {
     int parent = parent_of(t, c->triangles), edge = flags / PARENT_EDGE % 4;
