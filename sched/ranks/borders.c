@@ -25,11 +25,12 @@ static bool tell_of(struct par_talk *talk, tri_triangle_id t)
 /* The sending of ghost layers to rank w. A layer is a list of own vertices, all triangles around which are sent. Each
  * vertex is given as a corner: a triangle and one of its corners, encoded like a half-edge. */
 struct telling {
-    const struct par_ranks *ranks;
-    int w;
-    int32_t layers;
+    const struct par_ranks *ranks; /* this rank */
+    int w;                         /* the rank that receives the layers */
+    int32_t layers;                /* number of layers to send */
 };
 
+/* Returns the vertex at a corner. */
 static tri_vertex_id vertex_at(const struct tri_mesh *mesh, tri_halfedge corner)
 {
     return mesh->tri[tri_of(corner)].v[tri_edge(corner)];
@@ -47,6 +48,7 @@ static bool join_layer(const struct telling *telling, struct par_ids *layer, tri
     return par_map_put(surrounded, v, telling->layers) && par_ids_add(layer, corner);
 }
 
+/* Adds the corners of t to a layer, as join_layer does. False: no memory. */
 static bool join_corners(const struct telling *telling, struct par_ids *layer, tri_triangle_id t)
 {
     assert(tri_is_live(&telling->ranks->run->mesh->tri[t]));
@@ -64,7 +66,7 @@ static tri_halfedge turn_corner(const struct tri_mesh *mesh, tri_halfedge corner
     return across < 0 ? TRI_NONE : tri_code(tri_of(across), ahead[tri_edge(across)]);
 }
 
-/* Sends all triangles around an own vertex. Their corners join the next layer. */
+/* Sends all triangles around an own vertex and adds their corners to the next layer. False: no memory. */
 static bool tell_around(const struct telling *telling, tri_halfedge corner, struct par_ids *next)
 {
     const struct par_ranks *r = telling->ranks;
@@ -84,7 +86,7 @@ static bool tell_around(const struct telling *telling, tri_halfedge corner, stru
     return memory;
 }
 
-/* Sends layer after layer, starting with the given one, which is freed. */
+/* Sends layer after layer, starting with the given one, which is freed. False: no memory. */
 static bool tell_layers(const struct telling *telling, struct par_ids *layer)
 {
     const struct par_ranks *r = telling->ranks;
@@ -122,6 +124,7 @@ static int taker_of(const struct par_ranks *r, int32_t i)
     return block != TRI_NONE ? r->shift.worker[block] : -1;
 }
 
+/* Sends the ghost layers around all worklist entries in blocks of other ranks. False: no memory. */
 static bool tell_surroundings(const struct par_ranks *r)
 {
     struct par_ids *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
@@ -138,7 +141,8 @@ static bool tell_surroundings(const struct par_ranks *r)
     return memory;
 }
 
-/* The borrower may have the same entry already. It detects duplicates by their equal keys. */
+/* Moves the entries in blocks of other ranks from the worklist to the messages. The borrower may already have an entry;
+ * it detects duplicates by their equal keys. False: no memory. */
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_run *run = r->run;
@@ -169,6 +173,7 @@ enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
 
 /* --- requests for more layers */
 
+/* Is a received request invalid, because it contains other numbers than those of vertices in the talk? */
 static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *talk)
 {
     const int32_t *number = (const int32_t *)(const void *)bytes->at;
@@ -181,10 +186,11 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
 /* A request for all triangles around a vertex. The vertex is given as a corner of a triangle that was sent. `layers` is
  * the largest number of layers that were sent at once around one of its neighbours. */
 struct request {
-    tri_halfedge corner;
-    int32_t layers;
+    tri_halfedge corner; /* TRI_NONE: not found yet */
+    int32_t layers;      /* 0: none of the neighbours has a layer around it */
 };
 
+/* Updates a request for the vertex at a corner with the triangle of this corner. */
 static void look_at(struct request *request, const struct par_talk *talk, const struct tri_mesh *mesh,
                     tri_halfedge corner)
 {
@@ -250,12 +256,13 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     memory = memory && par_messages_tell(r, r->lent, message) && par_messages_send(r, r->lent, message);
     par_messages_free(r, message);
     if (bad)
-        return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank asks for what is not here");
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank requests vertices that were not sent to it");
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }
 
 /* --- receiving changes to lent triangles */
 
+/* Removes the triangles and subsegments that a message lists as deleted. False: no memory. */
 static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct par_message *message)
 {
     bool memory = true;
@@ -272,6 +279,7 @@ static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct
     return memory;
 }
 
+/* Does the subsegment exist, without a triangle on either side? */
 static bool is_left_alone(const struct tri_subsegment *s) { return s->v[0] != TRI_NONE && par_is_lone(s); }
 
 /* Removes subsegments beside which other ranks have made triangles that only they hold. */
@@ -284,6 +292,7 @@ static bool remove_lone_subs(struct par_ranks *r, const struct par_talk *talk)
     return memory;
 }
 
+/* Applies the changes that rank w has made. */
 static enum tri_status take_back_from(struct par_ranks *r, int w, struct tri_error *error)
 {
     struct par_talk *talk = &r->lent[w];
@@ -341,7 +350,7 @@ enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, str
         int h = par_owner_at(&r->territory, r->run->mesh->xy[vertices->item[i]]);
         int32_t number = h == r->territory.rank ? 0 : par_map_get(&r->borrowed[h].vertex_at, vertices->item[i]);
         if (number == TRI_NONE)
-            return tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "no rank holds the neighbour of an edge");
         if (h != r->territory.rank && !par_bytes_add(&r->out[h], &number, sizeof number))
             return par_ranks_no_memory(error);
     }
@@ -401,7 +410,8 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
     return n;
 }
 
-/* Triangles are accessed in list order, but their vertices are scattered in memory, so these are prefetched. */
+/* Adds the live triangles of the list to the talks with the owners of their corners. The vertices are scattered in
+ * memory, so they are prefetched. False: no memory. */
 static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
     const struct tri_mesh *mesh = r->run->mesh;
@@ -468,6 +478,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
+/* Fills the messages to all lenders. changed: the live triangles that were made; set: those and erased ones. */
 static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     struct par_message *message = par_messages_begin(r, r->borrowed);
@@ -482,6 +493,7 @@ static bool give_all(struct par_ranks *r, const struct par_ids *changed, const s
 
 /* --- dropping */
 
+/* Sets or clears the bit of v. */
 static void mark_vertex(uint64_t *word, tri_vertex_id v, bool on)
 {
     uint64_t bit = (uint64_t)1 << v % 64;
@@ -506,6 +518,7 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
     return memory;
 }
 
+/* Removes the link of a subsegment to a dropped triangle, and the subsegment if it has no other. False: no memory. */
 static bool leave_sub(struct par_run *run, tri_sub_id s, tri_halfedge code)
 {
     struct tri_subsegment *sub = &run->mesh->sub[s];
@@ -566,6 +579,7 @@ static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, 
     return memory;
 }
 
+/* Drops all borrowed and changed triangles without an own corner, with their vertices. False: no memory. */
 static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     uint64_t *word = calloc((size_t)r->run->mesh->n_vertices / 64 + 1, sizeof *word);

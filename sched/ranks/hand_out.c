@@ -1,6 +1,13 @@
-/* Tiles of a mesh that lies on several ranks. Each counts what it will number, so that all know where they begin;
- * numbers the vertices of its tiles; tells later ranks the numbers of those that their triangles have, too, found again
- * by their places; and hands out its own tiles, as one process would. */
+/* Hands out the tiles of a mesh that is distributed over ranks, in four steps:
+ *
+ * 1. Each rank counts the vertices, triangles and segments of its tiles. The sums over the lower ranks are the first
+ *    numbers of each rank.
+ * 2. Each rank numbers the vertices of its tiles.
+ * 3. A triangle belongs to the last tile of its corners, so its other corners may belong to lower ranks. These ranks
+ *    send the numbers of such vertices. The receiver finds the vertices by their coordinates.
+ * 4. Each rank hands out its own tiles, with the same content as in a run with one process.
+ *
+ * Functions are not collective unless their comment says so. */
 #include "sched/ranks/ranks.h"
 #include "sched/tiles/park.h"
 #include "sched/tunables.h"
@@ -8,21 +15,22 @@
 #include <assert.h>
 #include <stdlib.h>
 
-struct numbered_place {
-    struct tri_point at;
-    int64_t number;
+struct numbered_place { /* a vertex in messages between ranks */
+    struct tri_point at; /* its coordinates */
+    int64_t number;      /* its number in the output */
 };
 
 struct handing {
-    struct par_ranks *ranks;
-    struct par_tiles *tiles;
-    struct tri_mesh *mesh;
-    int32_t first_tile, end_tile;  /* the own tiles, as blocks */
-    int32_t first, end;            /* the columns of tiles that have some of them */
-    struct par_column **column;    /* [end - first] */
-    struct par_map *told;          /* [n_ranks] vertices that a rank has been told of */
+    struct par_ranks *ranks;       /* this rank */
+    struct par_tiles *tiles;       /* the stream of its tiles */
+    struct tri_mesh *mesh;         /* its part of the mesh */
+    int32_t first_tile, end_tile;  /* its tiles, as blocks of phase 0: from first_tile to before end_tile */
+    int32_t first, end;            /* columns of tiles with at least one of its tiles: first .. end - 1 */
+    struct par_column **column;    /* [end - first] numbered columns; NULL: not numbered yet, or handed out */
+    struct par_map *told;          /* [n_ranks] ids of the vertices whose numbers were added to the message to a rank */
 };
 
+/* Returns the tile that contains v, as a block of phase 0. */
 static int32_t tile_of(const struct handing *h, tri_vertex_id v)
 {
     return par_block_at(h->tiles->partition, 0, h->mesh->xy[v]);
@@ -30,6 +38,7 @@ static int32_t tile_of(const struct handing *h, tri_vertex_id v)
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
 
+/* Returns the last tile that contains one of n vertices, to which their triangle or subsegment belongs. */
 static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 {
     return par_last_tile(h->tiles->partition, h->mesh, v, n);
@@ -37,7 +46,8 @@ static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 
 /* --- counting */
 
-/* All triangles but the straddlers that belong to later tiles. */
+/* Returns the number of triangles that this rank hands out: all that it holds, except straddlers that belong to tiles
+ * of other ranks. */
 static int64_t count_triangles(const struct handing *h)
 {
     const struct par_ranks *r = h->ranks;
@@ -48,7 +58,9 @@ static int64_t count_triangles(const struct handing *h)
     return n;
 }
 
-/* Whoever erased a vertex of the coarse mesh told only of triangles: where none has it, it is no more. */
+/* Marks vertices of the coarse mesh as free if they are a corner of no triangle that this rank holds: they have been
+ * erased, or lie in tiles of other ranks. A rank that erases a vertex sends only the changed triangles, so the other
+ * ranks find out here. Coarse vertices are those with a negative length. */
 static void find_erased(struct tri_mesh *mesh)
 {
     for (tri_triangle_id t = 0; mesh->has_lengths && t < mesh->n_triangles; t++)
@@ -59,8 +71,8 @@ static void find_erased(struct tri_mesh *mesh)
             mesh->on[v] = TRI_VERTEX_NONE;
 }
 
-/* What belongs to tiles of others is not there, as far as the own ones are concerned; returns how many new vertices
- * there are. */
+/* Marks vertices in tiles of other ranks as free, so that this rank does not number them. Returns the number of new
+ * vertices in this rank's tiles. */
 static int64_t count_vertices(struct handing *h)
 {
     struct tri_mesh *mesh = h->mesh;
@@ -78,6 +90,7 @@ static int64_t count_vertices(struct handing *h)
     return n;
 }
 
+/* Marks subsegments that belong to tiles of other ranks as free. Returns the number of the remaining ones. */
 static int64_t count_subs(struct handing *h)
 {
     int64_t n = 0;
@@ -90,8 +103,9 @@ static int64_t count_subs(struct handing *h)
     return n;
 }
 
-/* --- numbers for others */
+/* --- exchange of vertex numbers */
 
+/* Adds a vertex and its number to the message to rank p, unless the message contains it. False: no memory. */
 static bool tell_number(struct handing *h, tri_vertex_id v, int p)
 {
     const struct numbered_place place = {h->mesh->xy[v], h->tiles->number[v]};
@@ -101,7 +115,8 @@ static bool tell_number(struct handing *h, tri_vertex_id v, int p)
     return par_map_put(&h->told[p], v, 0) && par_bytes_add(&h->ranks->out[p], &place, sizeof place);
 }
 
-/* Of a straddler's own new vertices to a rank that has it, too, and comes later. */
+/* Adds those corners v of a straddler that are new vertices in this rank's tiles to the message to rank p, which is
+ * higher and also holds the straddler. False: no memory. */
 static bool tell_numbers(struct handing *h, const tri_vertex_id v[3], int p)
 {
     bool memory = true;
@@ -111,6 +126,7 @@ static bool tell_numbers(struct handing *h, const tri_vertex_id v[3], int p)
     return memory;
 }
 
+/* Fills out[p] for all higher ranks p. False: no memory. */
 static bool tell_all(struct handing *h)
 {
     const struct par_ranks *r = h->ranks;
@@ -126,12 +142,13 @@ static bool tell_all(struct handing *h)
 
 static int compare_places(const void *left, const void *right)
 {
-    const struct tri_point *a = left, *b = right; /* a struct numbered_place begins with its place */
+    const struct tri_point *a = left, *b = right; /* the first member of a struct numbered_place is a point */
     if (a->x != b->x)
         return a->x < b->x ? -1 : 1;
     return (a->y > b->y) - (a->y < b->y);
 }
 
+/* Is a received message a list of valid vertex numbers? */
 static bool are_numbers(const struct handing *h, const struct par_bytes *told)
 {
     const struct numbered_place *place = (const struct numbered_place *)(const void *)told->at;
@@ -142,7 +159,7 @@ static bool are_numbers(const struct handing *h, const struct par_bytes *told)
     return good;
 }
 
-/* The vertices of own triangles that lie in earlier tiles of others learn their numbers. */
+/* Stores received numbers for those corners of straddlers that lie in tiles of other ranks. Sorts the message. */
 static void take_numbers(struct handing *h, struct par_bytes *told)
 {
     const struct par_ids *straddlers = &h->ranks->straddlers;
@@ -162,6 +179,8 @@ static void take_numbers(struct handing *h, struct par_bytes *told)
         }
 }
 
+/* Collective: sends the numbers of this rank's vertices to higher ranks and stores the numbers that lower ranks send.
+ * */
 static enum tri_status exchange_numbers(struct handing *h, enum tri_status status, struct tri_error *error)
 {
     struct par_ranks *r = h->ranks;
@@ -172,7 +191,7 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
         if (!status && are_numbers(h, &r->in[p]))
             take_numbers(h, &r->in[p]);
         else if (!status)
-            status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank tells of vertices that do not exist");
+            status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank has sent invalid vertex numbers");
     }
     par_bytes_free(r->in, r->carrier->n_ranks);
     return status;
@@ -180,6 +199,7 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
 
 /* --- handing out */
 
+/* Numbers the vertices of this rank's tiles, starting with base[0]. */
 static enum tri_status number_columns(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -189,6 +209,7 @@ static enum tri_status number_columns(struct handing *h, const int64_t base[3], 
     return status;
 }
 
+/* Passes this rank's tiles to its sink. base[1], base[2]: the first numbers of its triangles and segments. */
 static enum tri_status hand_out_columns(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     struct par_tiles *tiles = h->tiles;
@@ -203,6 +224,8 @@ static enum tri_status hand_out_columns(struct handing *h, const int64_t base[3]
     return status ? status : par_tiles_end(tiles, error);
 }
 
+/* Initialises the struct, marks unused ids and counts: count[] receives the numbers of vertices, triangles and segments
+ * in this rank's tiles. */
 static enum tri_status prepare_tiles(struct handing *h, int64_t count[3], struct tri_error *error)
 {
     const struct par_territory *territory = &h->ranks->territory;
@@ -216,7 +239,7 @@ static enum tri_status prepare_tiles(struct handing *h, int64_t count[3], struct
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
     const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles) +
-                         PAR_SINK_BYTES; /* a sink makes its buffers when it begins, which is only now */
+                         PAR_SINK_BYTES; /* the sink allocates its buffers when it begins, which is later than this */
     enum tri_status status = par_park_expect(h->ranks->run->park, h->mesh, bytes, error);
     if (status)
         return status;
@@ -239,7 +262,8 @@ static void clean_up(struct handing *h)
     free(h->told);
 }
 
-/* Where each rank's numbers begin: *first receives three lists of n_ranks + 1. Collective. */
+/* Collective: computes the first numbers of each rank from the counts of all ranks. *first receives three arrays of
+ * n_ranks + 1 numbers, for vertices, triangles and segments; the caller frees it, also after an error. */
 static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
                               int64_t **first, enum tri_status status, struct tri_error *error)
 {
@@ -258,6 +282,7 @@ static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const
     return status;
 }
 
+/* Passes the arrays that sum_up has made to the stream. They are borrowed. */
 static void tell_first(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
 {
     tiles->ranks.n = carrier->n_ranks;
@@ -301,7 +326,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     for (int k = 0; !status && k < 3; k++)
         base[k] = tiles->ranks.first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_columns(&h, base, error);
-    assert(status || tiles->n_vertices == tiles->ranks.first[0][rank + 1]); /* as many as have been counted */
+    assert(status || tiles->n_vertices == tiles->ranks.first[0][rank + 1]); /* equals the count */
     status = exchange_numbers(&h, status, error);
     if (!status)
         status = hand_out_columns(&h, base, error);

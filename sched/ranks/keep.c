@@ -1,14 +1,14 @@
-/* Checkpoints of a run on ranks, between two steps: each rank writes what it owns, rank 0 how far all are; then the
- * manifest. Ranks of another number can go on with it.
+/* Checkpoints of a run on ranks, written between two steps. Each rank writes a file with its own part. Then rank 0
+ * writes the position of the run and, last, the manifest. A run on any number of ranks can resume from it.
  *
- * For each of its tiles a rank writes all triangles with a corner there, and their entries of the worklist, as one
- * message (talk.h). Whoever owns a tile afterwards pastes that as if it had borrowed it.
+ * A rank writes one piece for each of its tiles: all triangles with a corner in the tile, and their worklist entries,
+ * as a message (talk.h). A rank that resumes pastes the pieces of its tiles as if it had borrowed the triangles.
  *
- * THEOREM. Then it has what the invariant of ranks.h asks for, whoever wrote what. Its triangles are those with a
- * corner in its tiles, which is what the pieces of these tiles tell of; those that several tell of are known by their
- * corners. Two triangles with a common edge know of each other, and of the subsegment there, if an end of the edge lies
- * in one of its tiles, since both are in the piece of that. Across other edges nobody looks here: a block that may
- * change one of the two has both ends in its box, and asks the owners of these. */
+ * THEOREM. The invariant of ranks.h then holds for the new rank. It holds the triangles with a corner in its tiles: all
+ * of them are in the pieces. A triangle in several pieces is recognised by its corners. Consider an edge of two such
+ * triangles. If an end lies in a tile of the rank, both triangles and the subsegment on the edge are in its piece, so
+ * the links are set. Other edges have no link, and need none: a block that may change one of the two triangles
+ * contains both ends of the edge, and its rank borrows the triangles around them from their owners. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,20 +19,23 @@
 #include "triangle/base/hash.h"
 #include "triangle/base/system.h"
 
-static const uint64_t PIECES = UINT64_C(0x3273656365697074); /* a version as well */
+static const uint64_t PIECES = UINT64_C(0x3273656365697074); /* identifies the file type and its version */
 
+/* The head of a rank's file. It is followed by n_tiles + 1 offsets in bytes (the beginning of each piece, and the end
+ * of the last one) and by the pieces. */
 struct head {
-    uint64_t word, run;
-    int64_t first_tile, n_tiles; /* an offset for each, and the end, follow: then what is told of each */
+    uint64_t word, run;          /* PIECES; hash of input and settings */
+    int64_t first_tile, n_tiles; /* the tiles of the rank that wrote the file */
 };
 
-/* --- pieces: what belongs to which tile */
+/* --- sorting triangles by tiles */
 
 struct sorting {
-    const struct par_ranks *ranks;
-    int32_t n_tiles;
-    int32_t *tile_of; /* [n_vertices] own tiles, from 0; TRI_NONE: of others, or no vertex */
-    struct par_ids (*lists)[2]; /* [n_tiles] triangles, and entries of the worklist */
+    const struct par_ranks *ranks; /* this rank */
+    int32_t n_tiles;            /* tiles that it owns */
+    int32_t *tile_of;           /* [n_vertices] own tile of each vertex, from 0; TRI_NONE: tile of another rank, or
+                                   unused id */
+    struct par_ids (*lists)[2]; /* [n_tiles] triangles of each tile; indices of its worklist entries */
 };
 
 static void find_tiles(struct sorting *s)
@@ -44,7 +47,7 @@ static void find_tiles(struct sorting *s)
                             ? par_tile_at(territory, mesh->xy[v]) - territory->start[territory->rank] : TRI_NONE;
 }
 
-/* The own tiles that have a corner of a triangle, each once; returns how many. */
+/* Lists the own tiles that contain a corner of t, each once. Returns their number; 0 if t is deleted. */
 static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
 {
     const struct tri_triangle *triangle = &s->ranks->run->mesh->tri[t];
@@ -57,7 +60,7 @@ static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
     return n;
 }
 
-/* Into the lists of the triangle's tiles. */
+/* Adds an item that belongs to triangle t to list `which` of each tile of t. False: no memory. */
 static bool add_to_tiles(const struct sorting *s, int which, int32_t item, tri_triangle_id t)
 {
     int32_t tile[3];
@@ -77,6 +80,7 @@ static void free_sorting(struct sorting *s)
     free(s->lists);
 }
 
+/* Lists the triangles and the worklist entries of each tile. False: no memory. */
 static bool sort_all(struct sorting *s, const struct par_ranks *r)
 {
     const struct par_territory *territory = &r->territory;
@@ -95,10 +99,11 @@ static bool sort_all(struct sorting *s, const struct par_ranks *r)
     return memory;
 }
 
-/* --- pieces are written */
+/* --- writing pieces */
 
-/* Subsegments without an end in the tile are told of with the tiles of their ends: else two halves of one might come
- * back as two. */
+/* Removes subsegments without an end in the tile from the message. They are in the pieces of the tiles of their ends.
+ * If they were in this piece as well, the two sides of one subsegment might be read as two subsegments. fresh: room for
+ * m->n_new_subs new numbers. */
 static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_message *m, struct par_talk *talk,
                             int32_t *fresh)
 {
@@ -119,6 +124,7 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
     m->n_new_subs = talk->sub.n = n_subs;
 }
 
+/* Fills the message with the triangles, subsegments and worklist entries of a tile. False: no memory. */
 static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
     const struct par_run *run = s->ranks->run;
@@ -139,6 +145,7 @@ static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *t
     return fresh;
 }
 
+/* Encodes the piece of a tile; replaces the contents of `bytes`. False: no memory. */
 static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *bytes)
 {
     struct par_talk talk = {0};
@@ -156,7 +163,8 @@ static enum tri_status cannot_write(const char *path, struct tri_error *error)
     return tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot write", errno);
 }
 
-/* Pieces one after the other, then their offsets, then the head. */
+/* Writes the pieces one after the other, then their offsets and the head in front of them. offset: receives the
+ * n_tiles + 1 offsets. */
 static enum tri_status write_pieces(const struct sorting *s, tri_file file, const char *path, struct head head,
                                  int64_t *offset, struct tri_error *error)
 {
@@ -177,6 +185,7 @@ static enum tri_status write_pieces(const struct sorting *s, tri_file file, cons
     return status;
 }
 
+/* Writes a whole file. *hash receives the hash of head and offsets; each piece contains its own hash. */
 static enum tri_status write_file(const struct sorting *s, tri_file file, const char *path, uint64_t *hash,
                                   struct tri_error *error)
 {
@@ -192,7 +201,8 @@ static enum tri_status write_file(const struct sorting *s, tri_file file, const 
     return status;
 }
 
-/* Writes what this rank owns to its file, on the disk; *hash of that. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+/* Writes this rank's file for state `which` and syncs it to the disk. *hash: as in write_file. Not collective.
+ * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 static enum tri_status write_piece_file(const struct par_ranks *r, int64_t which, uint64_t *hash,
                                         struct tri_error *error)
 {
@@ -212,14 +222,14 @@ static enum tri_status write_piece_file(const struct par_ranks *r, int64_t which
     return status;
 }
 
-/* --- pieces are read */
+/* --- reading pieces */
 
 static enum tri_status damaged(const char *path, struct tri_error *error)
 {
     return tri_fail(error, TRI_BAD_INPUT, path, 0, "is damaged, or not of this checkpoint");
 }
 
-/* The file's offsets, malloc'ed; NULL: it is not what was written. */
+/* Returns the file's offsets, to be freed by the caller. NULL: the head or the hash is wrong, or no memory. */
 static int64_t *read_offsets(tri_file file, int32_t first, int32_t n_tiles, uint64_t run, uint64_t hash)
 {
     const struct head wanted = {PIECES, run, first, n_tiles};
@@ -233,6 +243,7 @@ static int64_t *read_offsets(tri_file file, int32_t first, int32_t n_tiles, uint
     return NULL;
 }
 
+/* Pastes the piece between two offsets into this rank's mesh. */
 static enum tri_status read_piece(struct par_ranks *r, tri_file file, const char *path, const int64_t offset[2],
                                   struct tri_error *error)
 {
@@ -251,16 +262,16 @@ static enum tri_status read_piece(struct par_ranks *r, tri_file file, const char
     return status == TRI_INTERNAL ? damaged(path, error) : status;
 }
 
-/* Of the two states of a checkpoint this one's file of one rank. */
+/* A file of one rank in a checkpoint. */
 struct piece_file {
-    int64_t which;
-    int writer;
+    int64_t which;      /* number of the state: 0 or 1 */
+    int writer;         /* rank that wrote the file */
     int32_t first, end; /* its tiles: first .. end - 1 */
-    uint64_t hash;      /* as it was told when the file was written */
+    uint64_t hash;      /* as in struct writer */
 };
 
-/* Pastes the pieces of those tiles in a file that this rank owns now. TRI_BAD_INPUT: they are not what was written,
- * TRI_NO_MEMORY. */
+/* Pastes the pieces of those tiles in a file that this rank owns now. Not collective. TRI_BAD_INPUT: the file is
+ * missing or damaged. TRI_NO_MEMORY. */
 static enum tri_status read_piece_file(struct par_ranks *r, const struct piece_file *of, struct tri_error *error)
 {
     const int32_t *start = r->territory.start, rank = r->carrier->rank;
@@ -282,26 +293,27 @@ static enum tri_status read_piece_file(struct par_ranks *r, const struct piece_f
     return status;
 }
 
-/* --- the state of all */
+/* --- the state file */
 
-/* What a rank has written. */
+/* A rank that wrote a file of pieces. */
 struct writer {
-    int64_t end;   /* its tiles begin where those of the rank before it end */
-    uint64_t hash; /* of its file */
+    int64_t end;   /* the tile after its last one: the first tile of the next rank */
+    uint64_t hash; /* hash of head and offsets of its file */
 };
 
-/* The state's file. */
+/* The contents of the state file, which rank 0 writes. */
 struct kept {
     int32_t next, round, phase, step; /* as in struct par_position */
-    int64_t left_over;
-    int64_t rounds; /* that are over, of both schedules */
-    int64_t done[PAR_DONE];
-    int64_t n_ranks;
+    int64_t left_over;      /* counted since par_ranks_begin, as in the report */
+    int64_t rounds;         /* completed rounds of both schedules since par_ranks_begin */
+    int64_t done[PAR_DONE]; /* sums of the counters of all ranks */
+    int64_t n_ranks;        /* ranks that wrote the checkpoint */
     struct writer writer[]; /* [n_ranks] */
 };
 
 static size_t size_of(int64_t n_ranks) { return sizeof(struct kept) + (size_t)n_ranks * sizeof(struct writer); }
 
+/* Writes or reads the state file; user: a struct kept with n_ranks set. */
 static enum tri_status carry_kept(struct par_state_file *file, void *user, struct tri_error *error)
 {
     struct kept *kept = user;
@@ -310,9 +322,9 @@ static enum tri_status carry_kept(struct par_state_file *file, void *user, struc
     return TRI_OK;
 }
 
-/* --- going on */
+/* --- resuming */
 
-/* The mesh is empty but for the vertices that all ranks have: what follows tells of all others. */
+/* Empties the mesh, except for the coarse vertices, which all ranks hold. The pieces contain everything else. */
 static void forget_all(struct par_run *run, int32_t n_common)
 {
     run->mesh->n_vertices = n_common;
@@ -321,6 +333,7 @@ static void forget_all(struct par_run *run, int32_t n_common)
     par_room_free(&run->spare);
 }
 
+/* Lists the straddlers of a mesh without deleted triangles. False: no memory. */
 static bool find_straddlers(struct par_ranks *r)
 {
     bool memory = true;
@@ -329,6 +342,8 @@ static bool find_straddlers(struct par_ranks *r)
     return memory;
 }
 
+/* Replaces this rank's mesh and worklist by the pieces of its tiles, from all files that contain one. Not collective.
+ * */
 static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct writer *writer,
                                    struct tri_error *error)
 {
@@ -344,7 +359,7 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
 
-/* Rank 0 counts what has been done for all. */
+/* Restores position and report. The counters of all ranks are added to the report of rank 0. */
 static void go_on_from(struct par_ranks *r, const struct kept *c)
 {
     r->run->place.next = (enum par_next)c->next;
@@ -357,6 +372,7 @@ static void go_on_from(struct par_ranks *r, const struct kept *c)
         par_add_done(r, c->done);
 }
 
+/* Collective: rank 0 reads the state file and sends it to the others; then each rank reads the pieces of its tiles. */
 static enum tri_status read_all(struct par_ranks *r, const struct par_manifest *m, struct tri_error *error)
 {
     struct kept *kept = calloc(1, size_of(m->n_ranks));
@@ -373,7 +389,7 @@ static enum tri_status read_all(struct par_ranks *r, const struct par_manifest *
     return status;
 }
 
-/* Rank 0 has read it. */
+/* Collective: rank 0 checks that the checkpoint belongs to this run. *m receives the manifest of rank 0. */
 static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct tri_error *error)
 {
     struct par_checkpoint *c = r->run->asked.options->checkpoint;
@@ -399,13 +415,14 @@ enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *
     if (status || m.state_bytes == 0)
         return status;
     *again = true;
-    r->run->mesh->stop = NULL; /* there is something to lose */
+    r->run->mesh->stop = NULL; /* from now on par_keep stops the run, after a checkpoint */
     return read_all(r, &m, error);
 }
 
-/* --- keeping */
+/* --- writing checkpoints */
 
-/* Those whose first corner is an own one: of all ranks together each once. */
+/* Returns the number of triangles whose first corner is in this rank's tiles, so that the sum over all ranks counts
+ * each triangle once. */
 static int64_t count_triangles(const struct par_ranks *r)
 {
     const struct tri_mesh *mesh = r->run->mesh;
@@ -415,7 +432,8 @@ static int64_t count_triangles(const struct par_ranks *r)
     return n;
 }
 
-/* Rank 0: what all have told of themselves becomes the state, and counts. */
+/* Rank 0 only: writes the state file and the manifest. done: counters of all ranks. told: hash and number of triangles
+ * of each rank. */
 static enum tri_status write_state(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
                                    struct tri_error *error)
 {
@@ -439,7 +457,8 @@ static enum tri_status write_state(struct par_ranks *r, const int64_t *told, con
     return status;
 }
 
-/* The manifest, which rank 0 has, says which files are free. */
+/* Collective: rank 0 sends the number of the next state, which only its manifest determines; then each rank writes its
+ * file. told: receives the hash and the number of triangles of this rank. */
 static enum tri_status write_own(struct par_ranks *r, int64_t told[2], struct tri_error *error)
 {
     uint64_t hash = 0;
@@ -451,6 +470,7 @@ static enum tri_status write_own(struct par_ranks *r, int64_t told[2], struct tr
     return status;
 }
 
+/* Collective: writes a checkpoint. */
 static enum tri_status write_all(struct par_ranks *r, struct tri_error *error)
 {
     int64_t mine[PAR_DONE], done[PAR_DONE], told[2] = {0};
@@ -472,7 +492,7 @@ enum tri_status par_keep(struct par_ranks *r, enum tri_status status, struct tri
     int64_t asked[2], sum[2];
     if (!c)
         return status;
-    r->run->mesh->stop = NULL; /* there is something to lose */
+    r->run->mesh->stop = NULL; /* stop only here, after a checkpoint */
     const double began = tri_seconds(), step = began - c->looked, triangles = (double)par_triangles(r->run);
     const bool is_last = r->carrier->rank == 0 && par_state_is_last(c, began + step, triangles);
     c->looked = began;

@@ -1,5 +1,5 @@
-/* Ranks of an MPI: the one file here that knows it. The ranks of MPI_COMM_WORLD are nobody's business but the
- * caller's. */
+/* A carrier over MPI. No other file of this folder uses MPI. All calls use a duplicate of the caller's communicator,
+ * and none uses MPI_COMM_WORLD. */
 #include "ptriangle/mpi.h"
 
 #include <stdlib.h>
@@ -9,33 +9,36 @@
 #include "sched/tunables.h"
 #include "triangle/base/system.h"
 
-/* Counts of MPI are ints. */
+/* Maximum size of one MPI message, whose size is an int. */
 enum { MOST_BYTES = 1 << 30 };
 
-enum { TAG_BYTES, TAG_STOP };
+enum { TAG_BYTES, TAG_STOP }; /* tags of messages: data; a request to stop */
 
 struct messenger {
-    struct par_carrier carrier; /* first: what others see */
-    MPI_Comm comm;
-    MPI_Request *request;       /* [2 * n_ranks] of what comes and goes */
-    MPI_Status *state;          /* [2 * n_ranks] of these */
-    int32_t why;                /* what this rank has told by TAG_STOP; 0: nothing */
-    MPI_Request *telling;       /* [n_ranks] of that */
-    int heard;                  /* messages of others with TAG_STOP */
+    struct par_carrier carrier; /* must be first: par_mpi_carrier_new returns its address */
+    MPI_Comm comm;              /* the duplicate of the caller's communicator */
+    MPI_Request *request;       /* [2 * n_ranks] requests of the transfer in progress */
+    MPI_Status *state;          /* [2 * n_ranks] their statuses, which are not read */
+    int32_t why;                /* reason to stop that this rank has sent to all others; 0: none */
+    MPI_Request *telling;       /* [n_ranks] requests of these messages */
+    int heard;                  /* number of messages with TAG_STOP received from other ranks */
 };
 
-/* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
+/* Waits for n requests. Sleeps between tests, because there may be more ranks than cores, and a rank that spins would
+ * slow down the ranks for which it waits. False: MPI has failed. */
 static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
     double nap = 1e-9 * PAR_FIRST_NAP;
     int done = 0;
     while (MPI_Testall(n, request, &done, m->state) == MPI_SUCCESS && !done) {
-        (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
+        (void)tri_stop_is_asked(m->carrier.stop); /* may call pass_on, so that the other ranks stop, too */
         (void)tri_pause(nap);
         nap = nap < 1e-9 * PAR_LONGEST_NAP ? 2 * nap : nap;
     }
     return done;
 }
+
+/* --- the functions of struct par_carrier */
 
 static bool gather(void *self, const int64_t *mine, int32_t n, int64_t *all)
 {
@@ -53,14 +56,15 @@ static bool deal(void *self, const int64_t *to, int64_t *from)
            wait_for(m, &request, 1);
 }
 
+/* Returns the size of the batch that begins at byte `at` of a message of n bytes; 0 if the message ends before. */
 static int batch_of(size_t n, size_t at)
 {
     size_t left = at < n ? n - at : 0;
     return (int)(left < MOST_BYTES ? left : MOST_BYTES);
 }
 
-/* The batches that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
- * Ranks begin with different ones. */
+/* Sends and receives the batches of all messages that begin at byte `at`. All requests are posted before the rank
+ * waits, so it never waits for one rank before it receives from another. Each rank begins with a different partner. */
 static bool exchange(const struct messenger *m, const struct par_bytes *out, const struct par_bytes *in, size_t at)
 {
     int rank = m->carrier.rank, n = m->carrier.n_ranks, posted = 0;
@@ -106,8 +110,9 @@ static bool spread(void *self, void *bytes, size_t n)
     return good;
 }
 
-/* --- who has been asked to end */
+/* --- requests to stop */
 
+/* Sends the reason to all other ranks. Not collective. */
 static void tell_all(struct messenger *m, int why)
 {
     m->why = why;
@@ -116,6 +121,7 @@ static void tell_all(struct messenger *m, int why)
             MPI_Isend(&m->why, 1, MPI_INT32_T, p, TAG_STOP, m->comm, &m->telling[p]);
 }
 
+/* Receives a reason. Not collective. */
 static int hear(struct messenger *m, int from)
 {
     int32_t why = 0;
@@ -129,14 +135,14 @@ static int pass_on(void *self, int why)
     struct messenger *m = self;
     MPI_Status status;
     int there = 0;
-    if (why != 0 && m->why == 0 && m->heard == 0) /* who has told this one has told all */
+    if (why != 0 && m->why == 0 && m->heard == 0) /* a rank that has notified this one has notified all others */
         tell_all(m, why);
     if (MPI_Iprobe(MPI_ANY_SOURCE, TAG_STOP, m->comm, &there, &status) != MPI_SUCCESS || !there)
         return 0;
     return hear(m, status.MPI_SOURCE);
 }
 
-/* Collective: what has been told is heard, so that no message is left. */
+/* Collective: receives all messages with TAG_STOP that are still under way. */
 static void hear_all(struct messenger *m)
 {
     int tells = m->why != 0, all = 0;
@@ -158,16 +164,18 @@ static bool is_running(void)
     return begun && !ended;
 }
 
+/* Copies this rank's traffic counters to the caller's struct, unless that is NULL. */
 static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges *exchanges)
 {
-    _Static_assert((int)PAR_MOVES == (int)PAR_EXCHANGES, "what the header counts is what moves");
+    _Static_assert((int)PAR_MOVES == (int)PAR_EXCHANGES, "mpi.h has a counter for each purpose of messages");
     for (int k = 0; exchanges && k < PAR_EXCHANGES; k++) {
         exchanges->bytes[k] = carrier->traffic[k].bytes;
         exchanges->messages[k] = carrier->traffic[k].messages;
     }
 }
 
-/* Numbers go as they lie in memory: is that the same everywhere? What is told are words that MPI translates. */
+/* Returns a hash of how this machine represents numbers. Messages contain numbers as they are in memory, so it must be
+ * equal on all ranks. The hash itself is sent as an MPI_INT64_T, which MPI converts if machines differ. */
 static int64_t layout(void)
 {
     const struct {
@@ -184,7 +192,8 @@ static int64_t layout(void)
     return (int64_t)(hash >> 1);
 }
 
-/* Collective: has everybody got memory, and the same kind of machine? Who has none must not let the others wait. */
+/* Collective: fails on all ranks if `memory` is NULL on one of them, or if machines represent numbers differently. A
+ * rank without memory must take part, because the others wait for it. */
 static enum tri_status check_all(MPI_Comm comm, const void *memory, struct tri_error *error)
 {
     int64_t mine[3] = {memory != NULL, layout(), -layout()}, least[3] = {0};
@@ -208,6 +217,7 @@ static void free_messenger(struct messenger *m)
     free(m);
 }
 
+/* Returns a carrier over comm; NULL: no memory. Not collective. */
 static struct messenger *messenger_on(MPI_Comm comm)
 {
     struct messenger *m = calloc(1, sizeof *m);
@@ -237,7 +247,7 @@ enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *co
     int inter = 0;
     *carrier = NULL;
     if (MPI_Comm_test_inter(*(const MPI_Comm *)comm, &inter) == MPI_SUCCESS && inter)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the communicator has two groups: ranks of one are wanted");
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the communicator is an intercommunicator, with two groups");
     if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
     struct messenger *m = messenger_on(copy);
@@ -255,7 +265,7 @@ enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *co
 void par_mpi_carrier_free(struct par_carrier *carrier)
 {
     struct messenger *m = carrier->self;
-    if (carrier->lost) /* the others do not come here; and MPI may know this memory still */
+    if (carrier->lost) /* other ranks may not call this function, and MPI may still access the buffers */
         return;
     hear_all(m);
     MPI_Comm_free(&m->comm);

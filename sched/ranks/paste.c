@@ -1,4 +1,5 @@
-/* Triangles, subsegments and vertices come and go. What comes gets ids that are unused, else new ones. */
+/* Adds received vertices, triangles and subsegments to a rank's mesh, and removes them. Added items get unused ids
+ * first, then new ones at the end of the arrays. No function here is collective. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +54,7 @@ void par_messages_free(const struct par_ranks *r, struct par_message *message)
 
 /* --- the worklist */
 
-/* Where nothing comes the list stays where it is: the last call works from it while it fetches more of the mesh. */
+/* If the message has no entries, the worklist is not reallocated: the last call reads it while it fetches triangles. */
 bool par_merge_entries(struct par_run *run, const struct par_message *m, const struct par_talk *talk)
 {
     if (m->n_entries == 0)
@@ -78,6 +79,7 @@ static int32_t *count_of(struct tri_mesh *mesh, enum par_kind kind)
     return kind == PAR_VERTICES ? &mesh->n_vertices : kind == PAR_TRIANGLES ? &mesh->n_triangles : &mesh->n_subs;
 }
 
+/* Returns an unused id, or a new one. The arrays must have room for it. */
 static int32_t take_id(struct par_run *run, enum par_kind kind)
 {
     struct par_ranges *spare = &run->spare.ranges[kind];
@@ -112,15 +114,15 @@ bool par_remove_sub(struct par_run *run, tri_sub_id s)
     return par_room_release(&run->spare, PAR_SUBS, s);
 }
 
-/* --- what is known */
+/* --- indices of vertices and triangles */
 
-/* What a vertex or a triangle stands for. */
+/* Returns the key of an id: the coordinates of a vertex, or the corners of a triangle. */
 static const void *key_of(const struct par_index *index, const struct tri_mesh *mesh, int32_t id)
 {
     return index->is_of_places ? (const void *)&mesh->xy[id] : mesh->tri[id].v;
 }
 
-/* Where the id of what stands for this is, or may be put. */
+/* Returns the slot that contains the id with this key, or the free slot (TRI_NONE) for it. */
 static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
 {
     const size_t width = index->is_of_places ? sizeof(struct tri_point) : 3 * sizeof(tri_vertex_id);
@@ -130,7 +132,7 @@ static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh,
     return &index->id[at];
 }
 
-/* Room for so many more. */
+/* Makes room for `more` further ids. False: no memory. */
 static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, int32_t more)
 {
     struct par_index larger = {.is_of_places = index->is_of_places, .n = index->n, .capacity = 1024};
@@ -153,6 +155,7 @@ static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, 
     return true;
 }
 
+/* Adds an id to the index; replaces another id with the same key. */
 static void note(struct par_index *index, const struct tri_mesh *mesh, int32_t id)
 {
     int32_t *at = find(index, mesh, key_of(index, mesh, id));
@@ -193,16 +196,17 @@ void par_forget_straddlers(struct par_ranks *r, const struct par_triangle_set *c
 /* --- paste */
 
 struct pasting {
-    struct par_ranks *ranks;
-    struct tri_mesh *mesh;
-    struct par_talk *talk;
-    const struct par_message *message;
-    bool is_borrowed;
-    int32_t first_vertex, first_triangle, first_sub; /* numbers of the first new ones */
-    bool *is_new;     /* [n_vertices] was not here */
-    tri_sub_id *sub;     /* [n_new_subs] ids */
+    struct par_ranks *ranks;           /* this rank */
+    struct tri_mesh *mesh;             /* its mesh, to which the message is added */
+    struct par_talk *talk;             /* the talk with the sender */
+    const struct par_message *message; /* the received message, which is valid */
+    bool is_borrowed;                  /* as in par_paste: this rank may already hold some of the contents */
+    int32_t first_vertex, first_triangle, first_sub; /* shared numbers of the first items of the message */
+    bool *is_new;    /* [n_vertices] this rank did not hold the vertex */
+    tri_sub_id *sub; /* [n_new_subs] ids of the message's new subsegments; TRI_NONE: not held yet */
 };
 
+/* Adds vertex i of the message to the mesh and returns its id. */
 static int32_t append_vertex(struct pasting *p, int32_t i)
 {
     struct tri_mesh *mesh = p->mesh;
@@ -218,14 +222,15 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
     return v;
 }
 
+/* Adds the message's vertices to the talk, and those that this rank does not hold to the mesh. False: no memory. */
 static bool paste_vertices(struct pasting *p)
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < p->message->n_vertices; i++) {
         const struct par_told_vertex *told = &p->message->vertex[i];
         tri_vertex_id v = told->common;
-        /* A new vertex that comes back need not be noted: it was made within one block, whose triangles no other block
-         * changes (triangle/refine/refine.h), so one rank alone tells of it. */
+        /* A new vertex in changes that are given back is not added to the index, because only one rank sends it: it was
+         * inserted by one block, and no other block of the phase changes its triangles (triangle/refine/refine.h). */
         if (v == TRI_NONE) {
             v = *find(&p->ranks->places, p->mesh, &told->xy);
             v = v != TRI_NONE ? v : append_vertex(p, i);
@@ -237,7 +242,7 @@ static bool paste_vertices(struct pasting *p)
     return memory;
 }
 
-/* A triangle with a corner that was not here was not here. */
+/* May this rank hold the triangle already? Not if one of its corners is new. */
 static bool may_be_here(const struct pasting *p, const struct par_told_triangle *told)
 {
     bool may = p->is_borrowed;
@@ -246,6 +251,7 @@ static bool may_be_here(const struct pasting *p, const struct par_told_triangle 
     return may;
 }
 
+/* Returns the id of a triangle of the message. Adds it, without links, if this rank does not hold it. */
 static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle *told)
 {
     const int32_t *id = p->talk->vertex.item, v[3] = {id[told->v[0]], id[told->v[1]], id[told->v[2]]};
@@ -259,6 +265,7 @@ static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle 
     return t;
 }
 
+/* Adds the message's triangles to the talk, and those that this rank does not hold to the mesh. False: no memory. */
 static bool paste_triangles(struct pasting *p)
 {
     bool memory = true;
@@ -267,6 +274,7 @@ static bool paste_triangles(struct pasting *p)
     return memory;
 }
 
+/* Links t across edge e with triangle `other`. False: they have no such common edge, or have other links there. */
 static bool link(struct tri_mesh *mesh, tri_triangle_id t, int e, tri_triangle_id other)
 {
     struct tri_triangle *a = &mesh->tri[t], *b = other == TRI_NONE ? NULL : &mesh->tri[other];
@@ -280,6 +288,7 @@ static bool link(struct tri_mesh *mesh, tri_triangle_id t, int e, tri_triangle_i
     return a->n[e] == tri_code(other, f) && b->n[f] == tri_code(t, e);
 }
 
+/* Sets the links of the message's triangles. False: the message does not fit the mesh. */
 static bool paste_links(struct pasting *p)
 {
     const int32_t *id = p->talk->triangle.item;
@@ -292,7 +301,7 @@ static bool paste_links(struct pasting *p)
     return good;
 }
 
-/* Of the new subsegments those that are here already, beside a triangle that was. */
+/* Finds the message's new subsegments that this rank already holds, because it held a triangle beside them. */
 static void find_subs(struct pasting *p)
 {
     for (int32_t i = 0; i < p->message->n_new_subs; i++)
@@ -306,6 +315,7 @@ static void find_subs(struct pasting *p)
     }
 }
 
+/* Adds a subsegment to the mesh and returns its id. Its ends are those of the edge of the triangle beside it. */
 static tri_sub_id append_sub(struct pasting *p, const struct par_told_side *told)
 {
     const tri_vertex_id *v = p->mesh->tri[p->talk->triangle.item[told->triangle]].v;
@@ -319,6 +329,8 @@ static tri_sub_id append_sub(struct pasting *p, const struct par_told_side *told
     return s;
 }
 
+/* Adds the message's subsegments and links them with the triangles beside them. False: the message does not fit the
+ * mesh, or no memory. */
 static bool paste_subs(struct pasting *p)
 {
     bool good = true;
@@ -342,6 +354,7 @@ static bool paste_subs(struct pasting *p)
     return good;
 }
 
+/* Makes room for the contents of the message. False: no memory, or *error. */
 static bool reserve(struct pasting *p, struct tri_error *error)
 {
     const struct par_message *m = p->message;
@@ -368,7 +381,7 @@ enum tri_status par_paste(struct par_ranks *r, struct par_talk *talk, const stru
     if (!status && !(paste_vertices(&p) && paste_triangles(&p)))
         status = par_ranks_no_memory(error);
     if (!status && !(paste_links(&p) && paste_subs(&p)))
-        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank does not fit");
+        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "a message of another rank does not fit the mesh");
     free(p.is_new);
     free(p.sub);
     return status;

@@ -1,11 +1,12 @@
-/* The steps of the schedule that differ on ranks; the rounds are those of sched/schedule/schedule.c.
+/* The steps of the schedule that differ on ranks. The rounds are those of sched/schedule/schedule.c.
  *
- * ALGORITHM. Before a step of a phase all ranks agree on who works on each block over the tiles of several (a shift).
- * The others lend what that block needs; the worker refines with what it has borrowed, asks for more where a cavity
- * reaches behind it, and gives back what has changed. The last call is a shift of one block, the plane. The paper moves
- * strips between neighbours in the same places (section 3).
+ * ALGORITHM. Before a step of a phase, all ranks agree which rank refines each border block (a block over the tiles of
+ * several ranks). This assignment is a shift. The other owners lend the triangles that the block needs. The worker
+ * refines the block, requests more ghost layers if a cavity reaches beyond them, and gives back the changed triangles.
+ * The last call is a shift of one block, the whole plane. Chernikov and Chrisochoides (ICS 2004, section 3) move strips
+ * between neighbours at the same points of the schedule.
  *
- * INVARIANT. That of ranks.h holds before and after each shift. */
+ * INVARIANT. The invariant of ranks.h holds before and after each shift. */
 #include "sched/ranks/ranks.h"
 
 #include <assert.h>
@@ -16,7 +17,7 @@
 #include "sched/tunables.h"
 #include "triangle/base/grow.h"
 
-/* --- who works where */
+/* --- the assignment of blocks to ranks */
 
 static int32_t blocks_of(const struct par_shift *shift)
 {
@@ -31,6 +32,7 @@ static struct tri_fence box_of(const struct par_shift *shift, int32_t block)
     return p ? par_fence(p, block / p->n_rows, block % p->n_rows) : PLANE;
 }
 
+/* Does the block belong to the shift's step of its phase? */
 static bool has_its_turn(const struct par_shift *shift, int32_t block)
 {
     const struct par_partition *p = shift->partition;
@@ -41,6 +43,7 @@ static bool has_its_turn(const struct par_shift *shift, int32_t block)
            (column / 2 * ((p->n_rows + 1) / 2) + row / 2) % shift->n_steps == shift->step;
 }
 
+/* Allocates the arrays of r->shift, whose other members are set. False: no memory. */
 static bool init_shift(struct par_ranks *r)
 {
     struct par_shift *s = &r->shift;
@@ -63,7 +66,8 @@ static void free_shift(struct par_shift *s)
     *s = (struct par_shift){0};
 }
 
-/* Blocks over the tiles of several ranks: worker[b] is whoever would work on it; returns whether there are any. */
+/* Sets worker[b] to the lowest rank that owns a part of block b, if several ranks do; otherwise to -1. Returns whether
+ * there is such a block. All ranks compute the same. */
 static bool find_borders(struct par_ranks *r)
 {
     struct par_shift *s = &r->shift;
@@ -79,7 +83,7 @@ static bool find_borders(struct par_ranks *r)
     return any;
 }
 
-/* One bit for each block at a border that has something to do. */
+/* Sets block_of[], and the bit of each border block that contains an entry of this rank's worklist. */
 static void find_work(struct par_ranks *r, int64_t *word)
 {
     const struct par_run *run = r->run;
@@ -95,8 +99,11 @@ static void find_work(struct par_ranks *r, int64_t *word)
     }
 }
 
+/* Is bit b set? */
 static bool is_in(const int64_t *word, int32_t b) { return (uint64_t)word[b / 64] >> b % 64 & 1; }
 
+/* Completes the shift. word: the border blocks that contain an entry of any rank's worklist. A border block
+ * without entries needs no worker. */
 static void assign_blocks(struct par_ranks *r, const int64_t *word)
 {
     struct par_shift *s = &r->shift;
@@ -111,7 +118,7 @@ static void assign_blocks(struct par_ranks *r, const int64_t *word)
     }
 }
 
-/* *any: somebody has to ask somebody else. Collective. */
+/* Collective: makes the shift. *any: some border block has work, so ranks must lend triangles. */
 static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_error *error)
 {
     size_t n_words = (size_t)blocks_of(&r->shift) / 64 + 1, n_ranks = (size_t)r->carrier->n_ranks;
@@ -134,8 +141,9 @@ static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_e
     return status;
 }
 
-/* --- what moves */
+/* --- exchanges */
 
+/* Collective: an exchange of messages. Later rounds and the last call are counted under PAR_MOVE_LEFT_OVER. */
 static enum tri_status swap_bytes(struct par_ranks *r, enum par_move move, enum tri_status status,
                                   struct tri_error *error)
 {
@@ -143,9 +151,11 @@ static enum tri_status swap_bytes(struct par_ranks *r, enum par_move move, enum 
     return par_swap(r->carrier, is_left_over ? PAR_MOVE_LEFT_OVER : move, r->out, r->in, status, error);
 }
 
+/* Frees the received messages. */
 static void free_in(struct par_ranks *r) { par_bytes_free(r->in, r->carrier->n_ranks); }
 
-/* *any: somebody has asked for more, and has got it. Collective. */
+/* Collective: each rank requests the triangles around some vertices, and answers the requests of other ranks. *any: a
+ * rank has requested some, and has received them. */
 static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *asked, bool *any,
                                  enum tri_status status, struct tri_error *error)
 {
@@ -163,13 +173,13 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
     for (int p = 0; p < r->carrier->n_ranks; p++)
         came = came || r->in[p].n > 0;
     if (!status && !came)
-        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
+        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "no rank holds the neighbour of an edge");
     status = status ? status : par_borrow(r, error);
     free_in(r);
     return status;
 }
 
-/* Does a block at a border that is done here take the triangle? */
+/* Is the triangle in a border block that this rank refines? */
 static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
 {
     const struct par_shift *s = &r->shift;
@@ -177,8 +187,9 @@ static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
     return block != TRI_NONE && s->is_border[block];
 }
 
-/* Across which edges of what such blocks begin with is the unknown? *asked receives their ends. Who lends an entry need
- * not own all of its corners, and who owns the others need not know of the entry. */
+/* Adds to *asked the ends of edges of worklist triangles in this rank's border blocks whose neighbours are missing.
+ * This happens if the lender of an entry does not own all corners of its triangle: the owners of the other corners may
+ * not have the entry, and then send no layers around it. False: no memory. */
 static bool find_unknown(const struct par_ranks *r, struct par_ids *asked)
 {
     const struct par_ids *list = &r->run->worklist;
@@ -192,6 +203,7 @@ static bool find_unknown(const struct par_ranks *r, struct par_ids *asked)
     return memory;
 }
 
+/* Collective: lends the triangles around the entries of border blocks to the workers. */
 static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
 {
     struct par_ids asked = {0};
@@ -208,14 +220,15 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-/* What blocks at borders wait for, as struct par_share has it. */
+/* The function `more` of struct par_share: fetches the triangles for which border blocks pause. Collective: ranks
+ * without such blocks take part from serve_others. */
 static enum tri_status fetch_more(void *user, const struct par_ids *asked, struct tri_error *error)
 {
     bool any;
     return lend_more(user, asked, &any, TRI_OK, error);
 }
 
-/* Until nobody asks for more. Collective. */
+/* Collective: answers requests of other ranks until no rank has any. status: this rank's status so far. */
 static enum tri_status serve_others(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     static const struct par_ids nothing;
@@ -225,6 +238,7 @@ static enum tri_status serve_others(struct par_ranks *r, enum tri_status status,
     return status;
 }
 
+/* Collective: returns the changes to the owners and drops the borrowed triangles. */
 static enum tri_status give_back(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     status = status ? status : par_give_back(r, &r->shift.changed, error);
@@ -238,7 +252,8 @@ static enum tri_status give_back(struct par_ranks *r, enum tri_status status, st
     return status;
 }
 
-/* The blocks of a shift, with what they borrow, which is given back then. Collective. */
+/* Collective: borrows, refines the blocks of a shift on this rank, and gives back. refine: not collective, except for
+ * calls of fetch_more. */
 static enum tri_status work_shift(struct par_ranks *r, struct par_shift shift,
                                   enum tri_status (*refine)(struct par_ranks *r, struct tri_error *error),
                                   struct tri_error *error)
@@ -259,7 +274,8 @@ static enum tri_status work_shift(struct par_ranks *r, struct par_shift shift,
 
 /* --- phases */
 
-/* Steps of a phase, between which there may be a checkpoint: as many for any number of ranks. */
+/* Returns the number of steps of a phase; a checkpoint can be written after each. Independent of the number of ranks.
+ * */
 static int32_t steps_of(const struct par_ranks *r, const struct par_partition *partition)
 {
     int32_t steps = par_blocks(partition) / PAR_PHASES / PAR_BLOCKS_A_STEP;
@@ -268,7 +284,7 @@ static int32_t steps_of(const struct par_ranks *r, const struct par_partition *p
     return steps < PAR_MOST_STEPS ? steps : PAR_MOST_STEPS;
 }
 
-/* The blocks of the shift, of all that have a part in this rank's tiles or in what it borrows. */
+/* Refines this rank's blocks of the shift: inner blocks, and border blocks with borrowed triangles. */
 static enum tri_status refine_step(struct par_ranks *r, struct tri_error *error)
 {
     struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch_more,
@@ -280,7 +296,7 @@ static enum tri_status refine_step(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-/* All steps of a phase, from the place on. Collective. */
+/* Collective: runs the current phase from the step of run->place to its end. */
 static enum tri_status run_phase(void *self, struct tri_error *error)
 {
     const struct par_schedule *s = self;
@@ -299,7 +315,7 @@ static enum tri_status run_phase(void *self, struct tri_error *error)
     return status;
 }
 
-/* How many entries all ranks have in the end: who shares one counts it, too. Collective. */
+/* Collective: adds up the worklist entries of all ranks. An entry that several ranks hold is counted several times. */
 static enum tri_status end_round(void *self, bool *again, struct tri_error *error)
 {
     struct par_schedule *s = self;
@@ -314,11 +330,12 @@ const struct par_steps par_steps_on_ranks = {run_phase, end_round};
 /* --- the last call */
 
 struct last_call {
-    struct par_ranks *ranks;
-    struct par_ids asked;
-    bool lost;
+    struct par_ranks *ranks; /* this rank */
+    struct par_ids asked;    /* ends of edges whose neighbours the call needs */
+    bool lost;               /* out of memory in a callback: a list is incomplete */
 };
 
+/* Callbacks of struct tri_part, for the last call. */
 static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct last_call *call = user;
@@ -331,6 +348,7 @@ static void ask_for(void *user, const tri_vertex_id edge[2])
     call->lost |= !par_ids_add_all(&call->asked, edge, 2);
 }
 
+/* The callback `more` of par_refine_rest. */
 static enum tri_status fetch_asked(void *user, struct tri_error *error)
 {
     struct last_call *call = user;
@@ -341,7 +359,8 @@ static enum tri_status fetch_asked(void *user, struct tri_error *error)
     return status;
 }
 
-/* One call without fences, as of one process, for what the worklist holds: by the first rank that owns anything. */
+/* Refines the remaining worklist by one call without fences, as one process does. The lowest rank that owns a
+ * tile does this, since it has borrowed the entries of the others, whose worklists are now empty. */
 static enum tri_status refine_left(struct par_ranks *r, struct tri_error *error)
 {
     struct par_run *run = r->run;
@@ -352,7 +371,7 @@ static enum tri_status refine_left(struct par_ranks *r, struct tri_error *error)
     if (run->worklist.n == 0)
         return TRI_OK;
     enum tri_status status = par_refine_rest(run, &hooks, fetch_asked, &call, error);
-    assert(run->worklist.item == hooks.worklist); /* entries come with what is lent first, not with more of it */
+    assert(run->worklist.item == hooks.worklist); /* only the first exchange of a shift brings entries */
     free(call.asked.item);
     run->worklist.n = run->key.n = 0;
     return status || !call.lost ? status : par_ranks_no_memory(error);
@@ -368,7 +387,7 @@ enum tri_status par_refine_rest_on_ranks(struct par_run *run, struct tri_error *
 
 /* --- beginning and end */
 
-/* Writes out the keys of a worklist that no block has had. False: no memory. */
+/* Sets the keys of a worklist without keys, which no phase has processed: entry i gets key i. False: no memory. */
 static bool write_keys(struct par_run *run)
 {
     struct par_keys *key = &run->key;
@@ -402,7 +421,7 @@ void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
         total->given_up[k] += done[3 + k];
 }
 
-/* What all ranks have done since, everywhere. */
+/* Collective: adds the counters of all ranks since par_ranks_begin to the report of each. */
 static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     struct par_report *report = r->run->report;
@@ -418,19 +437,20 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
     return TRI_OK;
 }
 
-/* What a rank begins with: its part of the coarse mesh, or of what has been kept. Collective. */
+/* Collective: reduces the coarse mesh to this rank's part, or restores that part from a checkpoint. */
 static enum tri_status take_part(struct par_ranks *r, struct tri_error *error)
 {
     bool again;
-    const char *words = "the ranks have not been given the same figure and settings";
+    const char *words = "the ranks were given different inputs or settings";
     const bool is_of_sizes = par_is_of_sizes(r->run->place.next);
     enum tri_status status = par_expect_same(r->carrier, r->of_run, words, TRI_OK, error);
     status = status ? status : par_take_up(r, &again, error);
     status = status || again ? status : par_keep_own(r, error);
-    r->run->n_schedules += is_of_sizes && r->run->place.next > PAR_BOUNDS_WHOLE; /* the second has begun */
+    r->run->n_schedules += is_of_sizes && r->run->place.next > PAR_BOUNDS_WHOLE; /* the second schedule has begun */
     return par_agree(r->carrier, status, error);
 }
 
+/* Allocates the arrays. False: no memory. */
 static bool init_ranks(struct par_ranks *r)
 {
     size_t n = (size_t)r->carrier->n_ranks;

@@ -1,4 +1,4 @@
-/* Tiles on their way are bytes (sched/tiles/tile_arrays.h). */
+/* A sink that sends tiles to rank 0. Tiles are sent as bytes in the format of sched/tiles/tile_arrays.h. */
 #include "sched/ranks/relay.h"
 
 #include <stdlib.h>
@@ -6,6 +6,7 @@
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
 
+/* Appends a tile to the buffered ones. False: no memory. */
 static bool pack_tile(struct par_relay *relay, const struct tri_tile *tile)
 {
     const size_t n = par_tile_bytes(tile, relay->n_attributes);
@@ -37,7 +38,7 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     for (size_t at = 0; !status && at < batch->n;) {
         const size_t n = par_tile_unpack(batch->at + at, batch->n - at, relay->n_attributes, &tile);
         if (n == 0)
-            return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no tile");
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank has sent an invalid tile");
         status = relay->to->take(relay->to->user, &tile, error);
         at += n;
     }

@@ -1,4 +1,4 @@
-/* The numbers of what has been told, and what a message tells. */
+/* The shared numbers of a talk, and the filling of messages. wire.c encodes messages. No function is collective. */
 #include "sched/ranks/talk.h"
 
 #include <assert.h>
@@ -55,6 +55,7 @@ bool par_talk_add_sub(struct par_talk *talk, const struct tri_mesh *mesh, tri_su
            par_ids_add(&talk->sub_end, mesh->sub[s].v[1]);
 }
 
+/* Returns the shared number of an id. TRI_NONE: it has none, or the item with this number has been deleted. */
 static int32_t number_of(const struct par_map *map, const struct par_ids *list, int32_t id)
 {
     int32_t number = par_map_get(map, id);
@@ -79,7 +80,7 @@ void par_talk_free(struct par_talk *talk)
     *talk = (struct par_talk){0};
 }
 
-/* --- what is told */
+/* --- messages */
 
 void par_message_free(struct par_message *m)
 {
@@ -92,6 +93,7 @@ void par_message_free(struct par_message *m)
     *m = (struct par_message){0};
 }
 
+/* Gives a vertex the next shared number and adds it to the message. False: no memory. */
 static bool tell_vertex(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
                         tri_vertex_id v)
 {
@@ -103,6 +105,8 @@ static bool tell_vertex(struct par_message *m, struct par_talk *talk, const stru
     return true;
 }
 
+/* Adds the subsegment at edge e of triangle t to the message, with t as the triangle on one of its sides. Gives the
+ * subsegment a shared number if it has none. t has its number already. False: no memory. */
 static bool tell_side(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, tri_triangle_id t,
                       int e)
 {
@@ -124,26 +128,26 @@ static bool tell_side(struct par_message *m, struct par_talk *talk, const struct
     return true;
 }
 
-/* The talk's triangles from number `first` on, on their way to numbers in another order. */
+/* The renumbering of the talk's triangles from number `first` on, while they are added to a message. */
 struct telling {
     struct par_message *message;
     struct par_talk *talk;
     const struct tri_mesh *mesh;
-    int32_t n_common;
-    tri_triangle_id *waiting; /* [n] by the old numbers; TRI_NONE: it has had its turn */
-    int32_t n, first;
-    struct par_ids stack;
+    int32_t n_common;         /* vertices of the coarse mesh */
+    tri_triangle_id *waiting; /* [n] triangles by old number - first; TRI_NONE: has been added to the message */
+    int32_t n, first;         /* number of triangles; their lowest number */
+    struct par_ids stack;     /* triangles to visit, the next one last; may contain some that have been added */
 };
 
-/* Whose old or new number is given: has it still to be told? */
+/* Has t still to be added to the message? number: its old or its new number. */
 static bool is_waiting(const struct telling *telling, tri_triangle_id t, int32_t number)
 {
     int32_t place = number - telling->first;
     return place >= 0 && place < telling->n && telling->waiting[place] == t;
 }
 
-/* The number of what lies across an edge, if it has been told; else it waits for its turn, if it is to be told.
- * *memory: there is none left. */
+/* Returns the shared number of a neighbour t; TRI_NONE: t has not been sent or added before. If t has still to be added
+ * to the message, pushes it on the stack. Sets *memory to false if memory runs out. */
 static int32_t look_across(struct telling *telling, tri_triangle_id t, bool *memory)
 {
     const struct par_talk *talk = telling->talk;
@@ -158,7 +162,8 @@ static int32_t look_across(struct telling *telling, tri_triangle_id t, bool *mem
     return number < talk->triangle.n && talk->triangle.item[number] == t ? number : TRI_NONE;
 }
 
-/* Of the triangle that has got its number last. */
+/* Adds t, which has the latest shared number, to the message with its new vertices and its subsegments. False: no
+ * memory. */
 static bool tell_triangle(struct telling *telling, tri_triangle_id t)
 {
     struct par_message *m = telling->message;
@@ -181,7 +186,8 @@ static bool tell_triangle(struct telling *telling, tri_triangle_id t)
     return memory;
 }
 
-/* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
+/* Adds the waiting triangles that are connected with the seed, in depth-first order: most triangles are a neighbour of
+ * their predecessor. False: no memory. */
 static bool tell_from(struct telling *telling, tri_triangle_id seed)
 {
     bool memory = par_ids_add(&telling->stack, seed);

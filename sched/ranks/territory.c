@@ -1,4 +1,4 @@
-/* From places and boxes to tiles, and from tiles to ranks. */
+/* Finds tiles by points and boxes, and the ranks that own tiles. No function is collective. */
 #include "sched/ranks/territory.h"
 
 #include <assert.h>
@@ -9,7 +9,8 @@ static struct tri_fence box_of_tile(const struct par_territory *t, int32_t colum
     return par_fence(t->partition, 2 * column + 1, 2 * row + 1);
 }
 
-/* The boxes of a rank: of its tiles in the first column that has some, in whole columns, and in the last one. */
+/* Computes the three boxes of a rank: its tiles in its first column, in the columns between, and in its last column.
+ * Boxes without tiles are empty. */
 static void find_boxes(struct par_territory *t, int rank)
 {
     int32_t n = t->n_rows, start = t->start[rank], end = t->start[rank + 1], first = start / n, last = (end - 1) / n;
@@ -68,7 +69,7 @@ int par_owner_at(const struct par_territory *t, struct tri_point q)
     return owner_of_tile(t, par_tile_at(t, q));
 }
 
-/* The tiles in a column that a box meets: *first to *end - 1. False: there are none. */
+/* Finds the tiles of a column that the box overlaps: *first to *end - 1. False: there are none. */
 static bool tiles_in(const struct par_territory *t, const struct tri_fence *box, int32_t column, int32_t *first,
                      int32_t *end)
 {
@@ -96,7 +97,7 @@ bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, i
         *first = *first >= 0 ? *first : owner_of_tile(t, tile);
         *last = owner_of_tile(t, end - 1);
     }
-    assert(*first <= *last && *last < t->n_ranks); /* they come in order, as tiles do */
+    assert(*first <= *last && *last < t->n_ranks); /* owners ascend with tiles */
     return *first >= 0;
 }
 

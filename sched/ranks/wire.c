@@ -1,5 +1,6 @@
-/* Messages as bytes: whole numbers seven bits at a time, the least first. One walk over a message both writes it and
- * reads it: what is said of a field here holds for both. */
+/* The encoding of messages. Integers are encoded with seven bits in each byte, lowest bits first. The same functions
+ * write and read a message: to code a number means to write it, or to read it if the coder has no output. No function
+ * is collective. */
 #include "sched/ranks/talk.h"
 
 #include <assert.h>
@@ -10,20 +11,21 @@
 #include "triangle/base/grow.h"
 #include "triangle/base/hash.h"
 
+/* A message that is being written or read. */
 struct coder {
-    struct par_bytes *to;              /* what is written; NULL: all is read, .. */
-    const unsigned char *at, *end;     /* .. from here */
-    bool failed;                       /* no memory, or what is read is no message */
-    const struct tri_mesh *mesh;
-    int32_t n_common;
-    int32_t vertices, triangles, subs; /* numbers that had been told before */
+    struct par_bytes *to;              /* receives the bytes when writing; NULL: the message is read */
+    const unsigned char *at, *end;     /* when reading: the next byte, and the end without the hash */
+    bool failed;                       /* writing: no memory; reading: the message is invalid */
+    const struct tri_mesh *mesh;       /* its counts of regions and segments limit the valid numbers */
+    int32_t n_common;                  /* vertices of the coarse mesh */
+    int32_t vertices, triangles, subs; /* first new shared numbers; earlier messages used the lower ones */
 };
 
 /* --- numbers */
 
-enum { LONGEST = 16 }; /* bytes of a number at most */
+enum { LONGEST = 16 }; /* maximum length of a number in bytes */
 
-/* Where the next LONGEST bytes may go; NULL: no memory. */
+/* Returns the address for the next number, with room for LONGEST bytes; NULL: no memory. */
 static char *room_for_one(struct coder *c)
 {
     struct par_bytes *to = c->to;
@@ -55,6 +57,7 @@ static uint64_t get_number(struct coder *c)
     return 0;
 }
 
+/* Codes any number. */
 static void code(struct coder *c, uint64_t *n)
 {
     if (c->to)
@@ -63,7 +66,7 @@ static void code(struct coder *c, uint64_t *n)
         *n = get_number(c);
 }
 
-/* A number from `from` to end - 1. */
+/* Codes a number from `from` to end - 1. */
 static void code_from(struct coder *c, int32_t *n, int32_t from, int64_t end)
 {
     uint64_t ahead = c->to ? (uint64_t)(*n - from) : 0;
@@ -74,7 +77,7 @@ static void code_from(struct coder *c, int32_t *n, int32_t from, int64_t end)
 
 static void code_below(struct coder *c, int32_t *n, int64_t end) { code_from(c, n, 0, end); }
 
-/* A number from 0 to `from`, counted back from there. */
+/* Codes a number from 0 to `from` as from - *n. */
 static void code_back(struct coder *c, int32_t *n, int32_t from)
 {
     int32_t back = c->to ? from - *n : 0;
@@ -82,6 +85,7 @@ static void code_back(struct coder *c, int32_t *n, int32_t from)
     *n = from - back;
 }
 
+/* Codes a signed number of small magnitude: n >= 0 as 2n, and n < 0 as -2n - 1. */
 static void code_signed(struct coder *c, int64_t *n)
 {
     uint64_t folded = !c->to ? 0 : *n < 0 ? 2 * ~(uint64_t)*n + 1 : 2 * (uint64_t)*n;
@@ -96,7 +100,7 @@ static void code_int(struct coder *c, int32_t *n)
     *n = (int32_t)wide;
 }
 
-/* A number from 0 to end - 1, told as its difference from another. */
+/* Codes a number from 0 to end - 1 as its difference from the nearby number `from`. */
 static void code_near(struct coder *c, int32_t *n, int32_t from, int32_t end)
 {
     int64_t ahead = c->to ? (int64_t)*n - from : 0;
@@ -105,8 +109,8 @@ static void code_near(struct coder *c, int32_t *n, int32_t from, int32_t end)
     *n = c->failed ? 0 : (int32_t)(from + ahead);
 }
 
-/* The n lowest of eight bytes. The others are written, too, where what comes next will be; and what may be read has
- * eight bytes behind it (the hash). */
+/* Codes the n lowest bytes of a word. Writing always stores eight bytes; the next number overwrites the surplus.
+ * Reading always loads eight bytes; it stays inside the message, because the hash of eight bytes follows. */
 static void code_lowest(struct coder *c, uint64_t *word, unsigned n)
 {
     char *at = c->to ? room_for_one(c) : NULL;
@@ -138,7 +142,7 @@ static void code_bytes(struct coder *c, void *item, size_t n)
     c->at += n;
 }
 
-/* What lies between one and the next: none comes twice. */
+/* Codes a strictly ascending list of numbers below `end` by the gaps between them. */
 static void code_ascending(struct coder *c, struct par_ids *list, int32_t end)
 {
     for (int32_t i = 0, least = 0; !c->failed && i < list->n; least = list->item[i++] + 1)
@@ -147,18 +151,21 @@ static void code_ascending(struct coder *c, struct par_ids *list, int32_t end)
 
 /* --- vertices */
 
+/* Kinds of vertices: of the coarse mesh; new, inside, and without a marker; other new vertices. */
 enum { COMMON, FREE, OTHER, KINDS };
 
-/* Numbers that go with a place: two coordinates and a size. They differ little from those told before: the bits in
- * which they do are told, without the bytes of zeros in front of them. */
-enum { REALS = 3, LENGTHS = sizeof(uint64_t) + 1 };
+/* The real numbers of a vertex: two coordinates and a feature size. They are similar to those of the previous vertex,
+ * so only the differing bits (XOR) are coded, without leading bytes of zeros. */
+enum { REALS = 3, LENGTHS = sizeof(uint64_t) + 1 }; /* a length is 0 to 8 bytes */
 struct reals {
-    uint64_t bits[REALS];
+    uint64_t bits[REALS]; /* the bit patterns of the doubles */
 };
 
+/* Returns the length of a word without leading bytes of zeros. */
 static unsigned bytes_in(uint64_t word) { return word ? (unsigned)(71 - __builtin_clzll(word)) / 8 : 0; }
 
-/* What comes before a vertex that is not common: its kind, and how many bytes follow of each number. */
+/* Returns the header of a vertex that is not of the coarse mesh: its kind, and the length in bytes of each real number.
+ * *differing receives the bits that differ from the previous vertex, *last. */
 static int32_t header_of(const struct par_told_vertex *v, const struct reals *last, struct reals *differing)
 {
     const double real[REALS] = {v->xy.x, v->xy.y, v->feature};
@@ -171,6 +178,7 @@ static int32_t header_of(const struct par_told_vertex *v, const struct reals *la
     return (int32_t)header * KINDS + (v->on == TRI_VERTEX_FREE && v->marker == 0 ? FREE : OTHER);
 }
 
+/* Codes the differing bits of a vertex, and sets its coordinates, its feature size and *last from them. */
 static void code_place(struct coder *c, struct par_told_vertex *v, struct reals *last, struct reals *differing,
                        unsigned lengths)
 {
@@ -214,12 +222,17 @@ static void code_vertices(struct coder *c, struct par_message *m)
 
 /* --- triangles */
 
-/* The byte at the beginning of a triangle: which edges lead to triangles that have been told; is the corner opposite to
- * its parent, the first of them that is in this message, new; is the region another one; which is the parent's edge; is
- * the first of them the parent, and the triangle before this one. */
+/* The flags of a triangle, coded as one byte before it. A triangle's parent is its first neighbour that precedes it in
+ * the same message. The two corners that it shares with its parent are not coded.
+ *
+ * - bits 0 to 2: the neighbour across this edge has a lower number, which is coded
+ * - NEW_APEX: the corner opposite the parent is a new vertex
+ * - OTHER_REGION: the region differs from that of the previous triangle
+ * - PARENT_EDGE: times this, the edge of the parent that it shares with this triangle
+ * - LAST_IS_PARENT: the parent is the previous triangle, and no edge before it has a coded neighbour */
 enum { NEW_APEX = 8, OTHER_REGION = 16, PARENT_EDGE = 32, LAST_IS_PARENT = 128 };
 
-/* The first edge that leads to a triangle of the same message, which begins with number `first`; 3: none does. */
+/* Returns the edge of t towards its parent; 3: it has no parent. first: the lowest number in the message. */
 static int parent_of(const struct par_told_triangle *t, int32_t first)
 {
     int e = 0;
@@ -228,6 +241,7 @@ static int parent_of(const struct par_told_triangle *t, int32_t first)
     return e;
 }
 
+/* Returns the flags of triangle i. top: the number of the next new vertex. region: the region of triangle i - 1. */
 static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, int32_t top, int32_t region)
 {
     const struct par_told_triangle *t = &m->triangle[i];
@@ -244,6 +258,7 @@ static uint64_t flags_of(const struct par_message *m, int32_t first, int32_t i, 
     return (uint64_t)flags;
 }
 
+/* Codes the neighbours of t. number: the shared number of t. */
 static void code_links(struct coder *c, struct par_told_triangle *t, int32_t number, int flags)
 {
     bool last_is_parent = flags & LAST_IS_PARENT;
@@ -258,6 +273,8 @@ static void code_links(struct coder *c, struct par_told_triangle *t, int32_t num
     }
 }
 
+/* Codes the corners of t. *top: the number of the next new vertex. New vertices are numbered in the order in which the
+ * triangles mention them. */
 static void code_corners(struct coder *c, struct par_message *m, struct par_told_triangle *t, int flags, int32_t *top)
 {
     int parent = parent_of(t, c->triangles), edge = flags / PARENT_EDGE % 4;
@@ -299,7 +316,7 @@ static void code_triangles(struct coder *c, struct par_message *m)
     c->failed = c->failed || top != c->vertices + m->n_vertices;
 }
 
-/* --- the rest */
+/* --- subsegments, worklist entries, and whole messages */
 
 static void code_sides(struct coder *c, struct par_message *m)
 {
@@ -340,7 +357,8 @@ static void code_entries(struct coder *c, struct par_message *m)
     }
 }
 
-/* Each of what is counted takes a byte at least. */
+/* Codes the numbers of items. When reading, none can exceed the number of remaining bytes, since each item takes at
+ * least one byte. This limits the memory that an invalid message can request. */
 static void code_counts(struct coder *c, struct par_message *m)
 {
     int32_t *count[] = {&m->gone.n, &m->gone_subs.n, &m->n_vertices, &m->n_triangles, &m->n_sides, &m->n_new_subs,
@@ -350,6 +368,7 @@ static void code_counts(struct coder *c, struct par_message *m)
         code_below(c, count[k], most);
 }
 
+/* Codes everything after the counts. */
 static void code_all(struct coder *c, struct par_message *m)
 {
     code_ascending(c, &m->gone, c->triangles);
@@ -360,7 +379,7 @@ static void code_all(struct coder *c, struct par_message *m)
     code_entries(c, m);
 }
 
-/* Of what stands before it at the end of a message. */
+/* Returns the hash of a message, which is appended to it. */
 static uint64_t hash_of(const char *bytes, size_t n) { return tri_hash(n, bytes, n); }
 
 bool par_message_write(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
@@ -376,6 +395,7 @@ bool par_message_write(struct par_message *m, const struct par_talk *talk, const
     return !c.failed;
 }
 
+/* Makes room for as many items as the counts say. False: no memory. */
 static bool reserve_message(struct par_message *m)
 {
     return tri_grow(&m->gone.item, &m->gone.capacity, m->gone.n, sizeof *m->gone.item) &&
@@ -386,7 +406,7 @@ static bool reserve_message(struct par_message *m)
            tri_grow(&m->entry, &m->entry_capacity, m->n_entries, sizeof *m->entry);
 }
 
-/* Are all old triangles and subsegments that are named still there? */
+/* Do all deleted triangles and subsegments of the message still exist in the talk? */
 static bool are_there(const struct par_message *m, const struct par_talk *talk)
 {
     bool good = true;
@@ -397,6 +417,7 @@ static bool are_there(const struct par_message *m, const struct par_talk *talk)
     return good;
 }
 
+/* Sets the range of bytes to read, without the hash, and verifies the hash. */
 static void begin_reading(struct coder *c, const struct par_bytes *from)
 {
     uint64_t hash;
@@ -421,6 +442,6 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
     if (!c.failed)
         code_all(&c, m);
     if (c.failed || c.at != c.end || !are_there(m, talk))
-        return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no part of a mesh");
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank has sent an invalid message");
     return TRI_OK;
 }
