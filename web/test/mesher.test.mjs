@@ -109,7 +109,7 @@ test("every format is written, and Triangle's own is read again", () => {
 test("an error names the line, and the module goes on", () => {
   assert.throws(() => mesher.read("bad.poly", "4 2 0 0\n1 0 0\n2 1 0\n3 1 x\n4 0 1\n"), (fault) =>
     fault instanceof MeshError && fault.status === 3 && fault.line === 4);
-  assert.throws(() => mesher.read("figure.shp", "1"), /\.shp|not a file/);
+  assert.throws(() => mesher.read("figure.shp", "1"), /file type is unknown/);
   mesher.read("square.poly", readFileSync(join(data, "square.poly")));
   assert(mesher.mesh({ minAngle: 30 }).triangles.length > 0);
 });
