@@ -221,11 +221,11 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     assert(!mesh->storage);
     if (!park->folder && isinf(park->others))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the system does not tell how much memory is in use: a bound of %s cannot be kept",
+                        "the system does not report how much memory is in use, so the limit of %s cannot be kept",
                         tri_size_text(park->memory).text);
     if (!park->folder)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the mesh, %s triangles so far, outgrows the %s of memory that are allowed",
+                        "the mesh, with %s triangles so far, needs more than the allowed %s of memory",
                         tri_count_text(mesh->n_triangles).text, tri_size_text(park->memory).text);
     for (int k = 0; k < TRI_ARRAYS; k++) /* files of an earlier mesh that was dropped */
         drop_sheet(park, &park->sheet[k]);
@@ -235,7 +235,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     if (!status && !park->watch)
         park->watch = tri_thread_start(watch, park);
     if (!status && !park->watch)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "cannot start the thread that checks memory use");
     return par_park_status(park, status, error);
 }
 
