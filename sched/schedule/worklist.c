@@ -1,5 +1,5 @@
-/* Lists of ids; filling the worklist; ordering it by tile. Triangles are judged in shares, which run as tasks, and the
- * bad ones are gathered in the order of the shares, so the result does not depend on the number of threads. */
+/* Lists of ids; filling the worklist, and ordering it by tile. Triangles are judged in shares, which run as tasks. Bad
+ * triangles are gathered in the order of the shares, so the result does not depend on the number of threads. */
 #include "sched/schedule/worklist.h"
 
 #include <assert.h>
