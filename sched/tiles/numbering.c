@@ -255,6 +255,7 @@ static bool is_within(const struct tile_range *range, int32_t number)
     return (uint32_t)(number - range->first) < (uint32_t)range->count; /* a number with STRAY_KEY is in no range */
 }
 
+/* Returns the tile of a triangle. *last: caches the tile of the previous triangle, if that was not stray. */
 static inline int32_t tile_after(const struct par_numbering *n, struct tile_range *last, tri_triangle_id t)
 {
     int32_t key = n->key[t];
@@ -268,8 +269,8 @@ static inline int32_t tile_after(const struct par_numbering *n, struct tile_rang
     return last->tile;
 }
 
-/* Returns whether a triangle belongs to a later tile than its first corner, which has this number. Only kept vertices
- * can be in a later tile, since new vertices with smaller numbers are not. */
+/* Returns whether a triangle belongs to a later tile than its first corner, which has this number. Only a kept
+ * vertex can be in a later tile, because new vertices with smaller numbers are in the same or an earlier one. */
 static bool is_stray(const struct par_numbering *n, const struct tile_range *last, const tri_vertex_id v[3],
                      int32_t number)
 {
@@ -364,7 +365,7 @@ struct sorting {
     uint64_t *item, *spare;     /* [count] the triangles as items; scratch memory for sorting */
     int32_t first, count;       /* new number of the first triangle of the tile; number of its triangles */
     int32_t first_own, n_own;   /* number of the first new vertex of the tile; number of these vertices */
-    int32_t *end;               /* [n_own] index in `item` of the end of each fan; of its begin until it is filled */
+    int32_t *end;               /* [n_own] index in `item` of the end of each fan; of its start until it is filled */
     int32_t n_others;           /* triangles that start at a vertex of an earlier tile or at a kept vertex */
 };
 
@@ -391,7 +392,7 @@ static void count_fans(struct sorting *s)
     }
     for (int32_t i = 0, sum = s->n_others; i < s->n_own; i++) {
         int32_t count = s->end[i];
-        s->end[i] = sum; /* the begin of the fan; fill_fans moves it to the end */
+        s->end[i] = sum; /* start of the fan; fill_fans advances it to the end */
         sum += count;
     }
 }
@@ -437,8 +438,7 @@ static void sort_others(struct sorting *s)
     }
 }
 
-/* Sorts up to four items without a branch that depends on their values. Missing items are replaced by the largest
- * number. Always writes four values. */
+/* Sorts up to four items without a branch on their values, and always writes four. Missing items come last. */
 static void sort_four(const uint64_t *item, int32_t count, int32_t *to)
 {
     uint64_t a = item[0] | -(uint64_t)(count < 1), b = item[1] | -(uint64_t)(count < 2);
@@ -463,6 +463,7 @@ static void sort_fans(struct sorting *s)
     }
 }
 
+/* Sorts the triangles of one tile and stores their new places. Called on any thread. */
 static void place_tile(const void *context, size_t tile, uint64_t *room)
 {
     const struct par_numbering *n = context;
@@ -553,8 +554,7 @@ static bool stands_here(const struct move *m, tri_triangle_id t)
     return place != TRI_NONE && (m->down ? number_in(place) < m->batch.first : number_in(place) >= m->batch.last);
 }
 
-/* Copies the triangles of a share to the buffer, with new numbers. Prefetches later ones, so that memory accesses
- * overlap. */
+/* Copies the triangles of a share to the buffer, renumbered. Prefetches later ones, so that accesses overlap. */
 static void gather_batch(void *context, size_t share)
 {
     struct move *m = context;
@@ -572,6 +572,7 @@ static void gather_batch(void *context, size_t share)
     m->aside[share] = aside;
 }
 
+/* Sets aside triangles that move in a later batch, and copies the buffer to its places. */
 static void put_down(void *context, size_t share)
 {
     const struct move *m = context;

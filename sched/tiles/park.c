@@ -53,6 +53,7 @@ static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
     park->others = others > park->others ? others : park->others;
 }
 
+/* Returns whether the arrays may have this many bytes in memory (struct tri_bound). */
 static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
@@ -62,6 +63,7 @@ static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 
 /* --- files */
 
+/* Returns the size of all files. */
 static int64_t bytes_now(const struct par_park *park)
 {
     int64_t sum = 0;
@@ -70,6 +72,7 @@ static int64_t bytes_now(const struct par_park *park)
     return sum;
 }
 
+/* Extends a file to hold `bytes` and returns its mapping. NULL: no disk space; park->fault has the reason. */
 static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet, size_t bytes)
 {
     const size_t wanted = (bytes + PAR_PARK_GROWTH - 1) / PAR_PARK_GROWTH * PAR_PARK_GROWTH;
@@ -85,6 +88,7 @@ static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet,
     return NULL;
 }
 
+/* Removes a file and its mapping. */
 static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
 {
     tri_monitor_enter(park->monitor);
@@ -92,7 +96,7 @@ static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
     tri_monitor_leave(park->monitor);
 }
 
-/* --- the storage */
+/* --- callbacks of struct tri_storage */
 
 static void *reserve(void *user, enum tri_array array, size_t bytes)
 {
@@ -141,12 +145,13 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
     if (status != TRI_NO_MEMORY || !park || !park->fault || park->fault == ENOMEM)
         return status;
     return tri_fail(error, TRI_CANNOT_WRITE, park->folder, 0,
-                    "cannot park %s there of a mesh that does not fit in memory: %s",
+                    "cannot park a mesh that needs %s in this directory: %s",
                     tri_size_text((double)park->wanted).text, strerror(park->fault));
 }
 
 /* --- evicting pages */
 
+/* Evicts all pages of the files. */
 static void unmap_pages(struct par_park *park)
 {
     tri_monitor_enter(park->monitor);
@@ -181,6 +186,7 @@ struct looking {
     void *context;                             /* passed to `task` */
 };
 
+/* A task of the executor: checks memory, then runs the caller's task. */
 static void look_and_do(void *context, size_t index)
 {
     const struct looking *l = context;
@@ -188,6 +194,7 @@ static void look_and_do(void *context, size_t index)
     l->task(l->context, index);
 }
 
+/* The run function of the executor. */
 static void run_looking(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     struct par_park *park = self;

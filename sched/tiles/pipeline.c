@@ -42,11 +42,13 @@ static void step(struct works *w, step_call call, int32_t i)
     }
 }
 
+/* Returns whether this thread can start an item: a slot is free. */
 static bool may_begin(const struct works *w)
 {
     return w->begun < w->p->n && w->begun < w->taken + w->p->n_slots;
 }
 
+/* Returns whether this thread can consume the next item: it is ready, and this is the caller's thread. */
 static bool may_take(const struct works *w)
 {
     return w->taken < w->begun && w->made[w->taken % w->p->n_slots] && w->caller == &this_thread;
@@ -67,6 +69,7 @@ static void take_next(struct works *w)
     w->taken++;
 }
 
+/* A worker: consumes or makes items until all have been consumed or a call has failed. */
 static void work(void *context, size_t worker)
 {
     struct works *w = context;

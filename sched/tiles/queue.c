@@ -96,6 +96,7 @@ static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
     return q->status;
 }
 
+/* Begins a stream and starts the thread. Tiles of an earlier stream are dropped. */
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_queue *q = user;
@@ -127,6 +128,7 @@ static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct 
     return status;
 }
 
+/* Queues a copy of the tile. Without a thread, passes the tile on at once. */
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_queue *q = user;
@@ -138,6 +140,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for a tile of %d triangles", (int)tile->n_triangles);
 }
 
+/* Ends the stream after all queued tiles have been passed on. */
 static enum tri_status end(void *user, struct tri_error *error)
 {
     struct par_queue *q = user;

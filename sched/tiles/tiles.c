@@ -169,6 +169,7 @@ static void find_triangles(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
 }
 
+/* Returns the row of a subsegment, or EARLIER or LATER. */
 static int32_t row_of_sub(const struct par_column *c, tri_sub_id s)
 {
     struct row_of_numbers hint = {0};
@@ -192,6 +193,7 @@ static void find_subs(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
 }
 
+/* Returns whether all shares had enough memory. */
 static bool memory_has_lasted(const struct par_column *c)
 {
     bool memory = true;
@@ -202,6 +204,7 @@ static bool memory_has_lasted(const struct par_column *c)
 
 /* --- arrays with an entry for each vertex */
 
+/* A task: finds the tiles of the kept vertices of one share. */
 static void place_kept(void *context, size_t share)
 {
     struct par_tiles *tiles = context;
@@ -232,6 +235,7 @@ static void free_numbers(struct par_tiles *tiles)
     tiles->number = NULL;
 }
 
+/* Extends `number` to n entries. False: no memory. */
 static bool grow_numbers(struct par_tiles *tiles, size_t n)
 {
     if (!tiles->mesh->storage)
@@ -270,6 +274,7 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
 }
 
+/* Returns the tile of a row with its counts and first numbers, without arrays. */
 static struct tri_tile tile_of(const struct par_column *c, int32_t r)
 {
     const struct par_tiles *tiles = c->tiles;
@@ -280,6 +285,7 @@ static struct tri_tile tile_of(const struct par_column *c, int32_t r)
                              .n_segments = c->subs.start[r + 1] - s};
 }
 
+/* A pipeline's `make`: numbers the vertices of a tile along a Hilbert curve. */
 static enum tri_status number_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -293,6 +299,7 @@ static enum tri_status number_tile(void *context, int32_t row, int32_t slot, str
     return TRI_OK;
 }
 
+/* A pipeline's `make`: fills the arrays of a tile. */
 static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -304,6 +311,7 @@ static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struc
     return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
 }
 
+/* A pipeline's `take`: passes a tile to the sink, unless it is empty. */
 static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -409,6 +417,7 @@ static bool let_go(struct par_column *c, struct par_room *spare)
 
 /* --- processing a column */
 
+/* Initialises *c and reserves memory. False: no memory. */
 static bool begin_column(struct par_column *c, struct par_tiles *tiles, int32_t column)
 {
     const struct tri_fence fence = par_fence(tiles->partition, column, 0);
@@ -421,6 +430,7 @@ static bool begin_column(struct par_column *c, struct par_tiles *tiles, int32_t 
            par_finds_begin(&c->subs, n_rows) && par_tiles_reserve(tiles) && reserve_jobs(tiles);
 }
 
+/* Finds and numbers the vertices of the column. */
 static enum tri_status number_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
@@ -450,6 +460,7 @@ static bool lengthen(struct par_column *c)
     return c->vertices.item && memory_has_lasted(c);
 }
 
+/* Finds the triangles and subsegments of the column, fills its tiles and passes them to the sink. */
 static enum tri_status hand_out_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
