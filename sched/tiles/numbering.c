@@ -360,7 +360,7 @@ static uint64_t by_second(const struct par_numbering *n, int32_t turned)
 /* A tile whose triangles are being sorted. Most of them start at a new vertex of the tile, and are assigned to the fan
  * of this vertex by counting. The others come first. */
 struct sorting {
-    const struct par_numbering *n;
+    const struct par_numbering *n; /* the numbering of the mesh */
     int32_t *turned;            /* [count] triangles of the tile, at the end in their new order */
     uint64_t *item, *spare;     /* [count] the triangles as items; scratch memory for sorting */
     int32_t first, count;       /* new number of the first triangle of the tile; number of its triangles */
@@ -508,7 +508,7 @@ static size_t sort_scratch(const struct tri_mesh *mesh)
 enum { BATCH_SHARES = 32 };
 
 struct move {
-    const struct par_numbering *n;
+    const struct par_numbering *n; /* the numbering of the mesh */
     struct tri_range batch;  /* new places of this batch */
     bool down;               /* batches run from last to first: places below this batch have not been filled yet */
     int32_t n_aside;        /* triangles set aside so far */

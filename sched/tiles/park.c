@@ -181,7 +181,7 @@ static bool is_asked(void *user)
 
 /* Tasks of an executor that checks memory before each task. */
 struct looking {
-    struct par_park *park;
+    struct par_park *park;                     /* whose memory is checked */
     void (*task)(void *context, size_t index); /* the task to run */
     void *context;                             /* passed to `task` */
 };

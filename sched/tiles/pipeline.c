@@ -16,8 +16,9 @@
 
 static _Thread_local char this_thread; /* its address identifies a thread */
 
+/* A running pipeline. */
 struct works {
-    const struct par_pipeline *p;
+    const struct par_pipeline *p; /* the pipeline */
     const void *caller;          /* address of the caller's this_thread */
     struct tri_monitor *monitor; /* protects the fields below */
     bool *made;                  /* [n_slots] the item in the slot is ready to be consumed */

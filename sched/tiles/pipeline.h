@@ -9,12 +9,13 @@
 #include "triangle/base/status.h"
 
 struct par_pipeline {
-    int32_t n;        /* items */
-    int32_t n_slots;  /* at least 1 */
+    int32_t n;         /* number of items */
+    int32_t n_slots;   /* number of slots, at least 1 */
     int32_t n_threads; /* threads of the executor, including the caller's */
-    enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error);
-    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* NULL: not consumed */
-    void *context;
+    enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* makes item i in a slot */
+    /* Consumes item i from its slot, on the caller's thread. NULL: items are not consumed, and their slots are freed. */
+    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error);
+    void *context; /* passed to make and take */
 };
 
 /* Returns when all items have been consumed, or with the first status other than TRI_OK of `make` or `take`. */

@@ -215,7 +215,7 @@ static enum tri_status finish_column(struct par_run *run, struct par_tiles *tile
 
 /* The state of a sweep. */
 struct sweep {
-    struct par_run *run;
+    struct par_run *run;    /* the run */
     struct par_tiles tiles; /* the tiles, and how many of them have been handed out */
     struct ahead ahead;     /* work for later columns */
     bool left;              /* blocks left over work, so the sweep must be abandoned */

@@ -257,7 +257,7 @@ static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
 /* The triangles of a tile, assigned to fans. A slot is an index of the tile's array of triangles. Within a fan,
  * triangles are not sorted yet. */
 struct fans {
-    const struct tri_tile *tile;
+    const struct tri_tile *tile; /* the tile */
     struct tri_triangle *tri; /* triangles of the mesh */
     const int32_t *triangles, *notes; /* [n_triangles] as in struct par_tile_ids */
     int32_t *slot;            /* [n_triangles] the triangle in each slot */

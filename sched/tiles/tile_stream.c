@@ -1,7 +1,7 @@
 /* Starts and ends a stream of tiles, and hands out meshes that are completely in memory.
  *
- * If a mesh in memory has been numbered by tiles, the vertices, triangles and subsegments of each tile are contiguous in the
- * arrays. The tile of each item follows from its coordinates, so the end of a tile is found by bisection. */
+ * If a mesh in memory has been numbered by tiles, the vertices, triangles and subsegments of each tile are contiguous
+ * in the arrays. The tile of each item follows from its coordinates, so the end of a tile is found by bisection. */
 #include "sched/tiles/tiles.h"
 
 #include <stdlib.h>

@@ -23,7 +23,7 @@ enum { EARLIER = -1, LATER = -2 };
 enum { NO_NUMBER = -1 };
 
 struct par_column {
-    struct par_tiles *tiles;
+    struct par_tiles *tiles;        /* the tiles of the mesh */
     int32_t column;                 /* column of blocks, odd */
     int32_t first_tile;             /* index of the column's first tile: column * n_rows */
     int64_t first_vertex;           /* number of the first vertex in the column */
@@ -375,7 +375,7 @@ static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay,
 
 /* The removal of a column. */
 struct leaving {
-    struct par_column *column;
+    struct par_column *column;  /* the column to remove */
     const struct par_ids *stay; /* vertices that stay in the mesh, ascending */
 };
 
