@@ -35,8 +35,8 @@ struct sample {
 
 /* A growing list of samples. */
 struct samples {
-    struct sample *item;
-    int64_t n, capacity;
+    struct sample *item;  /* [n] the samples */
+    int64_t n, capacity;  /* number of samples; allocated samples */
 };
 
 /* A tri_take_work callback: appends a sample. user is a struct samples. False: no memory. */

@@ -49,7 +49,7 @@ struct par_share {
     /* Fetches from other ranks the triangles around these vertices, for which blocks wait. Called on the calling thread
      * while no block runs. */
     enum tri_status (*more)(void *user, const struct par_ids *asked, struct tri_error *error);
-    void *user;
+    void *user; /* passed to more */
 };
 
 /* The caller's request. Constant during the run. */

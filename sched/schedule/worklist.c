@@ -188,7 +188,7 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
 struct ordering {
     const struct tri_mesh *mesh; /* the mesh */
     const struct par_partition *tiles; /* the cells, whose blocks of phase 0 are the tiles */
-    const struct par_ids *worklist;
+    const struct par_ids *worklist;      /* the list to be ordered */
     int32_t first, end;          /* tiles (blocks of phase 0) whose triangles stay in the list */
     struct par_deal deal;        /* counts and places, for shares and tiles */
     union {

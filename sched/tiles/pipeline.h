@@ -12,8 +12,9 @@ struct par_pipeline {
     int32_t n;         /* number of items */
     int32_t n_slots;   /* number of slots, at least 1 */
     int32_t n_threads; /* threads of the executor, including the caller's */
-    enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* makes item i in a slot */
-    /* Consumes item i from its slot, on the caller's thread. NULL: items are not consumed, and their slots are freed. */
+    /* Makes item i in a slot. Called on any thread. */
+    enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error);
+    /* Consumes item i from its slot. Called on the caller's thread. NULL: the slot is freed without a call. */
     enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error);
     void *context; /* passed to make and take */
 };
