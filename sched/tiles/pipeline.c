@@ -1,5 +1,5 @@
-/* One lock, one condition. INVARIANT under the lock: taken <= begun <= taken + n_slots. Item i occupies slot
- * i % n_slots from its start until it has been consumed, and no other item does.
+/* One lock, one condition. INVARIANT under the lock: taken <= begun <= taken + n_slots. Item i
+ * occupies slot i % n_slots from its start until it has been consumed, and no other item does.
  *
  * THEOREM (no deadlock). A worker waits only if it can neither start nor consume an item. If all started items have
  * been consumed, another one can be started. Otherwise the next item to be consumed has been started. Either a thread
