@@ -98,12 +98,14 @@ static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
 
 /* --- callbacks of struct tri_storage */
 
+/* Extends the file of an array. */
 static void *reserve(void *user, enum tri_array array, size_t bytes)
 {
     struct par_park *park = user;
     return reserve_sheet(park, &park->sheet[array], bytes + 1);
 }
 
+/* Writes the contents of an array to its file. */
 static bool fill(void *user, enum tri_array array, const void *from, size_t bytes)
 {
     struct par_park *park = user;
@@ -114,6 +116,7 @@ static bool fill(void *user, enum tri_array array, const void *from, size_t byte
     return false;
 }
 
+/* Returns memory in a file of its own, for other code that works on the mesh. NULL: errno has the reason. */
 static void *extra(void *user, size_t bytes)
 {
     struct par_park *park = user;

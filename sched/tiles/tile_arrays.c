@@ -188,6 +188,7 @@ int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], i
     return start >= first ? (int32_t)(2 * (start - first)) + has_input : TRI_NONE;
 }
 
+/* Compares by the first corner, then by the second. */
 static int compare_finals(const void *left, const void *right)
 {
     const struct final *a = left, *b = right;
@@ -306,6 +307,7 @@ static void count_fans(struct fans *f)
 /* Returns the first slot of a fan. The slots have been filled. */
 static int32_t begin_of(const struct fans *f, int32_t v) { return v > 0 ? f->end[v - 1] : f->others; }
 
+/* Assigns each triangle to the next free slot of its fan. */
 static void fill_slots(const struct fans *f)
 {
     int32_t other = 0;
@@ -383,6 +385,7 @@ static bool put_all(const struct fans *f, const struct par_tile_copy *copy, cons
     return memory;
 }
 
+/* Copies the triangles to the tile, in the order of their numbers. False: no memory. */
 static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const struct par_tile_ids *ids)
 {
     const struct tri_tile *tile = &job->tile;
@@ -411,6 +414,7 @@ static int compare_subs(const void *left, const void *right)
     return (a->end[0] > b->end[0]) - (a->end[0] < b->end[0]);
 }
 
+/* Sorts the subsegments by parent and start, and copies them to the tile. False: no memory. */
 static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
                       const int32_t *subs)
 {

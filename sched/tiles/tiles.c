@@ -322,6 +322,7 @@ static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struc
     return is_empty ? TRI_OK : sink->take(sink->user, tile, error);
 }
 
+/* Returns a pipeline over the tiles of the column, without callbacks. */
 static struct par_pipeline pipeline_of(struct par_column *c)
 {
     int32_t threads = c->tiles->n_threads > 0 ? c->tiles->n_threads : 1;
