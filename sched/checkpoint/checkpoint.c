@@ -1,6 +1,6 @@
-/* The checkpoint directory. Files hold arrays as they lie in memory, so they can be read only on the same kind of
- * machine. If possible, a state is written to the disk without the system's cache, which is two to five times as fast
- * (measured). That matters because the system may be waiting for the run to end. */
+/* The checkpoint directory. Arrays in files have the same layout as in memory, so they can be read only on the same
+ * kind of machine. If possible, a state is written to the disk without the system's cache, which is two to five times
+ * as fast (measured). This matters because a batch system may be waiting for the process to end. */
 #include "sched/checkpoint/checkpoint.h"
 
 #include <assert.h>
@@ -51,7 +51,7 @@ static uint64_t hash_of(const struct par_manifest *m)
     return tri_hash(0, &m->of, sizeof *m - offsetof(struct par_manifest, of));
 }
 
-/* Has a manifest the right version and hash, and plausible members? */
+/* Returns whether a manifest has the right version and hash, and plausible members. */
 static bool is_manifest(const struct par_manifest *m)
 {
     return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
@@ -96,9 +96,9 @@ static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_
     return (struct par_manifest){.of = m->of, .run = m->run, .kind = kind, .made_directory = m->made_directory};
 }
 
-/* --- telling a run's files from other files */
+/* --- distinguishing a run's files from other files */
 
-/* Is this the name of a piece, such as "piece-0-12"? */
+/* Returns whether this is the name of a piece, such as "piece-0-12". */
 static bool is_piece(const char *name)
 {
     int n = 0;
@@ -106,8 +106,8 @@ static bool is_piece(const char *name)
     return n > 0 && name[n] == 0;
 }
 
-/* Is the file `manifest-new` a manifest that has not been renamed yet, or an empty file? The process may have died
- * while it was writing one. */
+/* Returns whether the file `manifest-new` is empty or a manifest that has not been renamed yet. The process may have
+ * died while it was writing one. */
 static bool is_fresh_manifest(tri_file folder)
 {
     struct par_manifest m;
@@ -120,9 +120,9 @@ static bool is_fresh_manifest(tri_file folder)
     return is;
 }
 
-/* In a directory without a manifest: is this a file that a run would overwrite or remove, although no run has made it?
- * A run creates its files after its first manifest and removes them before its last one, so without a manifest they are
- * not a run's. */
+/* For a directory without a manifest: returns whether a run would overwrite or remove this file, although no run has
+ * made it. A run creates its files after its first manifest and removes them before its last one, so without a manifest
+ * they are not a run's. */
 static bool is_foreign(tri_file folder, const char *name)
 {
     if (strcmp(name, fresh_name) == 0)
@@ -131,10 +131,10 @@ static bool is_foreign(tri_file folder, const char *name)
            is_piece(name);
 }
 
-/* The first such file in the directory. */
+/* The search for a foreign file in the directory. */
 struct finding {
     tri_file folder;                /* the open directory */
-    char name[PAR_CHECKPOINT_PATH]; /* its name; empty: none found */
+    char name[PAR_CHECKPOINT_PATH]; /* name of the first foreign file; empty: none found */
 };
 
 /* A callback of tri_folder_list: stores the first foreign name. Returns false to end the listing. */
@@ -228,7 +228,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     *c = par_checkpoint_closed(directory);
     if (strlen(directory) > PAR_CHECKPOINT_PATH - 32)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
-    /* A directory that exists already is not removed at the end. */
+    /* A directory that existed before is not removed at the end. */
     bool made = !resume && tri_folder_make(directory);
     if (!resume && !made && errno != EEXIST)
         return tri_fail_system(error, TRI_CANNOT_WRITE, directory, "cannot be made", errno);
@@ -240,7 +240,7 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
         status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
     status = status ? status : lock_and_read(c, resume, error);
     path_of(c->tiles_path, directory, tiles_name);
-    /* The spool goes on after the tiles that the manifest counts. */
+    /* The spool continues after the tiles that the manifest counts. */
     c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
     if (status)
         par_checkpoint_close(c, false);
@@ -283,7 +283,7 @@ static bool remove_piece(void *user, const char *name)
 static void remove_all(struct par_checkpoint *c)
 {
     (void)write_manifest(c, manifest_of_none(&c->manifest, c->manifest.kind), NULL);
-    (void)tri_folder_list(c->folder, remove_piece, c); /* of all ranks, however many there were */
+    (void)tri_folder_list(c->folder, remove_piece, c); /* the pieces of all ranks */
     (void)tri_folder_drop(c->folder, state_name[0]);
     (void)tri_folder_drop(c->folder, state_name[1]);
     (void)tri_folder_drop(c->folder, tiles_name);
@@ -331,7 +331,7 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
 
 /* --- state files */
 
-/* Are all bytes 0? n >= 1. Compares the bytes with themselves, shifted by one. */
+/* Returns whether all bytes are 0, n >= 1. Compares the bytes with themselves, shifted by one. */
 static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcmp(bytes, bytes + 1, n - 1) == 0; }
 
 /* Writes the n bytes in the buffer; they end at position f->place. A full buffer of zeros is skipped and leaves a hole
@@ -476,7 +476,7 @@ enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_wa
         return damaged(c, error);
     enum tri_status status = check(c, from.file, error);
     status = status ? status : walk(&from, user, error);
-    /* The hash was right, so a wrong length means that the walk expects another format. */
+    /* The hash is right, so a wrong length means that the walk expects another format. */
     if (!status && (from.failed || from.place != c->manifest.state_bytes))
         status = damaged(c, error);
     (void)tri_file_close(from.file);

@@ -10,7 +10,7 @@
  *
  * OWNERSHIP: the directory may hold other files. The manifest is created before any of the files above and removed
  * after them. If there is a manifest, files with these names belong to a run. If there are such files without a
- * manifest, they belong to somebody else, and the directory is refused. */
+ * manifest, they do not belong to a run, and the directory is refused. */
 #ifndef SCHED_CHECKPOINT_CHECKPOINT_H
 #define SCHED_CHECKPOINT_CHECKPOINT_H
 
@@ -69,7 +69,7 @@ struct par_checkpoint {
                                                     triangles in the state; 0: there is no state. NULL: not called */
     void *told_user;              /* passed to told */
     void (*time_up)(void);        /* called when the last state before the limit has been written; from then on `stop`
-                                     says yes. NULL: not called */
+                                     returns true. NULL: not called */
 };
 
 /* Returns a checkpoint that is not open. */
@@ -93,19 +93,19 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const cha
  * par_checkpoint_open with resume. */
 enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error);
 
-/* Does the directory hold a run? */
+/* Returns whether the directory holds a run. */
 bool par_checkpoint_is_there(const char *directory);
 
-/* Is there a state from which the run can be resumed? */
+/* Returns whether there is a state from which the run can be resumed. */
 static inline bool par_checkpoint_has_state(const struct par_checkpoint *c) { return c->manifest.state_bytes > 0; }
 
-/* Is there a state, and does it belong to a sweep? */
+/* Returns whether there is a state of a sweep. */
 static inline bool par_checkpoint_has_sweep(const struct par_checkpoint *c)
 {
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_SWEPT_STATE;
 }
 
-/* Is there a state, and does it belong to several ranks? */
+/* Returns whether there is a state of several ranks. */
 static inline bool par_checkpoint_has_ranks(const struct par_checkpoint *c)
 {
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_RANKS_STATE;

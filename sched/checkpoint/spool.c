@@ -1,5 +1,5 @@
-/* Tiles in a file. Heads and arrays are stored as they lie in memory, so a file can be read only on the same kind of
- * machine; its first word shows whether it fits. */
+/* Tiles in a file. Heads and arrays have the same layout as in memory, so a file can be read only on the same kind of
+ * machine. Its first word shows whether this is the case. */
 #include "sched/checkpoint/spool.h"
 #include "sched/tiles/tile_arrays.h"
 #include "sched/tunables.h"
@@ -22,7 +22,7 @@ struct head {
 
 /* --- arrays of a tile, packed */
 
-/* Does array k hold numbers of vertices? */
+/* Returns whether array k holds vertex numbers. */
 static bool is_of_numbers(int k) { return k == PAR_TILE_CORNERS || k == PAR_TILE_ENDS; }
 
 /* Lists the arrays of a tile as they are packed: numbers of vertices take half the bytes. */
@@ -102,7 +102,7 @@ static void send_off(struct par_spool *spool)
     spool->sent = spool->length;
 }
 
-/* Appends a tile to the file. On errors spool->length stays, so a partly written tile does not count. */
+/* Appends a tile to the file. On errors spool->length does not change, so a partly written tile does not count. */
 static enum tri_status append_tile(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
 {
     const size_t n = bytes_of(tile, spool->n_attributes);
@@ -159,7 +159,7 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
         array[k].at = number[k] = unpacked(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
         memory = memory && number[k];
     }
-    /* The arrays of numbers have been unpacked; the others are used where they lie. */
+    /* The arrays of vertex numbers have been unpacked. The other arrays are used in place. */
     par_tile_point_at(&tile, array);
     enum tri_status status = memory ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(number[PAR_TILE_CORNERS]);

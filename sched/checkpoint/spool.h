@@ -1,5 +1,5 @@
 /* A spool keeps the tiles of a sweep in a file, in the order in which they are handed out, and passes each tile on to
- * another sink. After the process has died, the receiver can be given all tiles again.
+ * another sink. If the process dies, a resumed run passes all tiles to the receiver again.
  *
  *     | head | arrays of tile 1, each padded to 8 bytes | head | arrays of tile 2 | ...
  *

@@ -1,5 +1,5 @@
 /* Writing and reading the state of a run, and the decision when to write one. One function for each part of a state
- * (carry_...) both writes and reads it, so both have the same format. Arrays are stored as they lie in memory, so a
+ * (carry_...) both writes and reads it, so both have the same format. Arrays have the same layout as in memory, so a
  * state can be read only on the same kind of machine. */
 #include "sched/checkpoint/state.h"
 
@@ -16,7 +16,7 @@
 
 /* --- the hash that identifies a run */
 
-/* The bounds. Optional ones are hashed only if they are set, so that runs without them keep their hash. */
+/* Hashes the bounds. Optional ones are hashed only if they are set, so that runs without them keep their hash. */
 static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
 {
     const double reals[] = {q->min_angle, q->max_area, q->area_scale};
@@ -28,14 +28,14 @@ static uint64_t hash_bounds(uint64_t hash, const struct tri_quality *q)
     return q->passes > 0 ? tri_hash(hash, &q->passes, sizeof q->passes) : hash;
 }
 
-/* The options on which the mesh depends. The number of threads and the memory are not among them. */
+/* Hashes the options on which the mesh depends. The number of threads and the memory limit are not among them. */
 static uint64_t hash_options(uint64_t hash, const struct par_options *o)
 {
     const int64_t others[] = {o->by_block, o->size_test_in_parallel};
     return tri_hash(tri_hash(hash, &o->cell_triangles, sizeof o->cell_triangles), others, sizeof others);
 }
 
-/* The mesh at the beginning. n_kept: number of vertices before refinement, which alone have attributes. */
+/* Hashes the initial mesh. n_kept: number of vertices before refinement, which alone have attributes. */
 static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m, int32_t n_kept)
 {
     const int64_t counts[] = {m->n_vertices, m->n_triangles, m->n_subs, m->n_regions, m->n_columns, m->n_attributes};
@@ -139,7 +139,7 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
     }
 }
 
-/* How many items are missing? */
+/* Returns how many items are missing. */
 static int32_t more(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
 
 /* The counts of the mesh. When reading, its arrays grow to hold them. */
@@ -212,7 +212,7 @@ static enum tri_status carry(struct par_state_file *f, void *user, struct tri_er
     carry_counts(cargo, f, run->mesh);
     if (cargo->memory)
         carry_mesh(f, run->mesh);
-    if (cargo->tiles) { /* its cells are made again from the input, so they are not stored */
+    if (cargo->tiles) { /* the cells of a sweep are made again from the input, so they are not stored */
         carry_sweep(cargo, f);
     } else {
         carry_partition(cargo, f, &run->cells);
@@ -242,7 +242,7 @@ bool par_state_is_due(const struct par_checkpoint *c, double now, double triangl
     return now - c->last >= wait || par_state_is_last(c, now, triangles);
 }
 
-/* Number of triangles in memory. */
+/* Returns the number of triangles in memory. */
 static double live_triangles(const struct par_run *run) { return (double)(par_triangles(run) - run->gone); }
 
 /* Writes a state, and measures how long it takes. If it is the last state before the limit, requests the end of the
@@ -263,8 +263,8 @@ static enum tri_status save(struct par_checkpoint *c, struct par_run *run, struc
 }
 
 #ifndef NDEBUG
-/* After reading: do the worklist's entries name existing triangles, and do the keys ascend? Links of triangles are not
- * checked, since free triangles have not been marked yet. */
+/* Called after reading. Returns whether the worklist's entries name existing triangles, and the keys ascend. Links of
+ * triangles are not checked, since free triangles have not been marked yet. */
 static bool is_state_sound(const struct par_run *run)
 {
     const struct par_ids *list = &run->worklist;
@@ -330,10 +330,10 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_run *run, 
     return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
 }
 
-/* A tri_stop callback: is a halt due, to write a state? Called before each block begins, on any thread; it only reads
- * the checkpoint and an atomic count. It may return false again later, since the halt ends when the state has been
- * written. States take at most a tenth of the time: one is due only after PAR_STATE_REST times the duration of the
- * last. */
+/* A tri_stop callback: returns whether a halt is due, to write a state. Called before each block begins, on any thread;
+ * it only reads the checkpoint and an atomic count. It may return false again later, since the halt ends when the state
+ * has been written. States take at most a tenth of the time: one is due only after PAR_STATE_REST times the duration of
+ * the last. */
 static bool is_halt_due(void *user)
 {
     const struct par_run *run = user;

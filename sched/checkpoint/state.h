@@ -8,8 +8,8 @@
  * mesh, the worklist and other lists, the free ranges of the arrays, the cells and the counts. All of these are in the
  * state, with the numbers by which they refer to each other. Refinement only reads the rest of the mesh (parents,
  * regions, limits, the caller's order), which is made again from the input. Tiles in the file are handed out again
- * unchanged. So neither the number of threads nor the memory need be the same. A run is identified by a hash of its
- * initial mesh, bounds and options, on which everything else depends. */
+ * unchanged. A run may therefore be resumed with another number of threads or another memory limit. A run is identified
+ * by a hash of its initial mesh, bounds and options, on which everything else depends. */
 #ifndef SCHED_CHECKPOINT_STATE_H
 #define SCHED_CHECKPOINT_STATE_H
 
@@ -17,8 +17,8 @@
 #include "sched/schedule/phase.h"
 #include "sched/tiles/tiles.h"
 
-/* Would a state written now be the last one before the time limit? now: tri_seconds(); triangles: number of triangles
- * that the state would hold.
+/* Returns whether a state written now would be the last one before the time limit. now: tri_seconds(). triangles:
+ * number of triangles that the state would hold.
  *
  * The last state begins at the latest when the remaining time is twice the time that writing it takes. That time is
  * estimated from the previous state, in proportion to the numbers of triangles. Early states measure the disk, until
@@ -26,7 +26,7 @@
  * at the beginning could use up all its time. */
 bool par_state_is_last(const struct par_checkpoint *checkpoint, double now, double triangles);
 
-/* Is it time for a state, because of the interval between states or because of the time limit? */
+/* Returns whether a state is due because of the interval between states or because of the time limit. */
 bool par_state_is_due(const struct par_checkpoint *checkpoint, double now, double triangles);
 
 /* Called at the beginning of a run, with the mesh as the caller passed it. If there is a state of a whole mesh,
@@ -57,7 +57,7 @@ enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_ru
 
 /* Called at the beginning of a sweep. Replaces the sink of the tiles by the checkpoint's spool, which hands out the
  * stored tiles again, and calls par_tiles_begin. If there is a state of the sweep, restores the mesh, the lists, the
- * position and the tiles' counts. From this call on the mesh is stopped only where a state can be written.
+ * position and the tiles' counts. From this call on the mesh is stopped only when a state can be written.
  * TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or the sink's error. */
 enum tri_status par_state_begin_sweep(struct par_checkpoint *checkpoint, struct par_run *run,
                                       struct par_tiles *tiles, struct tri_error *error);

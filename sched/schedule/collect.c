@@ -47,7 +47,7 @@ void par_forget_deferred(struct par_report *report) { report->total.gated = repo
 
 /* --- worklists */
 
-/* Merging the triangles that the tasks have left. */
+/* Merging the triangles that tasks have deferred. */
 struct leftovers {
     const struct par_phase_run *p; /* the phase */
     _Atomic(uint64_t) *seen;       /* [n_triangles / 64 + 1] one bit for each triangle that has been met */
@@ -176,7 +176,7 @@ static bool take_back(struct par_phase_run *p)
     return memory;
 }
 
-/* Has the task failed? A pause for room or a requested end is no failure. */
+/* Returns whether the task has failed. A pause for room or a requested end is not a failure. */
 static bool has_failed(const struct par_task *task)
 {
     return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;

@@ -9,8 +9,8 @@
 #include "triangle/base/executor.h"
 
 struct par_deal {
-    int32_t *at;     /* [shares][n_tiles] counts; after par_deal_add_up: where the share's next item of the tile goes */
-    int32_t *start;  /* [n_tiles + 1] where the items of each tile begin; set by par_deal_add_up */
+    int32_t *at;     /* [shares][n_tiles] counts; after par_deal_add_up: index of the share's next item in the tile */
+    int32_t *start;  /* [n_tiles + 1] index of the first item of each tile; set by par_deal_add_up */
     size_t shares;   /* number of shares */
     int32_t n_tiles; /* number of tiles */
     int32_t n;       /* number of items, including those that belong to no tile */
@@ -21,7 +21,7 @@ struct par_deal {
 bool par_deal_reserve(struct par_deal *deal, int32_t n, int32_t n_tiles);
 void par_deal_free(struct par_deal *deal);
 
-/* The items of a share, and its row of counts, one for each tile. */
+/* Return the range of items of a share, and its row of counts, one for each tile. */
 static inline struct tri_range par_deal_share(const struct par_deal *deal, size_t share)
 {
     return tri_share_of(share, deal->shares, deal->n);
@@ -33,7 +33,7 @@ static inline int32_t *par_deal_at(const struct par_deal *deal, size_t share)
 }
 
 /* Turns the counts at[shares][n_tiles] into places, ordered by tile and then by share. start[n_tiles + 1] receives
- * where each tile begins. Returns the sum of all counts. */
+ * the index of the first item of each tile. Returns the sum of all counts. */
 int32_t par_add_up_counts(int32_t *at, size_t shares, int32_t n_tiles, int32_t *start);
 
 /* Does the same for the counts of a deal. Returns the number of items that belong to a tile. */

@@ -59,12 +59,12 @@ struct par_position {
                             halted */
 };
 
-/* Is the run in the middle of a schedule of the whole mesh? */
+/* Returns whether the run is in the middle of a schedule of the whole mesh. */
 static inline bool par_is_phase(enum par_next next) { return next == PAR_SIZES_PHASE || next == PAR_BOUNDS_PHASE; }
-/* Is the next step the sequential call that ends a schedule of the whole mesh? */
+/* Returns whether the next step is the sequential call that ends a schedule of the whole mesh. */
 static inline bool par_is_rest(enum par_next next) { return next == PAR_SIZES_REST || next == PAR_BOUNDS_REST; }
 
-/* Does this step belong to the refinement for sizes alone, which precedes the one for all bounds? */
+/* Returns whether a step belongs to the refinement for sizes alone, which precedes the one for all bounds. */
 static inline bool par_is_of_sizes(enum par_next next) { return next < PAR_BOUNDS; }
 
 #endif

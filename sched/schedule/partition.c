@@ -3,14 +3,14 @@
  * runs, which are then merged in pairs; each column is sorted along y, and then merged with its neighbour. All of this
  * runs as tasks. Samples that compare equal are identical, so the result does not depend on the sorting algorithm.
  *
- * SHAPE. On average over the bounding box of the mesh, cells are about square. If nearly all of the work lies along a
- * line, such as a long narrow gap, this choice is bad: quantiles across the gap then lie side by side inside it. A
- * block that covers one side of a wall cannot split it, and refines up to it as it is. The other half of the work is
- * done later from triangles that are already good, step by step, which makes a mesh that grades several times as
- * slowly. (Measured at 32 degrees: up to 2.3 times the triangles of one sequential call; with cuts across the gap, 1.06
- * times.) So the middle half of the work, as its quantiles show it, is compared with the mesh. If its box is PAR_SKEW
- * times more elongated, numbers of columns and rows are chosen from that box, so that cells are square up to this
- * factor where the work is. */
+ * SHAPE. Averaged over the bounding box of the mesh, cells are about square. This choice is bad if nearly all of the
+ * work lies along a line, such as a long narrow gap: cells then become long strips inside the gap. A block that covers
+ * one side of the gap's wall cannot split the wall, and refines only up to it. The other side is refined later, step by
+ * step, from triangles that are already good. In such a mesh, sizes grow several times as slowly. (Measured at 32
+ * degrees: up to 2.3 times the triangles of one sequential call; with cells across the gap, 1.06 times.) Therefore the
+ * box of the middle half of the work is compared with the bounding box of the mesh. If it is PAR_SKEW times more
+ * elongated, the numbers of columns and rows are chosen from this box, so that the cells with most of the work are
+ * square up to this factor. */
 #include "sched/schedule/partition.h"
 
 #include <assert.h>
@@ -35,8 +35,8 @@ struct sample {
 
 /* A growing list of samples. */
 struct samples {
-    struct sample *item;
-    int64_t n, capacity;
+    struct sample *item;  /* [n] the samples */
+    int64_t n, capacity;  /* number of samples; allocated samples */
 };
 
 /* A tri_take_work callback: appends a sample. user is a struct samples. False: no memory. */
@@ -364,7 +364,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     /* Each sample stands for about this much work. */
     double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
     bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
-    /* The first cut shows where the work lies; if it is very elongated, cut again. */
+    /* If the first cut shows that the work is very elongated, cut again. */
     if (done && choose_for_work(p, cell_triangles))
         done = cut_anew(p, &s, executor);
     free(s.item);
@@ -454,7 +454,7 @@ static int32_t cell_at(const double *bounds, int32_t n, double q)
     return low;
 }
 
-/* Returns the one of the two blocks over a cell whose number has this parity. */
+/* Of the two blocks that cover a cell, returns the one whose number has this parity. */
 static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity ? cell : cell + 1; }
 
 int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point q)
@@ -487,7 +487,7 @@ int32_t par_locate_owner(struct par_locator *locator, const struct par_partition
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     assert(tri_is_live(&mesh->tri[t]));
-    /* Find the block of the first corner; it owns the triangle if its fence holds the other two as well. */
+    /* Find the block of the first corner. It owns the triangle if its fence holds the other two corners as well. */
     int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
     bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
     return owns ? block : TRI_NONE;

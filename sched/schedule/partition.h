@@ -32,7 +32,7 @@ struct par_partition {
     double estimate;            /* estimated number of final triangles of the mesh */
 };
 
-/* The default number of final triangles in a cell, for a mesh that is estimated to end with `triangles` triangles. */
+/* Returns the default number of final triangles in a cell, for a final mesh of about `triangles` triangles. */
 static inline double par_triangles_in_cell(double triangles)
 {
     const double share = triangles / PAR_CELLS_WANTED;
@@ -55,11 +55,11 @@ void par_partition_coarsen(struct par_partition *partition);
 /* Frees the arrays; the partition is empty afterwards. */
 void par_partition_free(struct par_partition *partition);
 
-/* Numbers of blocks, and of cells. */
+/* Return the numbers of blocks, and of cells. */
 static inline int32_t par_blocks(const struct par_partition *p) { return p->n_columns * p->n_rows; }
 static inline int32_t par_cells(const struct par_partition *p) { return (p->n_columns - 1) * (p->n_rows - 1); }
 
-/* Would coarser blocks be worth another round of phases? */
+/* Returns whether coarser blocks are worth another round of phases. */
 static inline bool par_can_coarsen(const struct par_partition *p) { return par_cells(p) >= 16; }
 
 /* Tiles are the blocks of phase 0, those of odd column and odd row. They are numbered column by column, rows upwards.

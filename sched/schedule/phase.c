@@ -231,7 +231,7 @@ static void set_up(struct par_phase_run *p, struct par_task *task)
 }
 
 /* Returns how many more triangles a paused task gets room for. A pause costs the contents of the cache, and all paused
- * blocks wait for the slowest block. Where areas decide, the first estimate is about right, so a sixteenth of it is
+ * blocks wait for the slowest block. If areas decide, the first estimate is about right, so a sixteenth of it is
  * enough; otherwise it is a guess, and a quarter is given. The amount doubles at each pause, but is at most as much as
  * the task has made so far. Room that stays unused serves later phases. */
 static int32_t more_for(const struct par_task *task, const struct tri_quality *quality)
@@ -383,8 +383,8 @@ void par_tell(const struct par_run *run, int phase) { tell_place(run, phase, 0, 
 static int64_t least_made_by(const struct par_task *task) { return par_inserted_by(task) + task->report.inserted_free; }
 
 /* Called on the thread that ran the task, when the task has ended. Adds the task to the progress of all threads; if
- * this is the calling thread, also reports the progress. The number of triangles counts only what has certainly been
- * made, so it never decreases. */
+ * this is the calling thread, also reports the progress. The number of triangles counts only triangles that have
+ * certainly been made, so it never decreases. */
 static void note_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
@@ -427,7 +427,7 @@ static void run_tasks(struct par_phase_run *p)
     report->phase_seconds[p->phase] += seconds;
 }
 
-/* Is any task in this state? */
+/* Returns whether any task is in this state. */
 static bool is_any(const struct par_phase_run *p, enum par_progress progress)
 {
     for (int32_t i = 0; i < p->n_tasks; i++)

@@ -4,7 +4,7 @@
  *   par_share   how several ranks divide the blocks of a phase among them
  *   par_run     the run: the caller's request, the current position (next.h), and the work left to do
  *   par_phase   runs a phase, of all blocks or of one column
- *   par_steps   the two steps of a round that depend on where the mesh is kept
+ *   par_steps   the two steps of a round that depend on how the mesh is stored
  *
  * THEOREM (triangle/refine/refine.h, serialisation; docs/theory.md, cells and phases). The fences of a phase are
  * disjoint, so its result is the same as if its blocks had run one after the other, in any order. Each block refines
@@ -49,7 +49,7 @@ struct par_share {
     /* Fetches from other ranks the triangles around these vertices, for which blocks wait. Called on the calling thread
      * while no block runs. */
     enum tri_status (*more)(void *user, const struct par_ids *asked, struct tri_error *error);
-    void *user;
+    void *user; /* passed to more */
 };
 
 /* The caller's request. Constant during the run. */
@@ -104,7 +104,7 @@ static inline void par_go(struct par_run *run, enum par_next to)
     run->place.next = to;
 }
 
-/* The caller's hooks, for a sequential call; empty if there are none. */
+/* Returns the caller's hooks for a sequential call; empty if there are none. */
 static inline struct tri_refine_hooks par_hooks(const struct par_run *run)
 {
     return run->asked.options->hooks ? *run->asked.options->hooks : (struct tri_refine_hooks){0};
@@ -115,7 +115,7 @@ struct par_turn {
     const struct par_partition *partition; /* the blocks */
     int32_t only;                /* run only blocks of this column; TRI_NONE: of all columns */
     struct par_share *share;     /* NULL: this process runs all blocks and holds every triangle that they read */
-    const struct tri_stop *halt; /* checked before each block begins: if it says yes, the block does not begin; NULL:
+    const struct tri_stop *halt; /* checked before each block begins: if it returns true, the block does not run; NULL:
                                     the phase is never halted */
 };
 
@@ -139,8 +139,8 @@ struct par_turn {
  * block of the same phase, because two of its corners lie in the first block's fence. */
 enum tri_status par_phase(struct par_run *run, const struct par_turn *turn, struct tri_error *error);
 
-/* The two steps of a round that depend on where the mesh is kept. There are three implementations: in memory
- * (schedule.c), for a swept mesh (sched/tiles/sweep.c), where a round is one column, and on ranks
+/* The two steps of a round that depend on how the mesh is stored. There are three implementations: in memory
+ * (schedule.c); for a swept mesh, in which each round is one column (sched/tiles/sweep.c); and on ranks
  * (sched/ranks/ranks.c). */
 struct par_steps {
     /* Runs phase place.phase, writes the checkpoint states that are due, and advances place.phase. */

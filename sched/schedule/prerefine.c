@@ -1,5 +1,5 @@
-/* Two kinds of pre-refinement. If areas decide where triangles are, the mesh is refined to the same bounds with areas
- * scaled up. Otherwise bad triangles are refined whose edges are long compared with their cell. */
+/* Two kinds of pre-refinement. If areas decide where the triangles are, the mesh is refined to the same bounds with
+ * areas scaled up. Otherwise only bad triangles with edges that are long compared with their cell are refined. */
 #include "sched/schedule/prerefine.h"
 
 #include <assert.h>
@@ -47,7 +47,7 @@ struct coarse_test {
     double least2; /* square of a length: shorter edges are not too long in any cell, which saves looking up the cell */
 };
 
-/* A tri_urgent callback: is the longest edge of the triangle too long for the cell that holds its centre? */
+/* A tri_urgent callback: returns whether the longest edge is too long for the cell that holds the triangle's centre. */
 static bool is_too_long(void *user, const struct tri_point *xy, const tri_vertex_id v[3])
 {
     const struct coarse_test *test = user;

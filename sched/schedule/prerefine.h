@@ -28,9 +28,9 @@ double par_radius2(struct tri_point a, struct tri_point b, struct tri_point c);
  * cell holds about PAR_COARSE_PER_CELL triangles. cell: final triangles in a cell. */
 struct tri_quality par_coarse_bounds(const struct tri_quality *quality, double cell);
 
-/* Is the input coarse compared with the final mesh, so that the bounds on sizes decide where its triangles are?
- * Otherwise the features of the input decide. If true, each level has at most a quarter of the triangles of the level
- * above. */
+/* Returns true if the input is coarse compared with the final mesh, so that the bounds on sizes decide where the
+ * triangles are. Otherwise the features of the input decide. If true, each level has at most a quarter of the triangles
+ * of the level above. */
 bool par_areas_decide(const struct par_run *run, const struct tri_quality *quality, double estimate,
                       double cell);
 

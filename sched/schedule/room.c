@@ -71,7 +71,7 @@ static void end_range(struct par_view *view, enum par_kind kind)
     range->next = *counts.used;
 }
 
-/* Does the room have vertices and triangles for this many points? At most one of the points needs a subsegment. */
+/* Returns whether the room suffices for this many points. At most one of the points needs a subsegment. */
 static bool has_room(const struct par_room *room, int32_t points)
 {
     return par_room_left(room, PAR_VERTICES) >= points && par_room_left(room, PAR_TRIANGLES) / 2 >= points;
@@ -86,7 +86,7 @@ enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, int32_t po
     assert(mesh == &view->mesh);
     for (enum par_kind kind = PAR_VERTICES; points > 1 && kind < PAR_KINDS; kind++)
         end_range(view, kind);
-    /* Several points: is there room for all of them, in any of the block's ranges? */
+    /* Several points: check whether all of them fit into the block's ranges. */
     view->points = points > 1 && !has_room(&view->room, points) ? points : 0;
     if (view->points > 0)
         return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");

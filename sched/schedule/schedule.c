@@ -47,7 +47,7 @@ static enum tri_status prerefine_uniform(struct par_run *run, const struct tri_q
     return refine_level(run, &coarse, level + 1, error);
 }
 
-/* The checkpoint of the whole run; NULL on ranks, whose states are written in sched/ranks/keep.c. */
+/* Returns the checkpoint of the run; NULL on ranks, whose states are written by sched/ranks/keep.c. */
 static struct par_checkpoint *checkpoint_of(const struct par_run *run)
 {
     return run->asked.options->carrier ? NULL : run->asked.options->checkpoint;
@@ -103,7 +103,7 @@ static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, si
 /* Numbers the mesh independently of the ids that blocks gave, and removes unused places from its arrays. */
 static enum tri_status number_mesh(struct par_run *run, struct tri_error *error)
 {
-    const struct timed *timed = run->asked.executor.self; /* not measured as shares: numbering is separate */
+    const struct timed *timed = run->asked.executor.self; /* use the inner executor: numbering is measured separately */
     struct tri_mesh *mesh = run->mesh;
     const double began = tri_seconds(), bytes = par_number_bytes(mesh->n_triangles, mesh->n_vertices, mesh->n_subs);
     par_tell(run, PAR_NUMBERING);
@@ -135,8 +135,8 @@ static enum tri_status leave_no_gaps(struct par_run *run, bool numbering, struct
     return status;
 }
 
-/* Offers to write a state between two steps. Not if there is a state of a sweep: a resumed run repeats the steps before
- * the sweep, and must not overwrite that state. */
+/* Offers to write a state between two steps. Does nothing if there is a state of a sweep: a resumed run repeats the
+ * steps before the sweep, and must not overwrite that state. */
 static enum tri_status offer_checkpoint(struct par_run *run, bool surely, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(run);
@@ -144,7 +144,7 @@ static enum tri_status offer_checkpoint(struct par_run *run, bool surely, struct
     return is_kept ? par_state_border(checkpoint, run, NULL, surely, error) : TRI_OK;
 }
 
-/* From here on steps can be stopped anywhere; work since the last state is then lost. */
+/* Allows steps to be stopped at any point from now on. Work since the last state is then lost. */
 static void let_stop(struct par_run *run)
 {
     if (checkpoint_of(run))
@@ -188,7 +188,7 @@ static enum tri_status end_round(void *self, bool *again, struct tri_error *erro
     return TRI_OK;
 }
 
-/* Is a mesh of this many triangles too large for the bound on memory, or for 32-bit ids? */
+/* Returns whether a mesh of this many triangles is too large for the memory limit or for 32-bit ids. */
 static bool is_too_much(const struct par_run *run, double triangles)
 {
     const struct par_options *options = run->asked.options;
@@ -230,7 +230,7 @@ static void go_back(struct par_run *run, struct before *before)
     report->most_live = live;
 }
 
-/* *done: the mesh has been handed out and is gone. Otherwise the run is as before. */
+/* Sweeps the mesh. *done: the mesh has been handed out and removed. Otherwise the run is as before. */
 static enum tri_status try_to_sweep(struct par_run *run, const struct par_partition *partition, bool *done,
                                     struct tri_error *error)
 {
@@ -257,8 +257,8 @@ static enum tri_status fail_without_scratch(const struct par_run *run, double tr
                     tri_size_text((double)run->asked.options->memory).text);
 }
 
-/* The whole mesh does not fit in memory. It is swept if no step follows this schedule and the sink can begin again. If
- * that is impossible, or leaves work, the mesh is moved to files as it grows. */
+/* Called if the whole mesh does not fit in memory. Sweeps it if no step follows this schedule and the sink can begin
+ * again. If the sweep is impossible, or leaves work, the mesh is moved to files as it grows. */
 static enum tri_status leave_memory(struct par_run *run, const struct par_partition *partition,
                                     struct tri_error *error)
 {
@@ -363,7 +363,7 @@ static void begin_rounds(struct par_run *run)
     run->place.round = run->place.phase = run->place.step = 0;
 }
 
-/* Begins the schedule of the whole mesh: here it is swept, moved to files, or distributed to ranks, if need be. */
+/* Begins the schedule of the whole mesh. If necessary, sweeps it, moves it to files, or distributes it to ranks. */
 static enum tri_status begin_schedule(struct par_run *run, const struct tri_quality *quality,
                                       const struct par_partition *partition, struct tri_error *error)
 {
@@ -397,7 +397,7 @@ static enum tri_status run_whole_schedule(struct par_run *run, const struct tri_
     return status || !is_there ? status : run_schedule(run, quality, &run->cells, true, error);
 }
 
-/* Final triangles in a cell: as requested, or the default. */
+/* Returns the number of final triangles in a cell: as requested, or the default. */
 static double cell_size(const struct par_run *run, double estimate)
 {
     const double asked = run->asked.options->cell_triangles;
@@ -444,7 +444,7 @@ static double estimate_of(struct par_run *run, const struct tri_quality *quality
     return estimate;
 }
 
-/* Begins a sequential call, with as many points as make this many triangles. *done: they were enough. */
+/* Runs a sequential call, limited to the points of about this many triangles. *done: no work is left. */
 static enum tri_status refine_a_little(struct par_run *run, const struct tri_quality *quality,
                                        double triangles, bool *done, struct tri_error *error)
 {
@@ -457,7 +457,7 @@ static enum tri_status refine_a_little(struct par_run *run, const struct tri_qua
     *done = !report.hit_limit;
     if (*done)
         par_add_up(&run->report->total, &report);
-    else /* the schedule will find the triangles again that the limit left */
+    else /* the schedule finds the remaining bad triangles again, and counts them */
         par_add_points(&run->report->total, &report);
     run->report->seconds_prerefine += tri_seconds() - began;
     return status;
@@ -465,8 +465,8 @@ static enum tri_status refine_a_little(struct par_run *run, const struct tri_qua
 
 /* Refines to these bounds, by one call if there is little work, otherwise by the schedule. `sure`, the work for areas
  * and existing triangles, is known; `estimate` also guesses the work for angles, and a few small parts of a mesh can
- * make the guess wrong by orders of magnitude. If only the guess is large, a little is refined first: either that is
- * all, or the next estimate is better. */
+ * make the guess wrong by orders of magnitude. If only the guess is large, a part of the mesh is refined first. Then
+ * either no work is left, or the next estimate is better. */
 static enum tri_status refine_level(struct par_run *run, const struct tri_quality *quality, int level,
                                     struct tri_error *error)
 {
@@ -505,8 +505,8 @@ static enum tri_status order_work(struct par_run *run, const struct tri_quality 
     return status;
 }
 
-/* Runs the schedule for all bounds after that for sizes, on the same cells: on ranks no process holds the whole mesh
- * now, so it cannot be cut again. Its triangles are small against the cells, so no coarse mesh is needed. */
+/* Runs the schedule for all bounds after the one for sizes, on the same cells. On ranks, no process holds the whole
+ * mesh now, so cells cannot be cut again. Triangles are small against the cells, so no coarse mesh is needed. */
 static enum tri_status refine_again(struct par_run *run, const struct tri_quality *quality, struct tri_error *error)
 {
     double began = tri_seconds(), sure;
@@ -546,7 +546,7 @@ static enum tri_status refine_sizes_first(struct par_run *run, const struct tri_
     return offer_checkpoint(run, false, error);
 }
 
-/* Do the bounds or options rule out a schedule? */
+/* Returns whether the bounds or options rule out a schedule. */
 static bool must_be_sequential(const struct tri_quality *quality, const struct par_options *options)
 {
     const bool is_tied = options->hooks && (options->hooks->gate || options->hooks->fence);
@@ -577,13 +577,13 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
     if (options->carrier)
         return par_whole_on_ranks(options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
-    /* The sink failed: the finished mesh is kept in a state, if that can be written. */
+    /* The sink failed: write a state of the finished mesh, if possible. */
     if (status && options->checkpoint && !tri_wants_smoothing(run->asked.quality))
         (void)par_state_border(options->checkpoint, run, NULL, true, NULL);
     return status;
 }
 
-/* Hands out what has not been handed out yet. status: of the steps before; ranks exchange theirs. */
+/* Hands out the mesh, unless a sweep has done so. status: of the previous steps; ranks exchange their statuses. */
 static enum tri_status deliver(struct par_run *run, enum tri_status status, struct tri_error *error)
 {
     if (!status && run->place.next < PAR_HAND_OUT)
@@ -601,7 +601,7 @@ static enum tri_status deliver(struct par_run *run, enum tri_status status, stru
     return status;
 }
 
-/* Ends what the run has opened and frees its lists, after success and after errors. */
+/* Closes everything that the run has opened and frees its lists, after success and after errors. */
 static void clean_up(struct par_run *run)
 {
     const struct par_options *options = run->asked.options;
@@ -674,7 +674,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     status = status ? status : tri_ask_lengths(mesh, quality->lengths, &run.asked.executor, error);
     status = status || can_sweep ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);
     status = check_ranks(&run, status, error);
-    if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* otherwise a sweep keeps the bound */
+    if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* otherwise a sweep limits memory */
         status = par_park_open(&run.park, mesh, options->sink || options->park ? options->scratch : NULL,
                                options->memory, error);
     if (status) {
@@ -683,7 +683,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     }
     if (run.park)
         timed.executor = par_park_executor(run.park, timed.executor);
-    /* Decided on the mesh as it came, so that a resumed run decides the same. */
+    /* Decided on the initial mesh, so that a resumed run makes the same decision. */
     const bool sizes_first = !sequential && tri_sizes_come_first(mesh, quality, &run.asked.executor);
     run.place.next = sizes_first ? PAR_SIZES : PAR_BOUNDS;
     if (checkpoint_of(&run))

@@ -67,7 +67,7 @@ struct par_options {
     struct par_park **park;  /* without a sink: receives the files in `scratch` that hold the mesh if it does not fit in
                                 `memory`. The mesh stays usable. Free the mesh first, then close *park. Receives NULL if
                                 `memory` is 0. If `park` is NULL, a mesh that does not fit is TRI_NO_MEMORY */
-    struct par_checkpoint *checkpoint; /* where the states of the run are written, and read when it resumes
+    struct par_checkpoint *checkpoint; /* directory for the states of the run, from which it can be resumed
                                           (sched/checkpoint/state.h); NULL: no checkpoints */
     bool count_remaining;    /* if the mesh is handed out: counts the triangles that still violate the bounds, by
                                 reason */
@@ -90,7 +90,7 @@ struct par_options {
 
 enum { PAR_SHARINGS = 7 }; /* one entry for each power of two of shares up to TRI_MOST_SHARES */
 
-enum par_way { /* where the mesh was kept during the run */
+enum par_way { /* how the mesh was stored during the run */
     PAR_IN_MEMORY,
     PAR_SWEPT,  /* column by column; finished tiles left memory */
     PAR_PARKED  /* the whole mesh, in files mapped into memory */
@@ -124,7 +124,7 @@ struct par_report {
     int64_t prerefined;          /* triangles when the first phase began */
     int64_t deferred, left_over; /* triangles deferred by fences, over all phases; bad triangles that were left for
                                     sequential calls */
-    enum par_way way;            /* where the mesh was kept */
+    enum par_way way;            /* how the mesh was stored */
     int64_t most_live;           /* largest number of triangles in the mesh at any time, including unused room of
                                     blocks */
     int64_t remain[TRI_EXCUSES]; /* triangles that still violate the bounds, by reason */
@@ -147,7 +147,7 @@ struct par_report {
     int32_t n_blocks, block_capacity; /* number of entries; allocated entries */
 };
 
-/* The default options: everything 0 or NULL. */
+/* Returns the default options: all members 0 or NULL. */
 struct par_options par_defaults(void);
 
 /* Refines as tri_refine does, with several threads.

@@ -13,7 +13,7 @@ struct smoothing {
     struct tri_smooth *smooth; /* the smoother, shared by all blocks */
     enum tri_smooth_pass pass; /* what this pass does to vertices */
     int phase;                 /* 0 to 3 */
-    tri_vertex_id *vertex;     /* [n] vertices that are still to be treated in this pass, in ascending order at first */
+    tri_vertex_id *vertex;     /* [n] vertices not yet treated in this pass; ascending in the first phase */
     tri_vertex_id *dealt;      /* [n] the same, ordered by block */
     int32_t n;                 /* count of vertices left in this pass */
     struct par_deal deal;      /* counts and places, with blocks of the phase as tiles */
@@ -23,7 +23,7 @@ struct smoothing {
     int64_t moved;             /* vertices moved so far in this pass */
 };
 
-/* A task: sets the block of each vertex of one share. It stays while the phase runs, although vertices move. */
+/* A task: sets the block of each vertex of one share. A vertex keeps its block during the phase, even if it moves. */
 static void find_homes(void *context, size_t share)
 {
     const struct smoothing *s = context;
@@ -64,7 +64,7 @@ static void smooth_block(void *context, size_t block)
                                        &s->count[block], NULL);
 }
 
-/* After a phase: gathers the vertices that the blocks left, which are the list of the next phase, and the counts.
+/* Called after a phase. Gathers the counts, and the vertices that the blocks left, as the list of the next phase.
  * Returns the first error. */
 static enum tri_status gather(struct smoothing *s, struct tri_error *error)
 {
@@ -99,7 +99,8 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
     return status;
 }
 
-/* One pass: all movable vertices, in four phases; those that no block could treat follow in one sequential call. */
+/* Runs one pass: all movable vertices in four phases, then the vertices that no block could treat in one sequential
+ * call. */
 static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pass, struct tri_error *error)
 {
     const struct tri_mesh *mesh = s->run->mesh;
@@ -116,13 +117,13 @@ static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pas
             s->vertex[s->n++] = v;
     for (s->phase = 0; !status && s->phase < PAR_PHASES; s->phase++)
         status = smooth_phase(s, error);
-    s->smooth->home = NULL; /* the rest by one call */
+    s->smooth->home = NULL; /* remaining vertices in one sequential call */
     status = status ? status : tri_smooth_some(s->smooth, pass, s->vertex, s->n, 0, &last, error);
     s->moved += last.moved;
     return status;
 }
 
-/* All passes; ends early if a pass moves no vertex. */
+/* Runs all passes. Ends early if a pass moves no vertex. */
 static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
@@ -151,7 +152,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     return status;
 }
 
-/* Numbers the mesh by its tiles, after making sure that there is memory for it. */
+/* Numbers the mesh by its tiles. If the memory limit does not allow this, the mesh first moves to files. */
 static enum tri_status number(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;

@@ -1,5 +1,5 @@
-/* How many threads a call may use. To find out how many threads the system allows, they are started and made to wait
- * for each other, so that all exist at the same time. */
+/* Determines how many threads a call may use. To test how many threads the system allows, this many are started and
+ * wait for each other, so that all exist at the same time. */
 #include "sched/schedule/threads.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #ifdef _OPENMP
 #include <omp.h>
 
-/* The number of threads if the caller did not request one; and whether to test that the system allows that many. */
+/* Return the number of threads if the caller did not request one, and whether to test that the system allows it. */
 static int default_threads(void) { return omp_in_parallel() ? 1 : omp_get_max_threads(); }
 static bool must_try(int threads, bool wary) { return wary || threads > omp_get_num_procs(); }
 

@@ -1,8 +1,8 @@
 /* The threads of a call: how many there can be, and the team of threads that runs its tasks.
  *
- * A team exists only during the call that made it, and its threads sleep when there are no tasks. So no thread remains
- * after the call that a fork, or another thread that makes a call, could meet. In builds with OpenMP its runtime starts
- * the threads, so its settings apply (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE); in other builds the system does. */
+ * A team exists only during the call that made it, and its threads sleep when there are no tasks. After
+ * the call, no remaining thread can disturb a fork or a call on another thread. In builds with OpenMP, its runtime
+ * starts the threads, so its settings apply (OMP_PROC_BIND, OMP_PLACES, OMP_STACKSIZE). */
 #ifndef SCHED_SCHEDULE_THREADS_H
 #define SCHED_SCHEDULE_THREADS_H
 
@@ -22,7 +22,7 @@ enum { PAR_MOST_THREADS = 1024 };
  * That can still happen if memory runs out later. */
 int par_threads(int asked, bool wary);
 
-/* Is this thread running a task of a team? */
+/* Returns whether this thread is running a task of a team. */
 bool par_team_works(void);
 
 /* A team: the calling thread and its helper threads. Belongs to the thread that set it up. */

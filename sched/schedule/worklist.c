@@ -1,5 +1,5 @@
-/* Lists of ids; filling the worklist; ordering it by tile. Triangles are judged in shares, which run as tasks, and the
- * bad ones are gathered in the order of the shares, so the result does not depend on the number of threads. */
+/* Lists of ids; filling the worklist, and ordering it by tile. Triangles are judged in shares, which run as tasks. Bad
+ * triangles are gathered in the order of the shares, so the result does not depend on the number of threads. */
 #include "sched/schedule/worklist.h"
 
 #include <assert.h>
@@ -188,7 +188,7 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
 struct ordering {
     const struct tri_mesh *mesh; /* the mesh */
     const struct par_partition *tiles; /* the cells, whose blocks of phase 0 are the tiles */
-    const struct par_ids *worklist;
+    const struct par_ids *worklist;      /* the list to be ordered */
     int32_t first, end;          /* tiles (blocks of phase 0) whose triangles stay in the list */
     struct par_deal deal;        /* counts and places, for shares and tiles */
     union {

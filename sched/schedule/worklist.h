@@ -9,7 +9,7 @@
 /* A list of ids of one kind: triangles, vertices or subsegments, depending on the list. */
 struct par_ids {
     int32_t *item; /* [n] the ids */
-    int32_t n, capacity;
+    int32_t n, capacity; /* number of ids; allocated ids */
 };
 
 /* Makes room for one more id. False: no memory. */
@@ -67,7 +67,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
  * in the whole worklist. So keys do not depend on which other blocks ran at the same time. */
 struct par_keys {
     uint64_t *item; /* [n] ascending; item[i] is the key of worklist entry i */
-    int32_t n, capacity;
+    int32_t n, capacity; /* number of keys; allocated keys */
 };
 
 enum { PAR_NO_ROUND = -1 };

@@ -1,4 +1,4 @@
-/* Lists become rows by counting, share by share, and runs in place. */
+/* Sorts the ids found by all shares by row, with a counting sort. */
 #include "sched/tiles/finds.h"
 
 #include <assert.h>
@@ -36,6 +36,7 @@ void par_finds_free(struct par_finds *finds)
     free(finds->start);
 }
 
+/* Copies the ids of one share, and their notes, to their rows. */
 static void deal_share(void *context, size_t share)
 {
     struct par_finds *finds = context;

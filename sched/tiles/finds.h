@@ -1,5 +1,7 @@
-/* What shares of the mesh find of one kind in a column of tiles: lists of ids, ascending, that are dealt to the tiles
- * and in the end become ranges of free ids. Ids may come with notes. */
+/* Finds the vertices, triangles or subsegments of a column of tiles in parallel.
+ *
+ * Each task searches one share of the mesh and collects ids in ascending order, optionally with a number (a note) for
+ * each. The ids are then sorted by tile. After their tiles have been handed out, they become ranges of free ids. */
 #ifndef SCHED_TILES_FINDS_H
 #define SCHED_TILES_FINDS_H
 
@@ -10,49 +12,51 @@
 
 enum { PAR_FIND_SHARES = TRI_MOST_SHARES };
 
-/* Neighbours in a list are mostly of one row. */
+/* Consecutive ids of a list that belong to one row of tiles. Neighbours in a list mostly do. */
 struct par_span {
-    int32_t row, n;
+    int32_t row; /* row of the tile in its column */
+    int32_t n;   /* number of ids */
 };
 
 struct par_runs {
-    struct par_span *item;
-    int32_t n, capacity;
+    struct par_span *item; /* [n] in the order of the list */
+    int32_t n, capacity;   /* spans used and allocated */
 };
 
 struct par_finds {
-    struct par_ids found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
-    struct par_ids notes[PAR_FIND_SHARES]; /* the same of each; none, or of all of them */
-    struct par_runs runs[PAR_FIND_SHARES]; /* the rows of these */
-    int32_t n_rows;
-    int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
-    int32_t *item;  /* [n] row by row, each in the order of ids */
-    int32_t *note;  /* [n] of these, where they have any */
-    int32_t *start; /* [n_rows + 1] */
-    int32_t n;
+    struct par_ids found[PAR_FIND_SHARES]; /* ids found by each share, ascending */
+    struct par_ids notes[PAR_FIND_SHARES]; /* the note of each id in `found`; empty: the ids have no notes */
+    struct par_runs runs[PAR_FIND_SHARES]; /* the rows of the ids in `found` */
+    int32_t n_rows; /* tiles of the column */
+    int32_t *count; /* [shares][n_rows] ids that a share found in a row; in par_finds_deal: the next index in `item` */
+    int32_t *item;  /* [n] all ids, row by row, ascending in each row; NULL: not sorted yet */
+    int32_t *note;  /* [n] the note of each id in `item`; unused if the ids have no notes */
+    int32_t *start; /* [n_rows + 1] index in `item` of the first id of each row */
+    int32_t n;      /* ids in `item` */
 };
 
-/* False: no memory. To be freed in any case. */
+/* Initialises *finds. False: no memory. Call par_finds_free in any case. */
 bool par_finds_begin(struct par_finds *finds, int32_t n_rows);
 void par_finds_free(struct par_finds *finds);
 
-/* What has been dealt goes, but for how much it was: n, n_rows, start. */
+/* Frees all lists. Keeps n, n_rows and start. */
 void par_finds_forget(struct par_finds *finds);
 
-/* The ids that a share looks at. */
+/* Returns the range of ids that a share searches. n: ids in the mesh. */
 static inline struct tri_range par_finds_share(size_t share, int32_t n)
 {
     return tri_share_of(share, PAR_FIND_SHARES, n);
 }
 
-/* One share at work, by itself: what it finds the others see at the end, so that no cache line goes to and fro. */
+/* The search of one share. Its lists are copied to *finds only at the end, so that threads do not share cache lines. */
 struct par_finder {
-    struct par_finds *finds;
-    size_t share;
-    struct par_ids list, notes;
-    struct par_runs runs;
-    struct par_span last; /* the run of the last ones, which has not been counted */
-    bool no_memory;
+    struct par_finds *finds; /* receives the lists */
+    size_t share;            /* index of the share */
+    struct par_ids list;     /* ids found so far */
+    struct par_ids notes;    /* the note of each id; empty: the ids have no notes */
+    struct par_runs runs;    /* completed spans of `list` */
+    struct par_span last;    /* the current span, which is not yet in `runs`; n 0: there is none */
+    bool no_memory;          /* an allocation has failed */
 };
 
 static inline struct par_finder par_finder_of(struct par_finds *finds, size_t share)
@@ -60,7 +64,7 @@ static inline struct par_finder par_finder_of(struct par_finds *finds, size_t sh
     return (struct par_finder){.finds = finds, .share = share};
 }
 
-/* The last run is over. */
+/* Completes the current span. */
 static inline void par_finder_count(struct par_finder *f)
 {
     if (f->last.n == 0)
@@ -73,6 +77,7 @@ static inline void par_finder_count(struct par_finder *f)
     f->last.n = 0;
 }
 
+/* Appends an item to `list`, which is f->list or f->notes. */
 static inline void par_finder_add(struct par_finder *f, struct par_ids *list, int32_t item)
 {
     if (list->n < list->capacity)
@@ -81,6 +86,7 @@ static inline void par_finder_add(struct par_finder *f, struct par_ids *list, in
         f->no_memory = true;
 }
 
+/* Adds an id that belongs to a row. */
 static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
 {
     if (row != f->last.row) {
@@ -91,14 +97,14 @@ static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
     par_finder_add(f, &f->list, item);
 }
 
-/* With a note; each has one then. */
+/* Adds an id with a note. All ids of a share must then have notes. */
 static inline void par_find_noted(struct par_finder *f, int32_t item, int32_t row, int32_t note)
 {
     par_find(f, item, row);
     par_finder_add(f, &f->notes, note);
 }
 
-/* False: no memory. */
+/* Ends the search and moves the lists to f->finds. False: no memory. */
 static inline bool par_finder_end(struct par_finder *f)
 {
     par_finder_count(f);
@@ -108,17 +114,17 @@ static inline bool par_finder_end(struct par_finder *f)
     return !f->no_memory;
 }
 
-/* Deals what has been found to the rows: item, note and start. False: no memory. */
+/* Sorts all ids that were found by row: sets item, note, start and n. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
 
-/* Replaces a list of ids, ascending, by its runs: first and end of one, then of the next. Short ones are left out, so
- * that the runs take no more room than the ids did: no memory is asked for, and each share does it by itself. */
+/* Replaces an ascending list of ids by its runs of consecutive ids. Each run takes two items: first id, last id + 1.
+ * Short runs are left out. The runs therefore fit into the memory of the list, and nothing is allocated. */
 void par_finds_to_runs(struct par_ids *list);
 
-/* Adds runs, as par_finds_to_runs leaves them, to ranges; false: no memory. */
+/* Adds runs made by par_finds_to_runs to ranges. False: no memory. */
 bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to);
 
-/* The same with those of all shares. */
+/* Calls par_finds_add_runs for the list of each share. False: no memory. */
 bool par_finds_give(const struct par_finds *finds, struct par_ranges *to);
 
 #endif

@@ -1,11 +1,11 @@
-/* New numbers of vertices, subsegments and triangles; then all move.
+/* Computes the new numbers of vertices, subsegments and triangles, then moves them to their new places.
  *
- * THEOREM. Each order is total: new vertices lie at different places; of the triangles that start at a corner each has
- * another second corner, since an edge has one triangle on its left; of the subsegments of a parent, which all run its
- * way, each starts at another vertex. So nothing is left to how the mesh came about.
+ * THEOREM. Each order is total, so the result does not depend on the old numbers. New vertices have different
+ * coordinates. Triangles that start at the same corner have different second corners, since an edge has one triangle on
+ * its left. Subsegments of one parent all run in its direction, and start at different vertices.
  *
- * All memory is asked for before anything moves. A page that is touched for the first time costs as much as sorting
- * what is in it: so memory serves several times, and who works on tiles has one room for all of them. */
+ * All memory is allocated before anything moves. The first access to a page costs as much as sorting its contents.
+ * Memory is therefore reused: arrays are shared by several steps, and each worker uses one buffer for all its tiles. */
 #include "sched/tiles/numbering.h"
 
 #include <assert.h>
@@ -17,9 +17,9 @@
 #include "triangle/base/radix.h"
 #include "triangle/geometry/hilbert.h"
 
-/* A triangle is *turned* when it starts at another of its corners: then it is told by 31 bits, a number with the corner
- * that will be the first. An item is what is sorted, in the lower 31 bits, with the key that it is sorted by above.
- * A tile has an index here, in the order of tiles. */
+/* A turned triangle has 31 bits: its number (old or new), and the index of the corner at which it will start. An item
+ * for sorting has a value in its lower 31 bits, and above it the key by which it is sorted. A tile is identified by its
+ * index in the order of tiles. */
 
 enum { CORNER_BITS = 2, VALUE_BITS = 31 };
 
@@ -34,38 +34,38 @@ static inline int32_t number_in(int32_t turned) { return turned >> CORNER_BITS; 
 static inline int corner_in(int32_t turned) { return turned & 3; }
 
 struct par_numbered_subs {
-    int32_t n;                   /* subsegments that are not free */
-    int32_t *number;             /* [mesh->n_subs] the new number of each */
-    struct tri_subsegment *item; /* [mesh->n_subs] in their new order, on their way back to the mesh */
+    int32_t n;                   /* number of subsegments that are not free */
+    int32_t *number;             /* [mesh->n_subs] the new number of each subsegment */
+    struct tri_subsegment *item; /* [mesh->n_subs] the subsegments in their new order, before they are copied back */
 };
 
 struct par_numbering {
-    struct tri_mesh *mesh;                 /* whose arrays move */
+    struct tri_mesh *mesh;                 /* the mesh to be numbered */
     const struct par_partition *partition; /* its tiles give the order */
     const struct tri_executor *executor;   /* runs shares and tiles; NULL: they run one after the other */
-    int32_t n_kept;     /* the vertices that keep their numbers */
-    int32_t *kept_tile; /* [n_kept] the tile of each of these */
-    struct par_deal vertices, triangles; /* new vertices; all triangles */
-    struct par_numbered_subs subs;         /* as many as the mesh has */
-    /* Memory that serves several times, by several names: each until the next is needed. */
+    int32_t n_kept;     /* number of vertices that keep their numbers */
+    int32_t *kept_tile; /* [n_kept] the tile of each kept vertex */
+    struct par_deal vertices, triangles; /* assign the new vertices and all triangles to tiles */
+    struct par_numbered_subs subs;         /* the subsegments of the mesh */
+    /* Arrays that share memory: each step overwrites the array of the step before. */
     union {
-        int32_t *order;   /* [n_vertices - n_kept] the new vertices, one after the other */
-        int32_t *fan_end; /* of the triangles that start at each */
-        struct tri_triangle *buffer; /* [move_batch_size] those that move at once */
+        int32_t *order;   /* [n_vertices - n_kept] the new vertices in their new order */
+        int32_t *fan_end; /* [n_vertices - n_kept] end of the fan of triangles that start at each new vertex */
+        struct tri_triangle *buffer; /* [move_batch_size] triangles of the batch that moves */
     };
     union {
-        int32_t *tile_of; /* [n_vertices] of a new vertex; TRI_NONE: the id is free */
-        int32_t *number;  /* the new one of each */
+        int32_t *tile_of; /* [n_vertices] tile of each new vertex; TRI_NONE: the id is free */
+        int32_t *number;  /* [n_vertices] new number of each vertex */
     };
     union {
-        int32_t *key;     /* [n_triangles] see below: the order of triangles */
-        int32_t *place;   /* turned: where it goes; TRI_NONE: the id is free */
+        int32_t *key;     /* [n_triangles] sort key of each triangle (see FREE_KEY) */
+        int32_t *place;   /* [n_triangles] new number of each triangle, turned; TRI_NONE: the id is free */
     };
-    int32_t *dealt;      /* [n_triangles] turned, tile by tile, in the end in their new order */
-    void *scratch;       /* what is sorted, vertices on their way, triangles set aside */
+    int32_t *dealt;      /* [n_triangles] old numbers of triangles, turned: by tile, at the end in their new order */
+    void *scratch;       /* items to be sorted, then vertices that move, then triangles that are set aside */
 };
 
-/* The tile of a new number. */
+/* Returns the tile of the vertex with this new number. */
 static inline int32_t tile_of_number(const struct par_numbering *n, int32_t number)
 {
     if (number < n->n_kept)
@@ -73,7 +73,7 @@ static inline int32_t tile_of_number(const struct par_numbering *n, int32_t numb
     return par_holder_of(n->vertices.start, n->vertices.n_tiles, number - n->n_kept);
 }
 
-/* A half-edge where all triangles have their places. */
+/* Converts the code of a half-edge to the new numbers of triangles. */
 static inline tri_halfedge new_code(const int32_t *place_of_triangle, tri_halfedge code)
 {
     static const uint8_t edge_of[4][4] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
@@ -133,7 +133,7 @@ static void find_kept(void *context, size_t share)
     }
 }
 
-/* Returns how many new vertices there are. */
+/* Returns the number of new vertices. */
 static int32_t number_vertices(struct par_numbering *n)
 {
     tri_execute(n->executor, tri_shares(n->n_kept), find_kept, n);
@@ -166,7 +166,7 @@ static int32_t tile_of_sub(const struct par_numbering *n, const struct tri_subse
     return a > b ? a : b;
 }
 
-/* By start, then, since sorting keeps the order of equals, by parent, then by tile. */
+/* Sorts by start vertex, then by parent, then by tile. The sort is stable, so the last key takes precedence. */
 static void number_subs(struct par_numbering *n)
 {
     const struct tri_mesh *mesh = n->mesh;
@@ -204,10 +204,10 @@ static void move_subs(struct par_numbering *n)
         memcpy(mesh->sub, n->subs.item, (size_t)n->subs.n * sizeof *n->subs.item);
 }
 
-/* --- The new order of triangles: tile by tile, in each by their corners' new numbers.  A key is the largest number of
- * a triangle's corners, with that corner. A key says, too, that the triangle is *stray*: its tile is another than
- * that of its first corner. What belongs to a tile is found by one counting sort; its triangles then fit the
- * cache, and tiles are tasks. */
+/* --- The new order of triangles: by tile, then by the new numbers of their corners. The key of a triangle is the
+ * largest new number among its corners, with the index of that corner. STRAY_KEY is added if the tile of the triangle
+ * is not the tile of that corner. One counting sort assigns triangles to tiles. Each tile is then sorted as a task of
+ * its own, and fits the cache. */
 
 enum { FREE_KEY = TRI_NONE, STRAY_KEY = 1 << 30 };
 
@@ -216,15 +216,15 @@ _Static_assert((int64_t)TRI_MAX_VERTICES << CORNER_BITS <= STRAY_KEY, "a key has
 static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
 static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
 
-/* While triangles are sorted: the new number of the second corner of each; and items of the tiles that are being
- * sorted, behind these. */
+/* Parts of `scratch` while triangles are sorted: the new number of the second corner of each triangle, followed by the
+ * items of the tiles that are being sorted. */
 static int32_t *second_of(const struct par_numbering *n) { return n->scratch; }
 static uint64_t *items_of(const struct par_numbering *n)
 {
     return (uint64_t *)n->scratch + n->mesh->n_triangles / 2 + 1;
 }
 
-/* The last tile of corners by their new numbers. */
+/* Returns the last tile of three corners, which are given by their new numbers. */
 static int32_t tile_of_triangle(const struct par_numbering *n, const tri_vertex_id v[3])
 {
     int32_t last = 0;
@@ -245,16 +245,17 @@ static int32_t tile_of_key(const struct par_numbering *n, tri_triangle_id t)
     return tile_of_triangle(n, v);
 }
 
-/* The same for triangles that mostly are of the same tile as the last. */
+/* The new vertices of the last tile that was looked up. The next triangle mostly belongs to the same tile. */
 struct tile_range {
-    int32_t tile, first, count; /* numbers of its vertices */
+    int32_t tile, first, count; /* the tile, its first vertex number, and the number of its vertices; all 0: none yet */
 };
 
 static bool is_within(const struct tile_range *range, int32_t number)
 {
-    return (uint32_t)(number - range->first) < (uint32_t)range->count; /* a stray's is out of all ranges */
+    return (uint32_t)(number - range->first) < (uint32_t)range->count; /* a number with STRAY_KEY is in no range */
 }
 
+/* Returns the tile of a triangle. *last: caches the tile of the previous triangle, if that was not stray. */
 static inline int32_t tile_after(const struct par_numbering *n, struct tile_range *last, tri_triangle_id t)
 {
     int32_t key = n->key[t];
@@ -268,8 +269,8 @@ static inline int32_t tile_after(const struct par_numbering *n, struct tile_rang
     return last->tile;
 }
 
-/* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later
- * one. */
+/* Returns whether a triangle belongs to a later tile than its first corner, which has this number. Only a kept
+ * vertex can be in a later tile, because new vertices with smaller numbers are in the same or an earlier one. */
 static bool is_stray(const struct par_numbering *n, const struct tile_range *last, const tri_vertex_id v[3],
                      int32_t number)
 {
@@ -283,7 +284,7 @@ static bool is_stray(const struct par_numbering *n, const struct tile_range *las
 static inline int32_t greater(int32_t a, int32_t b) { return a < b ? b : a; }
 static inline int32_t lesser(int32_t a, int32_t b) { return a < b ? a : b; }
 
-/* No branch tells which corner has the largest number: it could not be predicted. */
+/* Computes the key of a triangle. Finds the largest number without a branch, which could not be predicted. */
 static inline void key_triangle(const struct par_numbering *n, const struct tile_range *last, const int32_t *old,
                                 tri_triangle_id t)
 {
@@ -327,7 +328,7 @@ static void deal_triangles(void *context, size_t share)
     }
 }
 
-/* Items by key, those of one tile. */
+/* Sorts items of one tile by key. */
 static void sort_items(uint64_t *item, uint64_t *scratch, int32_t count)
 {
     int32_t low = INT32_MAX, high = 0;
@@ -356,19 +357,19 @@ static uint64_t by_second(const struct par_numbering *n, int32_t turned)
     return item_of(second_of(n)[number_in(turned)], turned);
 }
 
-/* A tile that is being sorted. Most of its triangles start at one of its own new vertices: they are sorted by counting.
- * The others come before them. */
+/* A tile whose triangles are being sorted. Most of them start at a new vertex of the tile, and are assigned to the fan
+ * of this vertex by counting. The others come first. */
 struct sorting {
-    const struct par_numbering *n;
-    int32_t *turned;            /* [count] of its triangles, then in their new order */
-    uint64_t *item, *spare;     /* [count] */
-    int32_t first, count;       /* of the triangles */
-    int32_t first_own, n_own;   /* of the vertices */
-    int32_t *end;               /* [n_own] of the fan at each */
-    int32_t n_others;
+    const struct par_numbering *n; /* the numbering of the mesh */
+    int32_t *turned;            /* [count] triangles of the tile, at the end in their new order */
+    uint64_t *item, *spare;     /* [count] the triangles as items; scratch memory for sorting */
+    int32_t first, count;       /* new number of the first triangle of the tile; number of its triangles */
+    int32_t first_own, n_own;   /* number of the first new vertex of the tile; number of these vertices */
+    int32_t *end;               /* [n_own] index in `item` of the end of each fan; of its start until it is filled */
+    int32_t n_others;           /* triangles that start at a vertex of an earlier tile or at a kept vertex */
 };
 
-/* The first corner's new number. */
+/* Returns the new number of the first corner. */
 static int32_t first_number(const struct sorting *s, int32_t turned)
 {
     return number_in(s->n->key[number_in(turned)]);
@@ -391,7 +392,7 @@ static void count_fans(struct sorting *s)
     }
     for (int32_t i = 0, sum = s->n_others; i < s->n_own; i++) {
         int32_t count = s->end[i];
-        s->end[i] = sum; /* where it begins */
+        s->end[i] = sum; /* start of the fan; fill_fans advances it to the end */
         sum += count;
     }
 }
@@ -414,7 +415,7 @@ static void take_values(struct sorting *s, int32_t begin, int32_t end)
         s->turned[i] = value_of(s->item[i]);
 }
 
-/* By the next corner, those that start at one. */
+/* Sorts triangles that start at the same corner by their second corner. */
 static void sort_fan(struct sorting *s, int32_t begin, int32_t end)
 {
     if (end - begin <= PAR_FEW_IN_FAN)
@@ -437,7 +438,7 @@ static void sort_others(struct sorting *s)
     }
 }
 
-/* Four items in their order, without a branch that depends on it; all ones stand for those that are not there. */
+/* Sorts up to four items without a branch on their values, and always writes four. Missing items come last. */
 static void sort_four(const uint64_t *item, int32_t count, int32_t *to)
 {
     uint64_t a = item[0] | -(uint64_t)(count < 1), b = item[1] | -(uint64_t)(count < 2);
@@ -450,7 +451,7 @@ static void sort_four(const uint64_t *item, int32_t count, int32_t *to)
     to[3] = value_of(most(high, high_too));
 }
 
-/* Where four are written, fewer may be meant: the next fan overwrites the others. */
+/* Sorts all fans. sort_four writes four values even if the fan is smaller. The next fan overwrites the surplus. */
 static void sort_fans(struct sorting *s)
 {
     for (int32_t i = 0, begin = s->n_others; i < s->n_own; begin = s->end[i++]) {
@@ -462,6 +463,7 @@ static void sort_fans(struct sorting *s)
     }
 }
 
+/* Sorts the triangles of one tile and stores their new places. Called on any thread. */
 static void place_tile(const void *context, size_t tile, uint64_t *room)
 {
     const struct par_numbering *n = context;
@@ -479,10 +481,10 @@ static void place_tile(const void *context, size_t tile, uint64_t *room)
         n->place[t] = turn(first + i, corner_in(s.turned[i]));
         down += first + i < t;
     }
-    n->triangles.at[tile] = down;
+    n->triangles.at[tile] = down; /* triangles of the tile that move to smaller numbers */
 }
 
-/* Returns how many triangles there are. */
+/* Returns the number of triangles. */
 static int32_t sort_triangles(struct par_numbering *n)
 {
     tri_execute(n->executor, n->triangles.shares, key_share, n);
@@ -498,19 +500,19 @@ static size_t sort_scratch(const struct tri_mesh *mesh)
     return (size_t)mesh->n_triangles * (sizeof(int32_t) + two_items) + two_items;
 }
 
-/* --- Triangles move in place, batch by batch of their new places, down from the last: those of a batch are gathered
- * in a buffer; those that stand in their places, and belong to batches to come, are set aside; then the batch is
- * put down. So a triangle is set aside only if it moves down, or, where more of them do than up, and batches go up
- * from the first, only if it moves up: at most half of them. */
+/* --- Triangles move in place, in batches of new places, usually from the last batch to the first. The triangles of a
+ * batch are gathered in a buffer. Triangles of later batches that still occupy these places are set aside. Then the
+ * buffer is copied to its places. Only triangles that move down are set aside. If more triangles move down than up,
+ * batches run from first to last, and only triangles that move up are set aside. This is at most half of them. */
 
 enum { BATCH_SHARES = 32 };
 
 struct move {
-    const struct par_numbering *n;
-    struct tri_range batch;  /* of new places */
-    bool down;               /* batches go down: what is below has not moved yet */
-    int32_t n_aside;        /* before this batch */
-    int32_t aside[BATCH_SHARES]; /* by each share */
+    const struct par_numbering *n; /* the numbering of the mesh */
+    struct tri_range batch;  /* new places of this batch */
+    bool down;               /* batches run from last to first: places below this batch have not been filled yet */
+    int32_t n_aside;        /* triangles set aside so far */
+    int32_t aside[BATCH_SHARES]; /* triangles that each share sets aside, then the index of the first of them */
 };
 
 static struct tri_range batch_share(const struct move *m, size_t share)
@@ -519,7 +521,7 @@ static struct tri_range batch_share(const struct move *m, size_t share)
     return (struct tri_range){m->batch.first + range.first, m->batch.first + range.last};
 }
 
-/* Of triangles in their new order: this one has been set aside, and the number is its place there. */
+/* A flag of an item of `dealt`: the triangle was set aside, and the number is its index among those set aside. */
 static const int32_t ASIDE = INT32_MIN;
 
 static struct tri_triangle *aside_of(const struct par_numbering *n) { return n->scratch; }
@@ -545,14 +547,14 @@ static inline struct tri_triangle renamed(const struct par_numbering *n, const s
                                  0};
 }
 
-/* Something stands here that is to go to a batch to come. */
+/* Returns whether triangle t, which occupies a place of this batch, moves in a later batch. */
 static bool stands_here(const struct move *m, tri_triangle_id t)
 {
     int32_t place = m->n->place[t];
     return place != TRI_NONE && (m->down ? number_in(place) < m->batch.first : number_in(place) >= m->batch.last);
 }
 
-/* Those that come soon are fetched already, so that the memory works on many at once. */
+/* Copies the triangles of a share to the buffer, renumbered. Prefetches later ones, so that accesses overlap. */
 static void gather_batch(void *context, size_t share)
 {
     struct move *m = context;
@@ -570,6 +572,7 @@ static void gather_batch(void *context, size_t share)
     m->aside[share] = aside;
 }
 
+/* Sets aside triangles that move in a later batch, and copies the buffer to its places. */
 static void put_down(void *context, size_t share)
 {
     const struct move *m = context;
@@ -597,7 +600,7 @@ static void move_batch(struct move *m)
     tri_execute(m->n->executor, BATCH_SHARES, put_down, m);
 }
 
-/* How many triangles are to move at once. */
+/* Returns the number of triangles in a batch. */
 static int32_t move_batch_size(int32_t n_triangles)
 {
     return n_triangles / PAR_FEWEST_BATCHES < PAR_MOST_MOVE ? n_triangles / PAR_FEWEST_BATCHES + 1 : PAR_MOST_MOVE;
@@ -618,7 +621,7 @@ static void move_triangles(const struct par_numbering *n, int32_t n_tri)
     assert(m.n_aside <= n->mesh->n_triangles / 2);
 }
 
-/* --- all of it */
+/* --- allocation and the complete numbering */
 
 static size_t most_bytes(size_t a, size_t b) { return a < b ? b : a; }
 
@@ -653,7 +656,7 @@ static enum tri_status allocate(struct par_numbering *n, struct tri_error *error
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
 }
 
-/* Cannot fail. */
+/* Numbers the mesh; all memory has been allocated. Cannot fail. */
 static void renumber(struct par_numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;

@@ -1,8 +1,8 @@
-/* One file for each array, mapped as far as it has disk space.
+/* Each array has one file. The part of the file that has disk space is mapped.
  *
- * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
- * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a part of
- * the bound for what is to come before they grow again. */
+ * INVARIANT: arrays in memory grow only if their new size, the other memory of the process and a reserve together are
+ * within the limit. The other memory is the largest amount that was measured since memory was last trimmed. The reserve
+ * is for memory that the process needs until the arrays grow again. */
 #include "sched/tiles/park.h"
 
 #include <assert.h>
@@ -19,37 +19,41 @@
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS };
 
 struct par_park {
-    const char *folder;         /* NULL: what does not fit is an error */
-    double memory, others;      /* the bound; the most seen in memory beside the arrays, since it was trimmed */
-    double files;               /* bytes of pages of files to begin with: libraries */
-    struct tri_mapped_file sheet[SHEETS]; /* arrays, then extras; changed inside the monitor */
-    struct tri_storage storage;
-    struct tri_bound bound;
-    size_t most, wanted;        /* bytes of disk; with those of the reservation that failed */
-    int fault;                  /* errno of that; 0: none */
-    struct tri_monitor *monitor;
-    const struct tri_stop *outer; /* the mesh's own */
-    struct tri_stop stop;
-    struct tri_executor inner;
-    struct tri_thread *watch;   /* NULL: there is none yet */
-    atomic_bool away, over;     /* arrays are in files; the watch ends */
+    const char *folder;         /* folder for files; NULL: exceeding the limit is an error */
+    double memory;              /* the limit in bytes */
+    double others;              /* largest memory use besides the arrays since memory was last trimmed, in bytes */
+    double files;               /* bytes of file pages in memory when the park was opened: libraries */
+    struct tri_mapped_file sheet[SHEETS]; /* a file for each array, then for extras; protected by the monitor */
+    struct tri_storage storage; /* allocates arrays in the files */
+    struct tri_bound bound;     /* checks the limit before arrays in memory grow */
+    size_t most;                /* largest size of all files so far, in bytes */
+    size_t wanted;              /* size of all files that the failed reservation would have needed, in bytes */
+    int fault;                  /* errno of the reservation or write that failed; 0: none */
+    struct tri_monitor *monitor; /* protects `sheet` and `most` */
+    const struct tri_stop *outer; /* the stop function that the mesh had before; NULL: none */
+    struct tri_stop stop;       /* the stop function of the mesh while it may be parked: checks memory, asks `outer` */
+    struct tri_executor inner;  /* runs the tasks of par_park_executor */
+    struct tri_thread *watch;   /* thread that checks memory periodically; NULL: not started */
+    atomic_bool away, over;     /* the arrays are in files; the thread `watch` must end */
 };
 
-/* --- what is in memory */
+/* --- memory use */
 
-/* More than any bound where the system does not tell. */
+/* Returns the memory in use in bytes; infinity if the system does not report it. */
 static double resident(double *of_files)
 {
     const double all = tri_memory_used(of_files);
     return all > 0 ? all : INFINITY;
 }
 
+/* Updates park->others. */
 static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
 {
     const double others = resident(NULL) - (mesh->storage ? 0 : (double)tri_mesh_bytes_used(mesh));
     park->others = others > park->others ? others : park->others;
 }
 
+/* Returns whether the arrays may have this many bytes in memory (struct tri_bound). */
 static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
@@ -59,6 +63,7 @@ static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 
 /* --- files */
 
+/* Returns the size of all files. */
 static int64_t bytes_now(const struct par_park *park)
 {
     int64_t sum = 0;
@@ -67,6 +72,7 @@ static int64_t bytes_now(const struct par_park *park)
     return sum;
 }
 
+/* Extends a file to hold `bytes` and returns its mapping. NULL: no disk space; park->fault has the reason. */
 static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet, size_t bytes)
 {
     const size_t wanted = (bytes + PAR_PARK_GROWTH - 1) / PAR_PARK_GROWTH * PAR_PARK_GROWTH;
@@ -82,6 +88,7 @@ static void *reserve_sheet(struct par_park *park, struct tri_mapped_file *sheet,
     return NULL;
 }
 
+/* Removes a file and its mapping. */
 static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
 {
     tri_monitor_enter(park->monitor);
@@ -89,14 +96,16 @@ static void drop_sheet(struct par_park *park, struct tri_mapped_file *sheet)
     tri_monitor_leave(park->monitor);
 }
 
-/* --- the storage */
+/* --- callbacks of struct tri_storage */
 
+/* Extends the file of an array. */
 static void *reserve(void *user, enum tri_array array, size_t bytes)
 {
     struct par_park *park = user;
     return reserve_sheet(park, &park->sheet[array], bytes + 1);
 }
 
+/* Writes the contents of an array to its file. */
 static bool fill(void *user, enum tri_array array, const void *from, size_t bytes)
 {
     struct par_park *park = user;
@@ -107,6 +116,7 @@ static bool fill(void *user, enum tri_array array, const void *from, size_t byte
     return false;
 }
 
+/* Returns memory in a file of its own, for other code that works on the mesh. NULL: errno has the reason. */
 static void *extra(void *user, size_t bytes)
 {
     struct par_park *park = user;
@@ -138,12 +148,13 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
     if (status != TRI_NO_MEMORY || !park || !park->fault || park->fault == ENOMEM)
         return status;
     return tri_fail(error, TRI_CANNOT_WRITE, park->folder, 0,
-                    "cannot park %s there of a mesh that does not fit in memory: %s",
+                    "cannot park a mesh that needs %s in this directory: %s",
                     tri_size_text((double)park->wanted).text, strerror(park->fault));
 }
 
-/* --- what leaves memory again */
+/* --- evicting pages */
 
+/* Evicts all pages of the files. */
 static void unmap_pages(struct par_park *park)
 {
     tri_monitor_enter(park->monitor);
@@ -152,6 +163,7 @@ static void unmap_pages(struct par_park *park)
     tri_monitor_leave(park->monitor);
 }
 
+/* Evicts all pages of the files if they fill too large a share of the memory that is left for them. */
 static void look(struct par_park *park)
 {
     if (!atomic_load_explicit(&park->away, memory_order_relaxed))
@@ -162,7 +174,7 @@ static void look(struct par_park *park)
         unmap_pages(park);
 }
 
-/* Whoever works on the mesh asks now and then whether to go on, and looks on that occasion. */
+/* The mesh's stop function, which long loops over the mesh poll. Each call also checks memory. */
 static bool is_asked(void *user)
 {
     struct par_park *park = user;
@@ -170,12 +182,14 @@ static bool is_asked(void *user)
     return tri_stop_is_asked(park->outer);
 }
 
+/* Tasks of an executor that checks memory before each task. */
 struct looking {
-    struct par_park *park;
-    void (*task)(void *context, size_t index);
-    void *context;
+    struct par_park *park;                     /* whose memory is checked */
+    void (*task)(void *context, size_t index); /* the task to run */
+    void *context;                             /* passed to `task` */
 };
 
+/* A task of the executor: checks memory, then runs the caller's task. */
 static void look_and_do(void *context, size_t index)
 {
     const struct looking *l = context;
@@ -183,6 +197,7 @@ static void look_and_do(void *context, size_t index)
     l->task(l->context, index);
 }
 
+/* The run function of the executor. */
 static void run_looking(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     struct par_park *park = self;
@@ -196,7 +211,7 @@ struct tri_executor par_park_executor(struct par_park *park, struct tri_executor
     return (struct tri_executor){run_looking, park};
 }
 
-/* For work that does not look itself. */
+/* A thread that checks memory periodically, for loops that do not poll the stop function. */
 static void *watch(void *user)
 {
     struct par_park *park = user;
@@ -207,21 +222,22 @@ static void *watch(void *user)
     return NULL;
 }
 
-/* --- the move */
+/* --- moving arrays to files */
 
+/* Called if the arrays exceed the limit. Moves them to files, or fails if there is no folder. */
 static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error *error)
 {
     struct par_park *park = user;
     assert(!mesh->storage);
     if (!park->folder && isinf(park->others))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the system does not tell how much memory is in use: a bound of %s cannot be kept",
+                        "the system does not report how much memory is in use, so the limit of %s cannot be kept",
                         tri_size_text(park->memory).text);
     if (!park->folder)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the mesh, %s triangles so far, outgrows the %s of memory that are allowed",
+                        "the mesh, with %s triangles so far, needs more than the allowed %s of memory",
                         tri_count_text(mesh->n_triangles).text, tri_size_text(park->memory).text);
-    for (int k = 0; k < TRI_ARRAYS; k++) /* of a mesh that was dropped */
+    for (int k = 0; k < TRI_ARRAYS; k++) /* files of an earlier mesh that was dropped */
         drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
     tri_memory_trim();
@@ -229,7 +245,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     if (!status && !park->watch)
         park->watch = tri_thread_start(watch, park);
     if (!status && !park->watch)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "cannot start the thread that checks memory use");
     return par_park_status(park, status, error);
 }
 
@@ -238,12 +254,12 @@ enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, si
     const size_t all = tri_mesh_bytes_used(mesh) + bytes;
     if (!park || mesh->storage || allows(park, mesh, all))
         return TRI_OK;
-    tri_memory_trim(); /* what was used for the same before, and is free now, is not counted twice */
+    tri_memory_trim(); /* memory that was freed since must not count as in use */
     park->others = 0;
     return allows(park, mesh, all) ? TRI_OK : leave(park, mesh, error);
 }
 
-/* --- beginning and end */
+/* --- opening and closing */
 
 enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *folder, int64_t memory,
                               struct tri_error *error)

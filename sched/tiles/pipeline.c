@@ -1,10 +1,11 @@
-/* One lock, one condition. INVARIANT under the lock: taken <= begun <= taken + n_slots; thing i has slot i % n_slots
- * from when it is begun until it is taken, and no other has that.
+/* One lock, one condition. INVARIANT under the lock: taken <= begun <= taken + n_slots. Item i
+ * occupies slot i % n_slots from its start until it has been consumed, and no other item does.
  *
- * THEOREM (nobody waits for ever). A worker waits only if the next thing to take has been begun, and is being made or
- * taken, or is made and waits for the caller's thread, which makes other things or takes: none of these waits. For if
- * nothing has been begun that is not taken, something may be begun. Executors may run workers one after the other: the
- * first, in the caller's thread, then does it all. */
+ * THEOREM (no deadlock). A worker waits only if it can neither start nor consume an item. If all started items have
+ * been consumed, another one can be started. Otherwise the next item to be consumed has been started. Either a thread
+ * is making or consuming it, or it is ready for the caller's thread, which is then busy with another item and does not
+ * wait. Executors may also run workers one after the other. The first worker, on the caller's thread, then does all the
+ * work. */
 #include "sched/tiles/pipeline.h"
 
 #include <assert.h>
@@ -13,21 +14,22 @@
 
 #include "triangle/base/system.h"
 
-static _Thread_local char this_thread; /* whose address no other thread has */
+static _Thread_local char this_thread; /* its address identifies a thread */
 
+/* A running pipeline. */
 struct works {
-    const struct par_pipeline *p;
-    const void *caller;          /* its this_thread */
-    struct tri_monitor *monitor; /* of all that follows */
-    bool *made;               /* [n_slots] what is in the slot */
-    int32_t begun, taken;
-    enum tri_status status;
-    struct tri_error *error;
+    const struct par_pipeline *p; /* the pipeline */
+    const void *caller;          /* address of the caller's this_thread */
+    struct tri_monitor *monitor; /* protects the fields below */
+    bool *made;                  /* [n_slots] the item in the slot is ready to be consumed */
+    int32_t begun, taken;        /* items started; items consumed */
+    enum tri_status status;      /* first error; TRI_OK: none */
+    struct tri_error *error;     /* receives the details of the first error; NULL: not wanted */
 };
 
 typedef enum tri_status (*step_call)(void *context, int32_t i, int32_t slot, struct tri_error *error);
 
-/* Without the lock, which is held before and after. */
+/* Calls `make` or `take` for item i. Releases the lock during the call. */
 static void step(struct works *w, step_call call, int32_t i)
 {
     struct tri_error error = {0};
@@ -41,11 +43,13 @@ static void step(struct works *w, step_call call, int32_t i)
     }
 }
 
+/* Returns whether this thread can start an item: a slot is free. */
 static bool may_begin(const struct works *w)
 {
     return w->begun < w->p->n && w->begun < w->taken + w->p->n_slots;
 }
 
+/* Returns whether this thread can consume the next item: it is ready, and this is the caller's thread. */
 static bool may_take(const struct works *w)
 {
     return w->taken < w->begun && w->made[w->taken % w->p->n_slots] && w->caller == &this_thread;
@@ -66,6 +70,7 @@ static void take_next(struct works *w)
     w->taken++;
 }
 
+/* A worker: consumes or makes items until all have been consumed or a call has failed. */
 static void work(void *context, size_t worker)
 {
     struct works *w = context;

@@ -9,12 +9,14 @@
 #include "triangle/base/status.h"
 
 struct par_pipeline {
-    int32_t n;        /* items */
-    int32_t n_slots;  /* at least 1 */
+    int32_t n;         /* number of items */
+    int32_t n_slots;   /* number of slots, at least 1 */
     int32_t n_threads; /* threads of the executor, including the caller's */
+    /* Makes item i in a slot. Called on any thread. */
     enum tri_status (*make)(void *context, int32_t i, int32_t slot, struct tri_error *error);
-    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error); /* NULL: not consumed */
-    void *context;
+    /* Consumes item i from its slot. Called on the caller's thread. NULL: the slot is freed without a call. */
+    enum tri_status (*take)(void *context, int32_t i, int32_t slot, struct tri_error *error);
+    void *context; /* passed to make and take */
 };
 
 /* Returns when all items have been consumed, or with the first status other than TRI_OK of `make` or `take`. */

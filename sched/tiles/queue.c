@@ -1,5 +1,5 @@
-/* One lock, one condition. INVARIANT under the lock: `bytes` is the sum over the list and the tile in hand; status is
- * set once. */
+/* One lock, one condition. INVARIANT under the lock: `bytes` is the total size of the queued tiles and of the tile that
+ * is being passed on. */
 #include "sched/tiles/queue.h"
 
 #include <assert.h>
@@ -10,12 +10,12 @@
 #include "triangle/base/system.h"
 
 struct par_queued {
-    struct par_queued *next;
-    int64_t bytes;
-    struct tri_tile tile; /* which lies packed behind this struct */
+    struct par_queued *next; /* NULL: last in the queue */
+    int64_t bytes;           /* size of this struct and the packed tile */
+    struct tri_tile tile;    /* its arrays point into the packed tile, which follows this struct in memory */
 };
 
-/* NULL: no memory. */
+/* Returns a copy of the tile; NULL: no memory. */
 static struct par_queued *copy_of(const struct tri_tile *tile, int32_t n_attributes)
 {
     const size_t n = par_tile_bytes(tile, n_attributes);
@@ -30,7 +30,8 @@ static struct par_queued *copy_of(const struct tri_tile *tile, int32_t n_attribu
 
 /* --- the thread */
 
-/* The tile that is next, taken from the list; NULL: none will come. Under the lock. */
+/* Removes and returns the first tile of the queue, after waiting for one; NULL: no more tiles will be added. Called
+ * under the lock. */
 static struct par_queued *next_of(struct par_queue *q)
 {
     while (!q->first && !q->closing)
@@ -43,6 +44,7 @@ static struct par_queued *next_of(struct par_queue *q)
     return next;
 }
 
+/* The thread: passes tiles to the target sink. */
 static void *hand_on(void *user)
 {
     struct par_queue *q = user;
@@ -67,7 +69,7 @@ static void *hand_on(void *user)
     return NULL;
 }
 
-/* Waits until all tiles have been handed on, or, where they are to be dropped, until the one in hand has. */
+/* Ends the thread after all queued tiles have been passed on. drop: after the current tile; the others are dropped. */
 static void finish(struct par_queue *q, bool drop)
 {
     if (!q->thread)
@@ -86,6 +88,7 @@ static void finish(struct par_queue *q, bool drop)
 
 /* --- the sink */
 
+/* Returns the status of the target sink so far. */
 static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
 {
     if (q->status && error)
@@ -93,6 +96,7 @@ static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
     return q->status;
 }
 
+/* Begins a stream and starts the thread. Tiles of an earlier stream are dropped. */
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_queue *q = user;
@@ -105,6 +109,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     return status;
 }
 
+/* Appends a copied tile to the queue, after waiting for space. */
 static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct tri_error *error)
 {
     tri_monitor_enter(q->monitor);
@@ -123,6 +128,7 @@ static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct 
     return status;
 }
 
+/* Queues a copy of the tile. Without a thread, passes the tile on at once. */
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct par_queue *q = user;
@@ -134,6 +140,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for a tile of %d triangles", (int)tile->n_triangles);
 }
 
+/* Ends the stream after all queued tiles have been passed on. */
 static enum tri_status end(void *user, struct tri_error *error)
 {
     struct par_queue *q = user;

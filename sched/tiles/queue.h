@@ -15,14 +15,14 @@ struct tri_thread;
 struct par_queue {
     const struct tri_sink *to; /* borrowed */
     int64_t most_bytes;        /* limit of `bytes`; a single larger tile is accepted */
-    int32_t n_attributes;
+    int32_t n_attributes;      /* attributes of a vertex */
     struct tri_thread *thread; /* NULL: no second thread; it shares the fields below, protected by the monitor */
-    struct tri_monitor *monitor;
+    struct tri_monitor *monitor; /* the lock, and the condition for which both threads wait */
     bool closing;              /* no more tiles will be added: the thread ends when the queue is empty */
-    struct par_queued *first, *last;
+    struct par_queued *first, *last; /* the queued tiles; NULL: none */
     int64_t bytes;             /* size of the queued tiles and of the one being passed on */
     enum tri_status status;    /* first error of `to`, after which tiles are dropped; or TRI_OK */
-    struct tri_error error;
+    struct tri_error error;    /* details of that error */
 };
 
 /* Initialises a queue. *queue must not move in memory afterwards. False: no memory. */

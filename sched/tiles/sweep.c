@@ -1,4 +1,4 @@
-/* Columns in turn: refine, look for what is left behind, hand out. */
+/* Processes one column after the other: refines it, checks that its blocks left over no work, and hands it out. */
 #include "sched/tiles/sweep.h"
 
 #include <assert.h>
@@ -15,20 +15,22 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
 }
 
-/* --- The triangles of a sweep's worklist that no block can have yet: the work of columns to come.  THEOREM. A
- * triangle waits for the first odd column whose blocks' right end lies right of all its corners. Until then no
- * block changes it, and none takes it from the worklist: for a block takes and changes what has all corners in its
- * fence, and the fences of that step and of those before end no further right. So the triangle may be missing from
- * the list until its column has its turn, and come into it by its key then. A list costs what is in a few columns. */
+/* --- Work for later columns is kept out of the worklist until its column is reached, so that a scan of the worklist
+ * costs no more than the work of a few columns.
+ *
+ * THEOREM. The result does not change. A triangle waits for the first odd column of blocks whose right end lies right
+ * of all its corners. A block removes from the worklist, and changes, only triangles with all corners in its fence.
+ * Fences of earlier columns end further left, so no block needs the triangle before its column is reached. It is then
+ * merged into the worklist by its key. */
 
 struct ahead {
-    int32_t *item;  /* by odd column, those of one in the order of the worklist */
-    uint64_t *key;  /* of each: its place there */
-    int32_t *start; /* [n_odd + 1] */
-    int32_t n_odd;
+    int32_t *item;  /* [start[n_odd]] triangles, by odd column, in each column in the order of the worklist */
+    uint64_t *key;  /* [start[n_odd]] key of each triangle: its index in the original worklist */
+    int32_t *start; /* [n_odd + 1] index in `item` of the first triangle of each odd column */
+    int32_t n_odd;  /* number of odd columns */
 };
 
-/* The number of the first odd column that reaches beyond x: column 2 i + 1. */
+/* Returns i if column 2 i + 1 is the first odd column whose right end lies right of x. */
 static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_odd)
 {
     int32_t low = 0, high = n_odd - 1; /* the last one reaches to infinity */
@@ -42,6 +44,7 @@ static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_
     return low;
 }
 
+/* Returns the largest x coordinate of the corners. */
 static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
@@ -50,8 +53,8 @@ static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
     return most > c ? most : c;
 }
 
-/* Of the worklist, which no block has had; the run is as before. A counting sort. False: no memory. To be freed in any
- * case. */
+/* Lists the triangles of the worklist by odd column, before any block has run. A counting sort. Does not change the
+ * run. False: no memory. Call free_ahead in any case. */
 static bool list_ahead(struct ahead *ahead, const struct par_run *run, const struct par_partition *partition)
 {
     const struct par_ids *list = &run->worklist;
@@ -85,7 +88,7 @@ static void free_ahead(struct ahead *ahead)
     *ahead = (struct ahead){0};
 }
 
-/* Those that wait for an odd column come to the worklist. False: no memory. */
+/* Merges the triangles that wait for an odd column into the worklist. False: no memory. */
 static bool give_ahead(const struct ahead *ahead, struct par_run *run, int32_t odd)
 {
     int32_t i = odd / 2;
@@ -95,13 +98,14 @@ static bool give_ahead(const struct ahead *ahead, struct par_run *run, int32_t o
     return par_merge_worklist(run, ahead->item + first, ahead->key + first, ahead->start[i + 1] - first);
 }
 
-/* --- How many triangles stay below the bounds, and why, of a mesh that leaves while it is refined.  THEOREM. A bad
- * triangle that stays is on the list: whoever makes a bad triangle looks at it again until it is gone or given up,
- * and of those that were there before, all that are bad are in the worklist, or on the list from the beginning
- * since there was nothing to do at them. What is on the list may be gone, or its number another triangle's: each
- * is judged when it can change no more. */
+/* --- Counts the triangles that still violate the bounds, by reason, although the mesh is handed out during refinement.
+ *
+ * THEOREM. Each bad triangle that remains is in run->remain.listed. A block that makes a bad triangle treats it until
+ * the triangle is gone, or gives it up and lists it. Bad triangles of the initial mesh are in the worklist if they can
+ * be improved, and are listed at the beginning otherwise. A listed triangle may have disappeared, and its id may belong
+ * to another triangle. Listed triangles are therefore judged again as soon as they can no longer change. */
 
-/* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
+/* Returns the report of the run without the counts of deferred triangles: in a finished mesh, deferral is no reason. */
 static struct tri_refine_report report_of(const struct par_run *run)
 {
     struct tri_refine_report report = run->report->total;
@@ -109,7 +113,7 @@ static struct tri_refine_report report_of(const struct par_run *run)
     return report;
 }
 
-/* Of a mesh whose worklist has been filled. False: no memory. */
+/* Lists the bad triangles that cannot be improved. The worklist has been filled. False: no memory. */
 static bool begin_remain(struct par_run *run)
 {
     struct par_ids *list = &run->remain.listed;
@@ -128,8 +132,8 @@ static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, d
     return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
 }
 
-/* Counts the bad triangles with a corner left of x, of which none will change any more, and those that had one left of
- * the last x have been counted. Those that are beside them are still there. In the list those to come stay in front. */
+/* Counts the listed bad triangles with a corner left of x, and removes them from the list. They can no longer change,
+ * and their neighbours are still in the mesh. Triangles with a corner left of the previous x were counted before. */
 static void count_remain(struct par_run *run, double x)
 {
     const struct tri_mesh *mesh = run->mesh;
@@ -150,7 +154,7 @@ static void count_remain(struct par_run *run, double x)
     list->n = kept;
 }
 
-/* Tells the report what has been counted. */
+/* Writes the counts to the report. */
 static void settle_remain(struct par_run *run)
 {
     const struct tri_refine_report report = report_of(run);
@@ -165,7 +169,7 @@ void par_remain_count_all(struct par_run *run)
     run->report->remain_known = true;
 }
 
-/* --- columns in turn */
+/* --- processing the columns */
 
 struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partition *partition)
 {
@@ -175,8 +179,8 @@ struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partit
                               .n_threads = run->report->threads};
 }
 
-/* Something that no block could do lies left of x, where every block has had its turn. The number of a triangle that
- * was left may be that of a good one by now. */
+/* Returns whether the worklist has a bad triangle left of x, where all blocks have run. Entries of the worklist are
+ * judged again, because the id of a triangle may meanwhile belong to a good one. */
 static bool is_left_behind(const struct par_run *run, double x)
 {
     const struct tri_mesh *mesh = run->mesh;
@@ -192,7 +196,8 @@ static bool is_left_behind(const struct par_run *run, double x)
     return false;
 }
 
-/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
+/* Hands out the tiles of an odd column. The even column of blocks to its right has been refined, so they are final. If
+ * blocks left over work (*left), hands out nothing. */
 static enum tri_status finish_column(struct par_run *run, struct par_tiles *tiles, int32_t column, bool *left,
                                      struct tri_error *error)
 {
@@ -208,18 +213,18 @@ static enum tri_status finish_column(struct par_run *run, struct par_tiles *tile
     return status;
 }
 
-/* A sweep at work. */
+/* The state of a sweep. */
 struct sweep {
-    struct par_run *run;
-    struct par_tiles tiles;
-    struct ahead ahead;
-    bool left; /* something is left behind */
+    struct par_run *run;    /* the run */
+    struct par_tiles tiles; /* the tiles, and how many of them have been handed out */
+    struct ahead ahead;     /* work for later columns */
+    bool left;              /* blocks left over work, so the sweep must be abandoned */
 };
 
-/* The odd column of blocks that is the place's. */
+/* Returns the odd column of blocks at the current position. */
 static int32_t odd_column(const struct par_run *run) { return 2 * run->place.column - 1; }
 
-/* The blocks of an odd column, or (the last two phases) those of the even one behind it. */
+/* Refines the blocks of an odd column (phases 0 and 1) or of the even column to its left (phases 2 and 3). */
 static enum tri_status refine_column(void *self, struct tri_error *error)
 {
     struct sweep *s = self;
@@ -240,7 +245,7 @@ static enum tri_status refine_column(void *self, struct tri_error *error)
     return status;
 }
 
-/* The tiles of the column before are handed out; *again: there is another column, and nothing is left behind. */
+/* Hands out the tiles of the previous odd column. *again: there is another column, and no work was left over. */
 static enum tri_status end_column(void *self, bool *again, struct tri_error *error)
 {
     struct sweep *s = self;
@@ -259,7 +264,7 @@ static enum tri_status end_column(void *self, bool *again, struct tri_error *err
     return checkpoint && run->place.column > 2 ? par_state_border(checkpoint, run, &s->tiles, false, error) : TRI_OK;
 }
 
-/* Nobody is stopped any more, but the tiles' taker may have failed. */
+/* Ends the stream of tiles. If the receiver of the tiles has failed, writes a state and returns its error. */
 static enum tri_status end_tiles(struct par_run *run, struct par_tiles *tiles, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = run->asked.options->checkpoint;
@@ -268,12 +273,13 @@ static enum tri_status end_tiles(struct par_run *run, struct par_tiles *tiles, s
                                                               : par_state_border(checkpoint, run, tiles, true, error);
 }
 
-/* The place is the first column, for which the worklist is empty; or as a checkpoint has it. */
+/* Starts the stream of tiles. Sets the position to the first column, with an empty worklist, or restores position and
+ * worklist from a checkpoint. */
 static enum tri_status begin_sweep(struct par_run *run, struct par_tiles *tiles, struct ahead *ahead,
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    run->place.column = 0; /* unless there is a state */
+    run->place.column = 0; /* stays 0 if there is no state */
     par_go(run, PAR_COLUMN);
     if (!list_ahead(ahead, run, tiles->partition))
         status = no_memory(error);
@@ -295,7 +301,7 @@ enum tri_status par_sweep(struct par_run *run, const struct par_partition *parti
     static const struct par_steps steps = {refine_column, end_column};
     struct sweep s = {.run = run, .tiles = par_tiles_of(run, partition)};
     enum tri_status status = begin_sweep(run, &s.tiles, &s.ahead, error);
-    if (!status && odd_column(run) <= partition->n_columns) /* or a state was kept behind the last column */
+    if (!status && odd_column(run) <= partition->n_columns) /* false: resumed after the last column */
         status = par_run_rounds(run, &steps, &s, error);
     if (!status && !s.left)
         status = end_tiles(run, &s.tiles, error);

@@ -1,4 +1,4 @@
-/* One table of what a tile is made of. */
+/* Lists the arrays of a tile, packs them, and fills them. */
 #include "sched/tiles/tile_arrays.h"
 
 #include <assert.h>
@@ -41,7 +41,7 @@ size_t par_tile_bytes(const struct tri_tile *tile, int32_t n_attributes)
     return n;
 }
 
-/* Filled up with zeros. */
+/* Copies n bytes and pads them with zeros. Returns the end. */
 static char *append(char *to, const void *bytes, size_t n)
 {
     if (n > 0)
@@ -79,9 +79,9 @@ size_t par_tile_unpack(const char *bytes, size_t n, int32_t n_attributes, struct
     return at;
 }
 
-/* --- Arrays of one tile. */
+/* --- memory of one tile */
 
-/* The next array of so many items in the block. */
+/* Returns *at as an array of n items of the given size, and advances *at. */
 static void *array(char **at, int32_t n, size_t item)
 {
     void *here = *at;
@@ -100,7 +100,7 @@ static void point_at_copy(struct tri_tile *tile, const struct par_tile_copy *cop
     tile->segment_markers = copy->segment_markers;
 }
 
-/* Wide numbers first, so that all are aligned. */
+/* Arrays of 8-byte numbers come first, so that all are aligned. */
 bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, struct tri_tile *tile)
 {
     const int32_t v = tile->n_vertices, t = tile->n_triangles, s = tile->n_segments;
@@ -139,23 +139,25 @@ void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mes
         memcpy(copy->attributes + (size_t)to * n, mesh->attributes + (size_t)v * n, n * sizeof *copy->attributes);
 }
 
-/* --- Triangles start at their corner with the largest number, mostly a vertex of the tile's own. Those that start at
- * one are its fan, of two triangles on average: they find their places by counting, and are sorted by the next
- * corner within. The others come before them, since their first corners have lower numbers. */
+/* --- Triangles start at their corner with the largest number, mostly a new vertex of the tile. The triangles that
+ * start at such a vertex are its fan. A fan has two triangles on average. A counting sort assigns triangles to fans,
+ * and each fan is sorted by the second corner. Triangles in no fan come first, since their first corners have lower
+ * numbers. */
 
 /* --- final triangles */
 
+/* The record of a final triangle. It overwrites the struct tri_triangle. */
 struct final {
-    int64_t corner[3];
-    int32_t region, unused;
+    int64_t corner[3]; /* numbers of the corners, the largest first */
+    int32_t region, unused; /* region: as in struct tri_triangle */
 };
 
 _Static_assert(sizeof(struct final) == sizeof(struct tri_triangle) &&
                    offsetof(struct final, region) == offsetof(struct tri_triangle, region),
-               "one takes the place of the other");
+               "a struct final overwrites a struct tri_triangle");
 
-/* Straight from where it is: a copy on the stack, written in other pieces than it is read in, would have to be waited
- * for. */
+/* Returns a corner of a final triangle, read directly from the record. A copy on the stack would stall the processor,
+ * because it would be written and read in pieces of different sizes. */
 static inline int64_t final_corner(const struct tri_triangle *triangle, int k)
 {
     int64_t corner;
@@ -163,16 +165,17 @@ static inline int64_t final_corner(const struct tri_triangle *triangle, int k)
     return corner;
 }
 
+/* Sets a corner of a final triangle. */
 static inline void put_corner(struct tri_triangle *triangle, int k, int64_t number)
 {
     memcpy((char *)triangle + offsetof(struct final, corner) + (size_t)k * sizeof number, &number, sizeof number);
 }
 
-/* Without a branch, which could not be predicted. */
+/* Returns yes ? a : b, without a branch, which could not be predicted. */
 static inline int64_t choose(bool yes, int64_t a, int64_t b) { return b ^ ((a ^ b) & -(int64_t)yes); }
 
-/* A note: where in its tile the vertex is that the triangle starts at, and, in the lowest bit, whether a corner is one
- * of the caller's points. TRI_NONE: that vertex is of an earlier tile. */
+/* The note is 2 * i + b. i is the index in the tile of the vertex at which the triangle starts, and b is 1 if a corner
+ * is one of the caller's points. TRI_NONE: the vertex belongs to an earlier tile, or is a kept one. */
 int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], int64_t first, int64_t n_input)
 {
     const int64_t a = number[0], b = number[1], c = number[2];
@@ -185,6 +188,7 @@ int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], i
     return start >= first ? (int32_t)(2 * (start - first)) + has_input : TRI_NONE;
 }
 
+/* Compares by the first corner, then by the second. */
 static int compare_finals(const void *left, const void *right)
 {
     const struct final *a = left, *b = right;
@@ -213,13 +217,14 @@ void par_tile_job_free(struct par_tile_job *job)
 
 /* --- triangles */
 
-/* From a struct final, wherever it lies. */
+/* Copies a struct final, at any address, to index `at` of the tile. */
 static inline void put(const struct par_tile_copy *copy, int32_t at, const void *final)
 {
     memcpy(copy->corners[at], (const char *)final + offsetof(struct final, corner), sizeof *copy->corners);
     memcpy(&copy->regions[at], (const char *)final + offsetof(struct final, region), sizeof *copy->regions);
 }
 
+/* Returns the triangle at index `at` of the tile. */
 static struct final get(const struct par_tile_copy *copy, int32_t at)
 {
     struct final final = {.region = copy->regions[at]};
@@ -227,7 +232,7 @@ static struct final get(const struct par_tile_copy *copy, int32_t at)
     return final;
 }
 
-/* Triangles of one fan, or of none. */
+/* Sorts n triangles of the tile by their first and second corners. False: no memory. */
 static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n)
 {
     struct final few[PAR_FEW_IN_FAN], *item = n > PAR_FEW_IN_FAN ? malloc((size_t)n * sizeof *item) : few;
@@ -243,30 +248,32 @@ static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n
     return true;
 }
 
-/* The numbers that the caller knows. */
+/* Converts n vertex numbers to the caller's numbers. */
 static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
 {
     for (size_t i = 0; mesh->origin && i < n; i++)
         number[i] = par_shown(mesh, number[i]);
 }
 
-/* What of a tile's triangles is where: the slot of each is its place in the tile, but for the order within a fan. */
+/* The triangles of a tile, assigned to fans. A slot is an index of the tile's array of triangles. Within a fan,
+ * triangles are not sorted yet. */
 struct fans {
-    const struct tri_tile *tile;
-    struct tri_triangle *tri; /* of the mesh */
-    const int32_t *triangles, *notes; /* [n_triangles] */
-    int32_t *slot;            /* [n_triangles] in each a triangle */
-    int32_t *end;             /* [n_vertices] of each fan; before its slots are filled, the next free one */
-    int32_t others;           /* triangles of no fan, which come before all of them */
+    const struct tri_tile *tile; /* the tile */
+    struct tri_triangle *tri; /* triangles of the mesh */
+    const int32_t *triangles, *notes; /* [n_triangles] as in struct par_tile_ids */
+    int32_t *slot;            /* [n_triangles] the triangle in each slot */
+    int32_t *end;             /* [n_vertices] slot after the last of each fan; in fill_slots: the next free slot */
+    int32_t others;           /* number of triangles that are in no fan; they have the first slots */
     bool *has_input;          /* [n_vertices] a corner in the fan is one of the caller's points */
 };
 
-/* What they take of 8 bytes. */
+/* Returns the 8-byte words that the arrays of struct fans take. */
 static int64_t fans_words(const struct tri_tile *tile)
 {
     return (tile->n_triangles * INT64_C(4) + tile->n_vertices * INT64_C(5)) / 8 + 1;
 }
 
+/* Returns *at as an array of n numbers, and advances *at. */
 static int32_t *fan_words(int32_t **at, int32_t n)
 {
     int32_t *words = *at;
@@ -274,13 +281,13 @@ static int32_t *fan_words(int32_t **at, int32_t n)
     return words;
 }
 
-/* Where each fan begins. */
+/* Computes the first slot of each fan. */
 static void count_fans(struct fans *f)
 {
     const int32_t n = f->tile->n_vertices;
-    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
+    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* has_input follows end */
     for (int32_t i = 0; i < f->tile->n_triangles; i++) {
-        const int32_t own = f->notes[i] >> 1; /* TRI_NONE stays so */
+        const int32_t own = f->notes[i] >> 1; /* TRI_NONE stays TRI_NONE */
         assert(TRI_NONE <= own && own < n);
         if (own == TRI_NONE) {
             f->others++;
@@ -297,9 +304,10 @@ static void count_fans(struct fans *f)
     }
 }
 
-/* Once slots are filled. */
+/* Returns the first slot of a fan. The slots have been filled. */
 static int32_t begin_of(const struct fans *f, int32_t v) { return v > 0 ? f->end[v - 1] : f->others; }
 
+/* Assigns each triangle to the next free slot of its fan. */
 static void fill_slots(const struct fans *f)
 {
     int32_t other = 0;
@@ -307,8 +315,8 @@ static void fill_slots(const struct fans *f)
         f->slot[f->notes[i] != TRI_NONE ? f->end[f->notes[i] >> 1]++ : other++] = f->triangles[i];
 }
 
-/* A fan of up to four, by the second corner, without a branch that depends on it: four are put, and those that are not
- * of the fan are put again when their turn comes. */
+/* Copies a fan of up to four triangles to the tile, sorted by the second corner, without a branch that depends on the
+ * corners. Always writes four triangles. Those beyond the fan are overwritten by the next fan. */
 static inline void put_four(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
 {
     const struct tri_triangle *t[4];
@@ -325,6 +333,7 @@ static inline void put_four(const struct fans *f, const struct par_tile_copy *co
     }
 }
 
+/* Copies n triangles to the tile and sorts them. False: no memory. */
 static bool put_many(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
 {
     for (int32_t i = first; i < first + n; i++)
@@ -332,7 +341,8 @@ static bool put_many(const struct fans *f, const struct par_tile_copy *copy, int
     return sort_many(copy, first, n);
 }
 
-/* The fans of vertices first to end - 1. Triangles lie scattered: those that come soon are fetched already. */
+/* Copies the fans of vertices first to end - 1 to the tile. Prefetches later triangles, which are scattered in memory.
+ * False: no memory. */
 static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t first,
                      int32_t end)
 {
@@ -352,13 +362,15 @@ static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, con
     return memory;
 }
 
+/* Frees the ids of the triangles in slots first to end - 1. */
 static void free_triangles(const struct fans *f, int32_t first, int32_t end)
 {
     for (int32_t i = first; i < end; i++)
         f->tri[f->slot[i]].v[0] = TRI_NONE;
 }
 
-/* So few at a time that triangles are in the cache still when they are let go. */
+/* Copies all triangles to the tile and frees their ids. Works on a few fans at a time, so that the triangles are still
+ * in the cache when they are freed. False: no memory. */
 static bool put_all(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh)
 {
     const int32_t n = f->tile->n_vertices;
@@ -373,6 +385,7 @@ static bool put_all(const struct fans *f, const struct par_tile_copy *copy, cons
     return memory;
 }
 
+/* Copies the triangles to the tile, in the order of their numbers. False: no memory. */
 static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const struct par_tile_ids *ids)
 {
     const struct tri_tile *tile = &job->tile;
@@ -387,9 +400,10 @@ static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh
 
 /* --- subsegments */
 
+/* A subsegment to be sorted. */
 struct numbered_sub {
-    int64_t end[2];
-    int32_t marker, parent;
+    int64_t end[2];         /* numbers of its ends */
+    int32_t marker, parent; /* as in struct tri_subsegment */
 };
 
 static int compare_subs(const void *left, const void *right)
@@ -400,6 +414,7 @@ static int compare_subs(const void *left, const void *right)
     return (a->end[0] > b->end[0]) - (a->end[0] < b->end[0]);
 }
 
+/* Sorts the subsegments by parent and start, and copies them to the tile. False: no memory. */
 static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
                       const int32_t *subs)
 {
@@ -423,7 +438,7 @@ static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mes
     return memory;
 }
 
-/* --- all */
+/* --- filling a tile */
 
 bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
                    const struct par_tile_ids *ids)

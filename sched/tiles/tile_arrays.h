@@ -1,4 +1,4 @@
-/* The arrays of a tile as a list, for whoever copies, sends or keeps them and need not know what they are. */
+/* The arrays of a tile: as a list for code that copies, sends or stores them all alike, and how they are filled. */
 #ifndef SCHED_TILES_TILE_ARRAYS_H
 #define SCHED_TILES_TILE_ARRAYS_H
 
@@ -7,86 +7,90 @@
 #include "ptriangle/tiles.h"
 #include "triangle/mesh/mesh.h"
 
-enum { PAR_TILE_CORNERS = 3, PAR_TILE_ENDS = 5, PAR_TILE_ARRAYS = 7 }; /* the lists of vertices; all */
+/* Indices of the two arrays of vertex numbers (corners of triangles, ends of segments), and the number of arrays. */
+enum { PAR_TILE_CORNERS = 3, PAR_TILE_ENDS = 5, PAR_TILE_ARRAYS = 7 };
 
 struct par_array {
-    const void *at;
-    size_t bytes;
+    const void *at; /* first byte */
+    size_t bytes;   /* size */
 };
 
-/* In the order of the struct. */
+/* Lists the arrays of a tile in the order of struct tri_tile. */
 void par_tile_arrays(const struct tri_tile *tile, int32_t n_attributes, struct par_array array[PAR_TILE_ARRAYS]);
 
-/* Points the tile at them. */
+/* Sets the pointers of a tile to these arrays. */
 void par_tile_point_at(struct tri_tile *tile, const struct par_array array[PAR_TILE_ARRAYS]);
 
-/* Arrays that lie one behind the other are filled up to eight bytes each, so that all are aligned. */
+/* Rounds a size up to a multiple of eight bytes. Packed arrays are padded to this size, so that all are aligned. */
 static inline size_t par_padded(size_t n) { return (n + 7) / 8 * 8; }
 
 /* --- a tile as bytes: its struct, then its arrays */
 
-/* How many. */
+/* Returns the size of a packed tile. */
 size_t par_tile_bytes(const struct tri_tile *tile, int32_t n_attributes);
 
+/* Packs a tile. `to` has room for par_tile_bytes bytes. */
 void par_tile_pack(char *to, const struct tri_tile *tile, int32_t n_attributes);
 
-/* Points *tile at what is packed, of which there are n bytes at most, aligned as malloc does; returns how many it
- * takes, or 0: it is no tile. */
+/* Sets *tile to a packed tile, whose arrays stay in `bytes`: at most n bytes, aligned as by malloc. Returns the size of
+ * the packed tile; 0: the bytes are not a valid tile. */
 size_t par_tile_unpack(const char *bytes, size_t n, int32_t n_attributes, struct tri_tile *tile);
 
-/* --- Copies of what a tile hands out, in the caller's coordinates and numbers. */
+/* --- the memory of a tile's arrays, in the caller's coordinates and numbers */
 
 struct par_tile_copy {
-    double (*points)[2], *attributes;
-    int32_t *point_markers, *regions, *segment_markers;
-    int64_t (*corners)[3], (*ends)[2];
-    void *block; /* [size] bytes, all of these one behind the other */
-    size_t size;
+    double (*points)[2], *attributes;                   /* arrays of struct tri_tile, by the same names */
+    int32_t *point_markers, *regions, *segment_markers; /* likewise */
+    int64_t (*corners)[3], (*ends)[2];                  /* likewise */
+    void *block;                                        /* [size] the memory of all these arrays; NULL: none yet */
+    size_t size;                                        /* bytes of `block` */
 };
 
-/* Room for as much as the tile has, which is pointed at it; what was there goes. The first time all is 0. To be freed
- * in any case. False: no memory. */
+/* Allocates arrays for the numbers of vertices, triangles and segments in *tile, and points *tile to them. The previous
+ * contents are lost. *copy is all 0 before the first call. Call par_tile_copy_free in any case. False: no memory. */
 bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, struct tri_tile *tile);
 void par_tile_copy_free(struct par_tile_copy *copy);
 
-/* The `to`-th vertex of the tile is this one of the mesh. */
+/* Copies vertex v of the mesh to index `to` of the tile. */
 void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mesh *mesh, tri_vertex_id v, int32_t to);
 
-/* The number by which a vertex is handed out: the caller's own for the caller's points. Wherever numbers are compared,
- * it is `number`, which counts the caller's points as the mesh has them. */
+/* Returns the number by which a vertex is handed out. `number` counts the caller's points in the order of the mesh, and
+ * is the one to use in comparisons. The result counts the caller's points in the caller's order. */
 static inline int64_t par_shown(const struct tri_mesh *mesh, int64_t number)
 {
     return mesh->origin && number < mesh->n_input ? mesh->origin[number] : number;
 }
 
-/* --- What is handed out of one tile: its vertices, triangles and subsegments in the order of their numbers. */
+/* --- filling the arrays of a tile: its vertices, triangles and subsegments in the order of their numbers */
 
-/* Whoever fills tiles has one, for one tile after the other: all of it is used again. */
+/* A tile that is being filled. Its memory is reused for the next tile. */
 struct par_tile_job {
-    struct tri_tile tile;
-    struct par_tile_copy copy; /* where the tile's arrays are */
-    uint64_t *scratch;         /* [n_scratch] */
-    int64_t n_scratch;
+    struct tri_tile tile;      /* the tile; its pointers point into `copy` */
+    struct par_tile_copy copy; /* memory of the tile's arrays */
+    uint64_t *scratch;         /* [n_scratch] working memory; NULL: none yet */
+    int64_t n_scratch;         /* words in `scratch` */
 };
 
-/* Scratch of so many words. False: no memory. */
+/* Reserves n words of scratch. False: no memory. */
 bool par_tile_job_reserve(struct par_tile_job *job, int64_t n);
 void par_tile_job_free(struct par_tile_job *job);
 
-/* Makes of a triangle that is final, in place, what is handed out of it: the numbers of its corners, the largest first.
- * It is live still. Returns a note for whoever fills its tile, whose own vertices have numbers from `first` on: so that
- * it need not look at triangles, which lie scattered, twice. n_input: as the mesh's. */
+/* Overwrites the record of a final triangle with the data to be handed out: the numbers of its corners, the largest
+ * first, and its region. The triangle stays live. number: of its corners. first: the number of the first vertex in its
+ * tile. n_input: of the mesh. Returns the triangle's note for par_tile_fill. Notes are read in sequence, which avoids
+ * another access to triangles that are scattered in memory. */
 int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], int64_t first, int64_t n_input);
 
-/* What is in a tile. */
+/* The ids of a tile. The lengths of the lists are in struct tri_tile. */
 struct par_tile_ids {
-    const int32_t *vertices;          /* in their order */
-    const int32_t *triangles, *notes; /* final, and what par_final_make said of each, in any order */
-    const int32_t *subs;              /* in any order */
+    const int32_t *vertices;  /* in the order of their numbers */
+    const int32_t *triangles; /* in any order, each converted by par_final_make */
+    const int32_t *notes;     /* the note of each triangle */
+    const int32_t *subs;      /* subsegments, in any order */
 };
 
-/* Fills the arrays of job->tile, of which the numbers are known. The triangles' ids are free afterwards. number: of
- * each vertex. False: no memory. */
+/* Fills the arrays of job->tile, whose first numbers and counts are set. Afterwards the ids of the triangles are free.
+ * number: of each vertex of the mesh. False: no memory. */
 bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
                    const struct par_tile_ids *ids);
 

@@ -1,7 +1,7 @@
-/* What comes before and after the columns, and a mesh that is in memory as a whole.
+/* Starts and ends a stream of tiles, and hands out meshes that are completely in memory.
  *
- * Such a mesh is handed out as it is. Where it has been numbered by tiles, vertices, triangles and subsegments of a
- * tile follow on each other, and the tile of each follows from its place: so a tile's ends are found by bisection. */
+ * If a mesh in memory has been numbered by tiles, the vertices, triangles and subsegments of each tile are contiguous
+ * in the arrays. The tile of each item follows from its coordinates, so the end of a tile is found by bisection. */
 #include "sched/tiles/tiles.h"
 
 #include <stdlib.h>
@@ -17,7 +17,8 @@ static enum tri_status no_memory(struct tri_error *error)
 
 /* --- pieces of the mesh */
 
-/* vertex: that of each number, as far as the caller's order is not that of the mesh; else NULL. */
+/* Copies the vertices, triangles and segments of a tile. vertex: the mesh's vertex for each number in the caller's
+ * order; NULL: numbers are the mesh's own. */
 static void copy_items(const struct par_tiles *tiles, const tri_vertex_id *vertex, const struct tri_tile *tile,
                        const struct par_tile_copy *copy)
 {
@@ -42,7 +43,7 @@ static void copy_items(const struct par_tiles *tiles, const tri_vertex_id *verte
     }
 }
 
-/* Hands out what follows, as much as the tile says. vertex: see above. */
+/* Hands out the next vertices, triangles and segments of the mesh, as many as `tile` has. vertex: as in copy_items. */
 static enum tri_status hand_out_items(struct par_tiles *tiles, const tri_vertex_id *vertex, struct tri_tile tile,
                                       struct tri_error *error)
 {
@@ -64,9 +65,9 @@ static enum tri_status hand_out_items(struct par_tiles *tiles, const tri_vertex_
     return status;
 }
 
-/* --- what comes first */
+/* --- start of the stream */
 
-/* The vertices in the caller's order. malloc'ed; NULL: no memory. */
+/* Returns the kept vertices in the caller's order; free them with free. NULL: no memory. */
 static tri_vertex_id *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
 {
     tri_vertex_id *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
@@ -75,7 +76,7 @@ static tri_vertex_id *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
     return vertex;
 }
 
-/* One tile, or several if kept_at_once asks for them. */
+/* Hands out the vertices that existed before refinement, as tiles of kept_at_once vertices. */
 static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
 {
     const int32_t n = tiles->n_kept, most = tiles->kept_at_once > 0 ? tiles->kept_at_once : n;
@@ -91,7 +92,7 @@ static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *
     return status;
 }
 
-/* Attributes of the triangles in each region. */
+/* Copies the triangle attributes of each region. False: no memory. */
 static bool copy_regions(const struct tri_mesh *mesh, int32_t n_columns, double **regions)
 {
     size_t n = (size_t)n_columns;
@@ -142,7 +143,8 @@ static int32_t tile_of_sub(const struct par_tiles *tiles, tri_sub_id s)
     return par_last_tile(tiles->partition, tiles->mesh, tiles->mesh->sub[s].v, 2);
 }
 
-/* The first of items low .. high - 1, which are sorted by tile, that lies in a later one. */
+/* Returns the first of the items low .. high - 1 that belongs to a later tile; high if there is none. The items are
+ * sorted by tile. */
 static int32_t end_of(const struct par_tiles *tiles, int32_t tile, int32_t low, int32_t high,
                       int32_t (*tile_of)(const struct par_tiles *tiles, int32_t item))
 {
@@ -156,7 +158,7 @@ static int32_t end_of(const struct par_tiles *tiles, int32_t tile, int32_t low, 
     return low;
 }
 
-/* Hands out what follows, up to these numbers. */
+/* Hands out the next vertices, triangles and segments before these ids as one tile, if there are any. */
 static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, tri_vertex_id vertex,
                                       tri_triangle_id triangle, tri_sub_id sub, struct tri_error *error)
 {
@@ -169,12 +171,14 @@ static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, 
     return is_empty ? TRI_OK : hand_out_items(tiles, NULL, tile, error);
 }
 
+/* Returns the end of the next piece of n items. */
 static int32_t next_end(int64_t first, int32_t n)
 {
     return n - first > PAR_ITEMS_AT_ONCE ? (int32_t)first + PAR_ITEMS_AT_ONCE : n;
 }
 
-/* What has no tiles, bit by bit: all vertices before triangles, so that corners may be any of them. */
+/* Hands out the remaining mesh in pieces that are not tiles. All vertices come before the triangles, because a triangle
+ * can have any of them as corners. */
 static enum tri_status hand_out_without_tiles(struct par_tiles *tiles, struct tri_error *error)
 {
     const struct tri_mesh *m = tiles->mesh;
@@ -191,7 +195,8 @@ static enum tri_status hand_out_without_tiles(struct par_tiles *tiles, struct tr
     return status;
 }
 
-/* Triangles to expect, to the order: the same, however the mesh is carried through. */
+/* Returns the approximate number of triangles for the start of the stream. With a partition it is the partition's
+ * estimate, as in a sweep. */
 static double triangles_expected(const struct par_tiles *tiles)
 {
     return tiles->partition ? tiles->partition->estimate : tiles->mesh->n_triangles;

@@ -1,8 +1,9 @@
-/* One column of tiles at a time: find its vertices and number them, find its triangles and subsegments, whose corners
- * have their numbers then, hand out, let go; in shares or tile by tile, in parallel.
+/* Hands out one column of tiles at a time: finds and numbers its vertices, finds its triangles and subsegments, fills
+ * the tiles, passes them to the sink, and removes them from the mesh. All steps except the call of the sink run in
+ * parallel, by shares of the mesh or by tiles.
  *
- * The record of a final triangle, where nobody else looks any more, becomes what is handed out of it, so that the
- * numbers of its corners, which lie scattered, are fetched once. */
+ * The record of a final triangle is overwritten with the numbers of its corners. These numbers are scattered in memory,
+ * and are then read only once. */
 #include "sched/tiles/tiles.h"
 
 #include <assert.h>
@@ -16,26 +17,26 @@
 #include "triangle/base/grow.h"
 #include "triangle/geometry/hilbert.h"
 
-/* In place of a row: the column's turn has been, or is to come. */
+/* Values in place of a row: the item belongs to an earlier or to a later column. */
 enum { EARLIER = -1, LATER = -2 };
 
 enum { NO_NUMBER = -1 };
 
 struct par_column {
-    struct par_tiles *tiles;
-    int32_t column;
-    int32_t first_tile;
-    int64_t first_vertex;           /* the number of the first one in it */
-    double begin, end;              /* all triangles left of the end are final */
-    struct par_finds vertices, triangles, subs;
-    struct par_ids straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
-    bool no_memory[PAR_FIND_SHARES];
-    bool is_short; /* of its vertices it knows no more than how many there are in each row */
+    struct par_tiles *tiles;        /* the tiles of the mesh */
+    int32_t column;                 /* column of blocks, odd */
+    int32_t first_tile;             /* index of the column's first tile: column * n_rows */
+    int64_t first_vertex;           /* number of the first vertex in the column */
+    double begin, end;              /* x range of the column; all triangles left of `end` are final */
+    struct par_finds vertices, triangles, subs; /* the ids that belong to the column */
+    struct par_ids straddling[PAR_FIND_SHARES]; /* triangles of later columns that have a numbered corner */
+    bool no_memory[PAR_FIND_SHARES]; /* an allocation failed in this share */
+    bool is_short; /* the list of vertices has been freed; only the number of vertices in each row is known */
 };
 
-/* --- what belongs to the column */
+/* --- finding the items of the column */
 
-/* Vertices that have no number. */
+/* Finds the vertices of the column, which have no numbers yet. */
 static void find_vertices(void *context, size_t share)
 {
     struct par_column *c = context;
@@ -53,7 +54,8 @@ static void find_vertices(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder);
 }
 
-/* The vertices that have been numbered, in the order of their numbers. */
+/* Finds the vertices of the column by their numbers, after the list of vertices was freed. Restores vertices.item in
+ * the order of the numbers. */
 static void find_numbered(void *context, size_t share)
 {
     struct par_column *c = context;
@@ -71,12 +73,14 @@ static void find_numbered(void *context, size_t share)
     c->no_memory[share] = !memory;
 }
 
-/* The row of numbers that mostly are of the same one as the last. */
+/* The vertices of the row that was looked up last. The next number mostly belongs to the same row. */
 struct row_of_numbers {
-    int64_t first;
-    int32_t count, row;
+    int64_t first; /* number of the first vertex */
+    int32_t count; /* number of vertices; 0: no row has been looked up */
+    int32_t row;   /* the row */
 };
 
+/* Returns the row of a vertex of the column, given by its number. */
 static int32_t find_row(const struct par_column *c, struct row_of_numbers *last, int64_t number)
 {
     if ((uint64_t)(number - last->first) < (uint64_t)last->count)
@@ -89,13 +93,14 @@ static int32_t find_row(const struct par_column *c, struct row_of_numbers *last,
     return row;
 }
 
-/* Has this number, or its lack, a vertex behind the column? */
+/* Returns whether a new vertex with this number, or without a number, belongs to a later column. */
 static inline bool is_later(const struct par_column *c, int64_t number)
 {
     return number < 0 || number >= c->first_vertex + c->vertices.n;
 }
 
-/* The row of the last tile among those of some vertices, of which new ones are told apart by their numbers. */
+/* Returns the row of the last tile that contains one of n vertices; or EARLIER or LATER. The tiles of new vertices
+ * follow from their numbers. */
 static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const tri_vertex_id *v,
                         const int64_t *number, int n)
 {
@@ -118,7 +123,7 @@ static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint,
     return of_new > row ? of_new : row;
 }
 
-/* A triangle that somebody refers to later. */
+/* Returns whether a new vertex among the corners has been numbered. Its number must then be kept for later columns. */
 static bool has_number(const struct par_column *c, const tri_vertex_id v[3], const int64_t number[3])
 {
     for (int k = 0; k < 3; k++)
@@ -127,13 +132,15 @@ static bool has_number(const struct par_column *c, const tri_vertex_id v[3], con
     return false;
 }
 
-/* So that the memory works on many at once. */
+/* Prefetches the numbers of a triangle's corners, so that memory accesses overlap. */
 static inline void fetch_numbers(const int64_t *numbers, const tri_vertex_id v[3])
 {
     for (int k = 0; k < 3 && v[0] != TRI_NONE; k++)
         __builtin_prefetch(&numbers[v[k]]);
 }
 
+/* Finds the triangles of the column and converts their records, and lists triangles of later columns that have a
+ * numbered corner. */
 static void find_triangles(void *context, size_t share)
 {
     struct par_column *c = context;
@@ -162,6 +169,7 @@ static void find_triangles(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
 }
 
+/* Returns the row of a subsegment, or EARLIER or LATER. */
 static int32_t row_of_sub(const struct par_column *c, tri_sub_id s)
 {
     struct row_of_numbers hint = {0};
@@ -170,7 +178,7 @@ static int32_t row_of_sub(const struct par_column *c, tri_sub_id s)
     return last_row(c, &hint, v, number, 2);
 }
 
-/* What is right of the column is met again later. */
+/* Finds the subsegments of the column. */
 static void find_subs(void *context, size_t share)
 {
     struct par_column *c = context;
@@ -185,6 +193,7 @@ static void find_subs(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
 }
 
+/* Returns whether all shares had enough memory. */
 static bool memory_has_lasted(const struct par_column *c)
 {
     bool memory = true;
@@ -193,8 +202,9 @@ static bool memory_has_lasted(const struct par_column *c)
     return memory;
 }
 
-/* --- what each vertex has here */
+/* --- arrays with an entry for each vertex */
 
+/* A task: finds the tiles of the kept vertices of one share. */
 static void place_kept(void *context, size_t share)
 {
     struct par_tiles *tiles = context;
@@ -204,6 +214,7 @@ static void place_kept(void *context, size_t share)
         tiles->kept_tile[v] = par_locate(&place, tiles->partition, 0, tiles->mesh->xy[v]);
 }
 
+/* Locates the kept vertices, once. False: no memory. */
 static bool know_kept(struct par_tiles *tiles)
 {
     if (tiles->kept_tile)
@@ -214,7 +225,7 @@ static bool know_kept(struct par_tiles *tiles)
     return tiles->kept_tile;
 }
 
-/* Numbers are where the mesh is, in files, too. */
+/* Frees the numbers, which are stored like the mesh: in memory or in files. */
 static void free_numbers(struct par_tiles *tiles)
 {
     if (tiles->is_in_files)
@@ -224,6 +235,7 @@ static void free_numbers(struct par_tiles *tiles)
     tiles->number = NULL;
 }
 
+/* Extends `number` to n entries. False: no memory. */
 static bool grow_numbers(struct par_tiles *tiles, size_t n)
 {
     if (!tiles->mesh->storage)
@@ -262,6 +274,7 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
 }
 
+/* Returns the tile of a row with its counts and first numbers, without arrays. */
 static struct tri_tile tile_of(const struct par_column *c, int32_t r)
 {
     const struct par_tiles *tiles = c->tiles;
@@ -272,6 +285,7 @@ static struct tri_tile tile_of(const struct par_column *c, int32_t r)
                              .n_segments = c->subs.start[r + 1] - s};
 }
 
+/* A pipeline's `make`: numbers the vertices of a tile along a Hilbert curve. */
 static enum tri_status number_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -285,6 +299,7 @@ static enum tri_status number_tile(void *context, int32_t row, int32_t slot, str
     return TRI_OK;
 }
 
+/* A pipeline's `make`: fills the arrays of a tile. */
 static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -296,6 +311,7 @@ static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struc
     return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
 }
 
+/* A pipeline's `take`: passes a tile to the sink, unless it is empty. */
 static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
     const struct par_column *c = context;
@@ -306,6 +322,7 @@ static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struc
     return is_empty ? TRI_OK : sink->take(sink->user, tile, error);
 }
 
+/* Returns a pipeline over the tiles of the column, without callbacks. */
 static struct par_pipeline pipeline_of(struct par_column *c)
 {
     int32_t threads = c->tiles->n_threads > 0 ? c->tiles->n_threads : 1;
@@ -320,9 +337,9 @@ static bool reserve_jobs(struct par_tiles *tiles)
     return tiles->job;
 }
 
-/* --- what has been handed out goes */
+/* --- removing from the mesh */
 
-/* Numbered corners of triangles that stay. */
+/* Lists the numbered vertices that are corners of triangles of later columns. False: no memory. */
 static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
 {
     const struct par_tiles *tiles = c->tiles;
@@ -339,7 +356,8 @@ static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
     return memory;
 }
 
-/* Of a list of vertices, ascending, those that do not stay go; they are left in it. */
+/* Removes the vertices of an ascending list from the mesh, except those in `stay`. Afterwards the list has only the
+ * removed ones. */
 static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay, struct par_ids *list)
 {
     int32_t left = 0, k = list->n > 0 ? par_ids_find(stay, list->item[0]) : 0;
@@ -356,12 +374,14 @@ static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay,
     list->n = left;
 }
 
+/* The removal of a column. */
 struct leaving {
-    struct par_column *column;
-    const struct par_ids *stay;
+    struct par_column *column;  /* the column to remove */
+    const struct par_ids *stay; /* vertices that stay in the mesh, ascending */
 };
 
-/* What a share has found, triangles having gone when they were handed out. */
+/* Removes the vertices and subsegments of one share from the mesh, and converts all its lists to runs of free ids.
+ * Triangles were removed when their tiles were filled. */
 static void leave(void *context, size_t share)
 {
     const struct leaving *l = context;
@@ -375,6 +395,7 @@ static void leave(void *context, size_t share)
     par_finds_to_runs(subs);
 }
 
+/* Removes the column from the mesh and adds its ids to *spare. False: no memory. */
 static bool let_go(struct par_column *c, struct par_room *spare)
 {
     struct par_ids stay, *held = &c->tiles->held;
@@ -395,8 +416,9 @@ static bool let_go(struct par_column *c, struct par_room *spare)
     return memory;
 }
 
-/* --- a column */
+/* --- processing a column */
 
+/* Initialises *c and reserves memory. False: no memory. */
 static bool begin_column(struct par_column *c, struct par_tiles *tiles, int32_t column)
 {
     const struct tri_fence fence = par_fence(tiles->partition, column, 0);
@@ -409,6 +431,7 @@ static bool begin_column(struct par_column *c, struct par_tiles *tiles, int32_t 
            par_finds_begin(&c->subs, n_rows) && par_tiles_reserve(tiles) && reserve_jobs(tiles);
 }
 
+/* Finds and numbers the vertices of the column. */
 static enum tri_status number_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
@@ -420,13 +443,15 @@ static enum tri_status number_column(struct par_column *c, struct tri_error *err
     return par_pipeline_run(&pipeline, executor, error);
 }
 
-/* Lists of vertices go until they are wanted: those of all columns are as many as the mesh has. */
+/* Frees the column's lists of vertices until it is handed out. If all columns are numbered first, their lists would
+ * otherwise contain all vertices of the mesh. */
 static void shorten(struct par_column *c)
 {
     par_finds_forget(&c->vertices);
     c->is_short = true;
 }
 
+/* Restores the lists that `shorten` freed. False: no memory. */
 static bool lengthen(struct par_column *c)
 {
     c->vertices.item = malloc(((size_t)c->vertices.n + 1) * sizeof *c->vertices.item);
@@ -436,6 +461,7 @@ static bool lengthen(struct par_column *c)
     return c->vertices.item && memory_has_lasted(c);
 }
 
+/* Finds the triangles and subsegments of the column, fills its tiles and passes them to the sink. */
 static enum tri_status hand_out_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
@@ -463,6 +489,7 @@ void par_column_free(struct par_column *c)
     free(c);
 }
 
+/* Creates *numbered for a column and numbers its vertices. */
 static enum tri_status number_next(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                    struct tri_error *error)
 {

@@ -1,15 +1,12 @@
-/* The finished mesh, tile by tile: how it leaves memory.
+/* Hands out the finished mesh to a sink, tile by tile, and frees the memory of tiles that were handed out.
  *
- * A tile is the box of a block with odd column and odd row; tiles cover the plane, and are ordered column by column,
- * rows upwards. A vertex belongs to the tile that holds it, a triangle and a subsegment to the last tile of their
- * corners.
+ * A tile is the box of a block with odd column and odd row. Tiles cover the plane, and are ordered column by column,
+ * rows upwards. A vertex belongs to the tile that contains it. A triangle or a subsegment belongs to the last tile of
+ * its corners.
  *
- * NUMBERS. Vertices that there were before refinement keep theirs. The others are numbered tile by tile, along a
- * Hilbert curve over the tile's own vertices; so every corner of a triangle has its number when the triangle's tile has
- * its turn. A triangle starts at its corner with the largest number; the triangles of a tile are sorted by that corner,
- * then by the next one; its subsegments by the parent, then by the end at which they start. So numbers depend on the
- * mesh and the partition alone, and are 64 bits wide: only what is in memory at one time must fit 32. A mesh that is in
- * memory as a whole has the same ones (sched/tiles/numbering.h). */
+ * NUMBERS are assigned as in numbering.h: by tile, and in each tile along a Hilbert curve. All corners of a triangle
+ * have their numbers when its tile is handed out. Numbers depend only on the mesh and the partition. They have 64 bits:
+ * only the ids of the part of the mesh that is in memory must fit 32 bits. */
 #ifndef SCHED_TILES_TILES_H
 #define SCHED_TILES_TILES_H
 
@@ -19,47 +16,50 @@
 #include "sched/schedule/worklist.h"
 #include "triangle/base/executor.h"
 
-struct par_tile_ranks {           /* all 0: one rank hands out everything */
-    int32_t n, rank;              /* how many, and which is this; rank 0 hands out vertices that keep their numbers */
-    const int64_t *first[3];      /* [n + 1] first vertex, triangle, segment of each rank; NULL: there is one rank */
+struct par_tile_ranks {      /* all 0: a single rank hands out the whole mesh */
+    int32_t n;               /* number of ranks; 0: one */
+    int32_t rank;            /* this rank; rank 0 hands out the vertices that keep their numbers */
+    const int64_t *first[3]; /* [n + 1] number of the first vertex, triangle, segment of each rank; NULL: one rank */
 };
 
 struct par_tiles {
-    /* Asked for. */
+    /* Set by the caller. */
     struct tri_mesh *mesh;                 /* the finished mesh, which shrinks as columns are handed out */
     const struct par_partition *partition; /* NULL: the mesh has no tiles, and is handed out in pieces */
     const struct tri_executor *executor;   /* runs shares and tiles; NULL: they run one after the other */
     const struct tri_sink *sink;           /* receives the tiles */
-    const struct tri_pslg *figure; /* the input: its points are handed out bit by bit; NULL: the mesh's points are */
-    int32_t n_kept;               /* vertices that there were before refinement */
-    int32_t kept_at_once;         /* so many of these are a tile; 0: all are one */
-    bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
+    const struct tri_pslg *figure; /* the input, whose points are handed out unchanged; NULL: take them from the mesh */
+    int32_t n_kept;               /* vertices that existed before refinement; they keep their numbers */
+    int32_t kept_at_once;         /* number of kept vertices in one tile; 0: all */
+    bool region_column;           /* hand out the region attribute of triangles; ignored if the mesh has columns */
     int32_t n_threads;            /* of the executor; 0: one */
-    struct par_tile_ranks ranks;  /* who hands out which numbers */
-    /* Found: what each vertex has here, and how far the stream has come. */
-    int64_t *number;              /* [capacity] of each vertex; -1: none yet */
-    int32_t *kept_tile;           /* [n_kept] column * n_rows + row of the vertices that keep their numbers */
-    int32_t capacity;             /* vertices that `number` has room for */
-    bool is_in_files;             /* the array `number` lies in files, in the mesh's storage */
-    int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
-    struct par_ids held;          /* numbered vertices that triangles beyond the last column still have */
-    struct par_tile_job *job;     /* [par_tiles_jobs] room for tiles on their way; NULL: none yet */
+    struct par_tile_ranks ranks;  /* the numbers that each rank hands out */
+    /* Set by the functions below. */
+    int64_t *number;              /* [capacity] number of each vertex; -1: none yet */
+    int32_t *kept_tile;           /* [n_kept] tile of each kept vertex: column * n_rows + row; NULL: not located yet */
+    int32_t capacity;             /* length of `number` */
+    bool is_in_files;             /* `number` was allocated from the mesh's storage, which is in files */
+    int64_t n_vertices;           /* vertices numbered or handed out so far */
+    int64_t n_triangles, n_segments; /* triangles and segments handed out so far */
+    struct par_ids held;          /* numbered vertices that are corners of triangles beyond the last column */
+    struct par_tile_job *job;     /* [par_tiles_jobs] tiles that are being filled or handed out; NULL: none yet */
 };
 
-/* Tiles on their way at one time. Two more than threads: while one tile is taken another is ready. */
+/* Returns the number of tiles that are processed at one time. It exceeds the number of threads by two, so that another
+ * tile is ready while the sink takes one. */
 static inline int32_t par_tiles_jobs(const struct par_tiles *t) { return t->n_threads > 1 ? t->n_threads + 2 : 1; }
 
 /* --- columns (tiles.c) */
 
-/* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be
- * final, and columns before it have had their turn. What has been handed out is gone from the mesh, its ids are added
- * to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what
- * the sink says. */
+/* Numbers and hands out the tiles of an odd column. All columns before it have been handed out, and every triangle
+ * whose corners lie in it or before it must be final. Removes what was handed out from the mesh and adds the ids to
+ * *spare. Links to removed triangles from triangles beyond the column become invalid. Linear in the size of the mesh in
+ * memory. TRI_NO_MEMORY, or the status of the sink. */
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
                                  struct tri_error *error);
 
-/* What par_tiles_column takes beside the mesh, to the order: numbers and lists, a dozen bytes a triangle that is there,
- * and copies of the tiles that are on their way. (Measured.) */
+/* Estimates the bytes that par_tiles_column needs besides the mesh: numbers and lists, 12 bytes per triangle in memory,
+ * and copies of the tiles that are processed at one time. The factors were measured. */
 static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 {
     const struct par_partition *p = tiles->partition;
@@ -67,13 +67,17 @@ static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
     return 12 * (size_t)tiles->mesh->n_triangles + (size_t)(48 * jobs * tile);
 }
 
-/* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
+/* Extends `number` to the capacity of the mesh; new vertices have no number yet. Locates the kept vertices at the first
+ * call. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
 
-/* par_tiles_column in two steps, in each of which columns come from left to right. par_tiles_number numbers the
- * vertices of a column, from tiles->n_vertices on. Free ids have been marked (par_room_mark) and stay marked; *numbered
- * is to be freed in any case, and is small until it is handed out. When par_tiles_hand_out is called, all corners of
- * the column's triangles have their numbers, or are vertices of later tiles. */
+/* par_tiles_column in two steps. In each step, columns are processed from left to right.
+ *
+ * par_tiles_number numbers the vertices of a column, starting at tiles->n_vertices. Free ids have been marked before
+ * (par_room_mark) and stay marked. *numbered uses little memory until it is handed out; free it in any case.
+ *
+ * par_tiles_hand_out hands the column out. Each corner of the column's triangles must have a number or belong to a
+ * later tile. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                  struct tri_error *error);
@@ -82,21 +86,22 @@ void par_column_free(struct par_column *column);
 
 void par_tiles_free(struct par_tiles *tiles);
 
-/* --- before and after them, and a mesh in memory as a whole (tile_stream.c) */
+/* --- start and end of the stream, and meshes that are completely in memory (tile_stream.c) */
 
-/* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
- * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
+/* Starts the stream: calls the sink's `begin`, and hands out the vertices that existed before refinement, in the
+ * caller's order. estimate: the approximate number of triangles. TRI_NO_MEMORY, or the status of the sink. */
 enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);
 
-/* Tells the sink that all columns have had their turn. */
+/* Ends the stream: calls the sink's `end`, if it has one. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
 
-/* Hands out, from begin to end, a mesh in memory that has no free numbers: as it is, its tiles those of the partition
- * that it was numbered by, if it was (sched/tiles/numbering.h); else in pieces, all vertices first. Instead of all
- * calls above. */
+/* Hands out a complete mesh without free ids that is in memory, including the calls of `begin` and `end`. Replaces all
+ * calls above. If the mesh was numbered by a partition (numbering.h), its tiles are handed out. Otherwise it is handed
+ * out in pieces, all vertices first. */
 enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error);
 
-/* What par_tiles_whole takes beside the mesh, to the order: the copy of a tile, and what a sink makes of it. */
+/* Estimates the bytes that par_tiles_whole needs besides the mesh: the copy of a tile, and the memory in which a sink
+ * converts it. */
 static inline size_t par_tiles_whole_bytes(const struct par_tiles *tiles)
 {
     const size_t n = (size_t)tiles->mesh->n_triangles, most = (size_t)1 << 16;
