@@ -11,7 +11,7 @@ struct counts {
     int64_t points, triangles;
 };
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status count_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct counts *counts = user;
     (void)error;
@@ -25,7 +25,7 @@ enum { SECONDS, SYSTEM, FAULTS, WAITS, MEGABYTES, MEASURES };
 static double seconds_of(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
 
 /* Resources that this process has used so far: processor time, its system part, page faults, waits, peak memory. */
-static void look(double taken[MEASURES])
+static void read_usage(double taken[MEASURES])
 {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
@@ -67,7 +67,7 @@ static int measure(int rank, char **argv, int threads)
     struct tri_error error = {0};
     struct counts counts = {0, 0};
     struct par_exchanges moved;
-    const struct tri_sink sink = {&counts, NULL, take, NULL};
+    const struct tri_sink sink = {&counts, NULL, count_tile, NULL};
     double before[MEASURES], taken[MEASURES];
     int n_ranks;
     MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
@@ -76,12 +76,12 @@ static int measure(int rank, char **argv, int threads)
     settings.max_area = atof(argv[3]);
     settings.threads = threads;
     MPI_Barrier(MPI_COMM_WORLD);
-    look(before);
+    read_usage(before);
     double began = MPI_Wtime();
     if (!status)
         status = par_stream_on(MPI_COMM_WORLD, &figure, &settings, &sink, &moved, &error);
     double wall = MPI_Wtime() - began;
-    look(taken);
+    read_usage(taken);
     for (int k = 0; k < MEGABYTES; k++)
         taken[k] -= before[k];
     if (!status)

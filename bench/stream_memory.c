@@ -20,7 +20,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     return TRI_OK;
 }
 
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status count_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct counts *counts = user;
     (void)error;
@@ -45,7 +45,7 @@ int main(int argc, char **argv)
     struct tri_settings settings = tri_no_settings();
     struct tri_error error = {0};
     struct counts counts = {0};
-    const struct tri_sink sink = {&counts, begin, take, NULL};
+    const struct tri_sink sink = {&counts, begin, count_tile, NULL};
     if (argc < 5)
         return 1;
     enum tri_status status = tri_file_read(argv[1], &figure, &error);

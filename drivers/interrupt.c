@@ -94,7 +94,7 @@ static void say_number(long n)
     do
         *--first = (char)('0' + n % 10);
     while ((n /= 10) > 0);
-    tri_say(first);
+    tri_print_unbuffered(first);
 }
 
 const char *interrupt_written(void)
@@ -104,36 +104,36 @@ const char *interrupt_written(void)
     return atomic_load(&kept) > 0 ? "no file was written" : "nothing was written, and nothing is kept";
 }
 
-void interrupt_tell_kept(void)
+void interrupt_print_kept(void)
 {
     const long n = atomic_load(&kept);
     if (n == 0)
         return;
-    tri_say(name);
-    tri_say(": ");
+    tri_print_unbuffered(name);
+    tri_print_unbuffered(": ");
     say_number(n);
-    tri_say(" triangles are kept; to go on: ");
-    tri_say(atomic_load(&go_on));
-    tri_say("\n");
+    tri_print_unbuffered(" triangles are kept; to go on: ");
+    tri_print_unbuffered(atomic_load(&go_on));
+    tri_print_unbuffered("\n");
 }
 
-static void tell_end(void)
+static void print_end(void)
 {
-    tri_say(name);
-    tri_say(": stopped by ");
-    tri_say(interrupt_cause());
-    tri_say(" while ");
-    tri_say(interrupt_stage_now());
+    tri_print_unbuffered(name);
+    tri_print_unbuffered(": stopped by ");
+    tri_print_unbuffered(interrupt_cause());
+    tri_print_unbuffered(" while ");
+    tri_print_unbuffered(interrupt_stage_now());
     const long n = atomic_load(&reached);
     if (n > 0) {
-        tri_say(": about ");
+        tri_print_unbuffered(": about ");
         say_number(n);
-        tri_say(atomic_load(&reached_what));
+        tri_print_unbuffered(atomic_load(&reached_what));
     }
-    tri_say("; ");
-    tri_say(interrupt_written());
-    tri_say("\n");
-    interrupt_tell_kept();
+    tri_print_unbuffered("; ");
+    tri_print_unbuffered(interrupt_written());
+    tri_print_unbuffered("\n");
+    interrupt_print_kept();
 }
 
 /* Removes the files and ends the program, after the change to ENDING. */
@@ -141,7 +141,7 @@ static void end_now(void)
 {
     remove_temporaries();
     if (!(atomic_load(&state) & TOLD))
-        tell_end();
+        print_end();
     _Exit(interrupt_code());
 }
 
@@ -165,7 +165,7 @@ static void arm(double seconds)
 }
 
 /* Records the first request and starts the grace period. */
-static void ask(unsigned who)
+static void request_end(unsigned who)
 {
     unsigned before = set_unless(who * WHO, ~0u / WHO * WHO);
     if (before / WHO == NOBODY)
@@ -178,14 +178,14 @@ static void ask(unsigned who)
 static void time_is_up(void)
 {
     if (who_asked() == NOBODY)
-        ask(TIME_UP);
+        request_end(TIME_UP);
     else if (patience == 0 || (set_unless(LATE, 0) & LATE))
         end_when_free();
     else if (patience < HUGE_VAL)
         arm(patience);
 }
 
-static void handle(int number) { ask((unsigned)number); }
+static void handle(int number) { request_end((unsigned)number); }
 
 static void remove_at_crash(void)
 {
@@ -214,7 +214,7 @@ static void release(void)
 }
 
 /* Publishes the names of temporary files for the handlers, while the state is HELD. */
-static void publish(const struct tri_output_set *set)
+static void publish_names(const struct tri_output_set *set)
 {
     for (int i = 0; i < TRI_MAX_OUTPUTS; i++)
         atomic_store(&temporaries[i], i < set->n ? set->outputs[i].temporary : NULL);
@@ -247,7 +247,7 @@ void interrupt_pass_on(int (*function)(void *user, int who), void *user)
 }
 
 /* Passes requests between the tasks. It uses the network, so it does so at most every 5 ms. */
-static void ask_others(void)
+static void exchange_requests(void)
 {
     static const double PAUSE = 0.005;
     static double next;
@@ -257,14 +257,14 @@ static void ask_others(void)
     next = now + PAUSE;
     const int who = pass_on(pass_on_user, (int)who_asked());
     if (who != NOBODY && who_asked() == NOBODY) /* otherwise it is our own request, which has come back */
-        ask((unsigned)who);
+        request_end((unsigned)who);
 }
 
 static bool is_asked(void *user)
 {
     (void)user;
     if (may_pass_on)
-        ask_others();
+        exchange_requests();
     const unsigned now = atomic_load_explicit(&state, memory_order_relaxed);
     return now / WHO != NOBODY && !(now & GOING_ON);
 }
@@ -322,7 +322,7 @@ void interrupt_kept(int64_t triangles, const char *command)
 void interrupt_time_up(void)
 {
     if (who_asked() == NOBODY)
-        ask(TIME_UP);
+        request_end(TIME_UP);
 }
 
 void interrupt_tell(void) { hold(); }
@@ -340,7 +340,7 @@ void interrupt_begin(struct tri_output_set *set)
     hold();
     tri_outputs_begin(set);
     set->stop = interrupt_stop();
-    publish(set);
+    publish_names(set);
     release();
 }
 
@@ -349,7 +349,7 @@ enum tri_status interrupt_open(struct tri_output_set *set, const char *path, str
 {
     hold();
     enum tri_status status = tri_output_open(set, path, output, error);
-    publish(set);
+    publish_names(set);
     release();
     return status;
 }
@@ -360,7 +360,7 @@ enum tri_status interrupt_commit(struct tri_output_set *set, bool sync, struct t
     hold();
     status = status ? status : tri_outputs_commit(set, error);
     tri_outputs_abort(set);
-    publish(set);
+    publish_names(set);
     if (!status)
         set_unless(DONE, 0);
     release();
@@ -371,6 +371,6 @@ void interrupt_drop(struct tri_output_set *set)
 {
     hold();
     tri_outputs_abort(set);
-    publish(set);
+    publish_names(set);
     release();
 }

@@ -49,7 +49,7 @@ void interrupt_time_up(void);
 const char *interrupt_written(void);
 
 /* Prints a line on standard error that says what is kept, if anything, and how to resume the run. */
-void interrupt_tell_kept(void);
+void interrupt_print_kept(void);
 
 /* Makes interrupt_stop() return false from now on, so that the remaining work is done in spite of the request. */
 void interrupt_go_on(void);

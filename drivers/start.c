@@ -37,7 +37,7 @@ static bool needs_module(int argc, char **argv)
  * Returns false if the system does not provide the location. */
 static bool place_of(char path[TRI_PATH], const char *name)
 {
-    if (!tri_own_path(path) || strlen(path) + strlen(name) + 1 > TRI_PATH)
+    if (!tri_program_path(path) || strlen(path) + strlen(name) + 1 > TRI_PATH)
         return false;
     strcpy(strrchr(path, '/') + 1, name);
     return true;

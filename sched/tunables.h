@@ -94,7 +94,7 @@
 #define PAR_FEW_IN_FAN 24
 /* Number of fans of a tile after which the copied triangles are freed, while they are still in the cache. Guess. */
 #define PAR_FANS_AT_ONCE 64
-/* Prefetch distance, in triangles, when triangles are moved, handed out, and found. Guess. */
+/* How many triangles ahead to prefetch, in the three loops that move triangles, hand them out, and find them. Guess. */
 #define PAR_MOVED_AHEAD 32
 #define PAR_HANDED_AHEAD 24
 #define PAR_FOUND_AHEAD 16

@@ -5,9 +5,9 @@
 
 int MPI_Testall(int count, MPI_Request requests[], int *flag, MPI_Status statuses[])
 {
-    static long looks; /* number of probes; only one thread of a rank communicates */
+    static long n_probes; /* number of probes; only one thread of a rank communicates */
     const char *at = getenv("PTRIANGLE_LOST_AT");
-    if (at && ++looks >= atol(at))
+    if (at && ++n_probes >= atol(at))
         return MPI_ERR_OTHER;
     return PMPI_Testall(count, requests, flag, statuses);
 }

@@ -105,7 +105,7 @@ void support_add_heights(struct tri_pslg *pslg, int32_t n, uint64_t seed)
 }
 
 /* Computes how far p is inside each edge, as a share of the height over that edge. Negative: outside. */
-static long double weigh(const struct tri_point corner[3], struct tri_point p, long double weight[3])
+static long double compute_inside(const struct tri_point corner[3], struct tri_point p, long double weight[3])
 {
     long double least = HUGE_VALL, sum = 0;
     for (int e = 0; e < 3; e++) {
@@ -131,7 +131,7 @@ static bool is_on_surface(const struct tri_mesh *before, struct tri_point p, con
         const int32_t *v = before->tri[t].v;
         const struct tri_point corner[3] = {before->xy[v[0]], before->xy[v[1]], before->xy[v[2]]};
         long double weight[3];
-        bool good = weigh(corner, p, weight) > -1e-9L - rounding;
+        bool good = compute_inside(corner, p, weight) > -1e-9L - rounding;
         for (int32_t k = 0; good && k < n; k++) {
             const double *a = before->attributes;
             const long double is = weight[0] * a[n * v[0] + k] + weight[1] * a[n * v[1] + k] +

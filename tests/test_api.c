@@ -731,7 +731,7 @@ struct told {
     int times;         /* number of reports */
 };
 
-static void hear(void *user, double done, int64_t triangles)
+static void record_progress(void *user, double done, int64_t triangles)
 {
     struct told *told = user;
     assert_true(done >= told->done && done <= 1 && triangles > 0 && told->done < 1);
@@ -754,7 +754,7 @@ static void test_progress(void **state)
         settings.max_area = 1e-4;
         settings.progress = NULL;
         assert_int_equal(make(&silent, &figure, &settings, NULL), TRI_OK);
-        settings.progress = hear;
+        settings.progress = record_progress;
         settings.progress_user = &told;
         assert_int_equal(make(&mesh, &figure, &settings, NULL), TRI_OK);
         assert_true(told.done == 1 && told.times > 5 && told.triangles == tri_mesh_triangles(mesh).n);

@@ -13,7 +13,7 @@ static int set_up(void **state)
 {
     (void)state;
     for (int32_t t = 0; t < SLOTS; t++)
-        triangles[t].life = (uint32_t)t * 3;
+        triangles[t].generation = (uint32_t)t * 3;
     return 0;
 }
 
@@ -32,7 +32,7 @@ static int32_t pop(struct tri_bad_queue *queue)
     struct tri_entry entry;
     if (!tri_bad_queue_pop(queue, &mesh, &entry))
         return TRI_NONE;
-    assert_int_equal(entry.life, (uint32_t)entry.t * 3);
+    assert_int_equal(entry.generation, (uint32_t)entry.t * 3);
     return entry.t;
 }
 
@@ -143,8 +143,8 @@ static void test_outdated_entries_are_dropped(void **state)
     assert_true(tri_bad_queue_init(&queue));
     for (int32_t t = 0; t < N; t++) {
         bool bad = support_below(&random, 3) > 0;
-        triangles[t].life += support_below(&random, 2) == 0;
-        kept[t] = bad && triangles[t].life == (uint32_t)t * 3;
+        triangles[t].generation += support_below(&random, 2) == 0;
+        kept[t] = bad && triangles[t].generation == (uint32_t)t * 3;
         assert_true(tri_bad_queue_push_size(&queue, (struct tri_entry){t, (uint32_t)t * 3}, bad));
     }
     for (int32_t t = 0; t < N; t++)

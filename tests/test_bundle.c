@@ -28,7 +28,7 @@ static void assert_short_work(struct tri_pslg *pslg, int32_t n)
 
 /* A path to and fro. Each of its segments runs along a third of the points on average, exactly on their line or a
  * little beside it. */
-static void go_to_and_fro(double slope)
+static void check_path_to_and_fro(double slope)
 {
     enum { N = 1500 };
     struct support_random random = {11};
@@ -47,8 +47,8 @@ static void go_to_and_fro(double slope)
 static void test_paths_to_and_fro_take_little_work(void **state)
 {
     (void)state;
-    go_to_and_fro(1 / 3.0);
-    go_to_and_fro(1);
+    check_path_to_and_fro(1 / 3.0);
+    check_path_to_and_fro(1);
 }
 
 /* Segments from one end to all other points, the shortest first. */

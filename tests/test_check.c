@@ -170,7 +170,7 @@ static void begin_patch(void)
 }
 
 /* Copies the current points and subsegments into the input. */
-static void take_as_input(void)
+static void copy_as_input(void)
 {
     static double points[2 * ROOM];
     static int32_t segments[2 * ROOM], markers[ROOM];
@@ -247,7 +247,7 @@ static void good_patch(void **state)
     (void)state;
     begin_patch();
     trial.mesh.segment_markers = trial.markers;
-    take_as_input();
+    copy_as_input();
     for (int32_t s = 0; s < trial.mesh.n_segments; s++)
         trial.markers[s] = 1;
     mark_points();
@@ -281,7 +281,7 @@ static void good_nothing(void **state)
     trial.mesh.segments = trial.segments;
     trial.mesh.neighbors = trial.neighbors;
     trial.input.segments = NULL;
-    take_as_input();
+    copy_as_input();
     trial.input.n_segments = 1;
     trial.input.segments[0] = 0, trial.input.segments[1] = 2;
     trial.options.min_angle = 20;
@@ -302,7 +302,7 @@ static void good_hole_and_island(void **state)
     add_triangle(a, b, c);
     list_boundary();
     list_neighbors();
-    take_as_input();
+    copy_as_input();
     expect(TRI_CHECK_FACES, 1, -1);
     trial.options.border = TRI_CHECK_BORDER_ANY;
     expect_good();
@@ -369,7 +369,7 @@ static void faces_that_touch(void **state)
     remove_triangle(find_edge(at(2, 1), at(3, 1), NULL));
     list_boundary();
     list_neighbors();
-    take_as_input();
+    copy_as_input();
     expect(TRI_CHECK_FACES, 2, -1);
     double hole[2] = {trial.points[2 * at(2, 1)] + 0.5, trial.points[2 * at(2, 1) + 1] + 0.1};
     trial.input.n_holes = 1;
@@ -386,7 +386,7 @@ static void good_dangling_segment(void **state)
     begin_patch();
     add_segment(at(1, 1), at(2, 1));
     add_segment(at(2, 1), at(3, 1));
-    take_as_input();
+    copy_as_input();
     expect_good();
 }
 
@@ -399,14 +399,14 @@ static void good_components_that_touch(void **state)
     add_triangle(o, c, d);
     list_boundary();
     list_neighbors();
-    take_as_input();
+    copy_as_input();
     expect_good();
     int32_t e = add_point(0, 1), f = add_point(0, 2), g = add_point(-1, 2); /* a separate vertical edge */
     add_triangle(e, f, g);
     trial.mesh.n_segments = 0;
     list_boundary();
     list_neighbors();
-    take_as_input();
+    copy_as_input();
     expect_good();
     trial.options.convex = true;
     expect(TRI_CHECK_HULL, 1, -1);
@@ -419,7 +419,7 @@ static void good_rounded_chain(void **state)
     double m = 1.0 / 3; /* not exactly on either line */
     int32_t a = add_point(0.1, 0.1), b = add_point(1.3, 0.7), c = add_point(0, 2);
     add_segment(a, b), add_segment(b, c), add_segment(c, a);
-    take_as_input();
+    copy_as_input();
     int32_t p = add_point(0.1 + (1.3 - 0.1) * m, 0.1 + (0.7 - 0.1) * m);
     add_triangle(a, p, c);
     add_triangle(p, b, c);
@@ -439,7 +439,7 @@ static void good_any_scale(void **state)
         begin_patch();
         for (int32_t v = 0; v < 2 * trial.mesh.n_points; v++)
             trial.points[v] = ldexp(trial.points[v], exponents[i]);
-        take_as_input();
+        copy_as_input();
         trial.options.max_area = i == 2 ? ldexp(0.4, 300) : 0;
         trial.options.min_angle = 50;
         expect_good();
@@ -750,7 +750,7 @@ static void broken_boundary(void **state)
 {
     (void)state;
     begin_patch();
-    take_as_input();
+    copy_as_input();
     remove_segment(4);
     judge();
     assert_int_equal(trial.report.item[TRI_CHECK_BOUNDARY].count, 1);
@@ -781,12 +781,12 @@ static void broken_input_segments(void **state)
     (void)state;
     begin_patch();
     add_segment(at(1, 1), at(2, 1));
-    take_as_input();
+    copy_as_input();
     remove_segment(trial.mesh.n_segments - 1);
     expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
     assert_non_null(strstr(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].text, "segment 18 (7-8)"));
     begin_patch(); /* one subsegment of a long segment is missing */
-    take_as_input();
+    copy_as_input();
     int32_t *ends = &trial.input.segments[2 * trial.input.n_segments++];
     ends[0] = at(0, 2), ends[1] = at(5, 2);
     for (int32_t i = 0; i < 5; i++)
@@ -816,7 +816,7 @@ static void begin_strip(void)
         }
     }
     list_boundary();
-    take_as_input();
+    copy_as_input();
     int32_t last = trial.input.n_segments++;
     trial.input.segments[2 * last] = 1;
     trial.input.segments[2 * last + 1] = 22;
@@ -857,7 +857,7 @@ static void broken_markers(void **state)
     trial.mesh.segment_markers = trial.markers;
     trial.markers[2] = 7;
     trial.markers[s] = -4;
-    take_as_input();
+    copy_as_input();
     for (int32_t i = 0; i < s; i++)
         trial.markers[i] = i == 2 ? 7 : 1;
     expect_good();
@@ -871,7 +871,7 @@ static void broken_markers(void **state)
     add_segment(at(2, 1), at(3, 1));
     trial.markers[s + 1] = 5;
     trial.markers[s + 2] = 6;
-    take_as_input();
+    copy_as_input();
     trial.segments[2 * (s + 1)] = at(2, 1); /* the mesh has two subsegments instead */
     remove_segment(s + 2);
     trial.mesh.segment_markers = trial.markers;
@@ -888,7 +888,7 @@ static void broken_vertex_markers(void **state)
     int32_t inside = at(2, 2), rim = at(2, 0);
     trial.markers[add_segment(at(1, 1), at(2, 1))] = 9;
     trial.mesh.segment_markers = trial.markers;
-    take_as_input();
+    copy_as_input();
     for (int32_t s = 0; s + 1 < trial.mesh.n_segments; s++)
         trial.markers[s] = 1;
     mark_points();
@@ -918,7 +918,7 @@ static void broken_border(void **state)
     (void)state;
     for (int32_t t = 0; t < 40; t++) {
         begin_patch();
-        take_as_input();
+        copy_as_input();
         remove_triangle(t);
         trial.mesh.n_segments = 0;
         list_boundary();
@@ -941,7 +941,7 @@ static void border_of_points(void **state)
     begin();
     add_point(0, 0), add_point(3, 0), add_point(3, 2), add_point(0, 2), add_point(1, 1);
     add_triangle(0, 1, 4), add_triangle(1, 2, 4), add_triangle(2, 3, 4), add_triangle(3, 0, 4);
-    take_as_input();
+    copy_as_input();
     trial.input.n_segments = 0;
     expect_good();
     remove_triangle(3);
@@ -949,7 +949,7 @@ static void border_of_points(void **state)
     assert_int_equal(trial.report.item[TRI_CHECK_BORDER].count, 2);
     begin(); /* a new point on the hull is rounded */
     add_point(0.1, 0.1), add_point(1.3, 0.7), add_point(0, 2);
-    take_as_input();
+    copy_as_input();
     add_point(0.1 + (1.3 - 0.1) / 3, 0.1 + (0.7 - 0.1) / 3);
     add_triangle(0, 3, 2), add_triangle(3, 1, 2);
     list_boundary();
@@ -975,7 +975,7 @@ static void begin_lens(bool long_one_first)
         add_segment(chains[k][0], chains[k][1]);
     for (int k = 0; k < 4; k++)
         trial.markers[add_segment(rim[k][0], rim[k][1])] = 1;
-    take_as_input();
+    copy_as_input();
     int32_t first = long_one_first ? 0 : 1, second = 1 - first;
     trial.input.segments[2 * first] = 0, trial.input.segments[2 * first + 1] = 4;
     trial.input.segments[2 * second] = 1, trial.input.segments[2 * second + 1] = 2;
@@ -1037,7 +1037,7 @@ static void begin_bend(double ulps)
     trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
     list_boundary();
     add_segment(0, 1);
-    take_as_input();
+    copy_as_input();
     remove_segment(trial.mesh.n_segments - 1);
     add_segment(0, 2), add_segment(2, 1);
 }
@@ -1071,7 +1071,7 @@ static void marker_beyond_the_end(void **state)
     add_triangle(0, 1, 2), add_triangle(0, 2, 3);
     list_boundary();
     trial.mesh.segment_markers = trial.markers;
-    take_as_input();
+    copy_as_input();
     int32_t n = trial.input.n_segments++;
     trial.input.segments[2 * n] = 4, trial.input.segments[2 * n + 1] = 0;
     trial.input.segment_markers[n] = 9;
@@ -1089,7 +1089,7 @@ static void begin_grazed(double depth)
     add_triangle(0, 1, 2), add_triangle(0, 2, 3);
     add_point(0.25, -depth / 2), add_point(1.5, 2 * depth);
     list_boundary();
-    take_as_input();
+    copy_as_input();
     int32_t last = trial.input.n_segments++;
     trial.input.segments[2 * last] = 4;
     trial.input.segments[2 * last + 1] = 5;
@@ -1112,11 +1112,11 @@ static void broken_input_vertices(void **state)
 {
     (void)state;
     begin_patch();
-    take_as_input();
+    copy_as_input();
     trial.points[2 * at(3, 1)] = nextafter(trial.points[2 * at(3, 1)], 10);
     expect(TRI_CHECK_INPUT_VERTICES, 1, TRI_CHECK_LOST_VERTICES); /* no vertex is at its place any more */
     begin_patch();
-    take_as_input();
+    copy_as_input();
     trial.input.points[2 * trial.input.n_points] = 100; /* outside, and missing in the mesh */
     trial.input.n_points++;
     expect(TRI_CHECK_INPUT_VERTICES, 1, -1);
@@ -1127,7 +1127,7 @@ static void broken_lost_vertex(void **state)
     (void)state;
     begin_patch();
     add_point(2.5, 1.8);
-    take_as_input();
+    copy_as_input();
     expect(TRI_CHECK_LOST_VERTICES, 1, -1);
     trial.options.ignore_lost = true;
     expect_good();
@@ -1151,7 +1151,7 @@ static void duplicates_stand_for_each_other(void **state)
     begin_patch();
     add_segment(at(1, 1), at(2, 1));
     int32_t twin = add_point(trial.points[2 * at(1, 1)], trial.points[2 * at(1, 1) + 1]);
-    take_as_input();
+    copy_as_input();
     trial.input.segments[2 * 18] = twin;
     expect_good();
     trial.mesh.n_points--; /* not in the output */
@@ -1340,7 +1340,7 @@ static void begin_six(void)
     mark_points();
     for (int32_t i = 0; i < 2 * trial.mesh.n_points; i++)
         input_attributes[i] = attributes[i] = i % 7 - 3;
-    take_as_input();
+    copy_as_input();
     trial.input.attributes = input_attributes;
     trial.input.n_attributes = trial.mesh.n_point_attributes = 2;
     trial.mesh.point_attributes = attributes;

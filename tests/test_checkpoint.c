@@ -76,7 +76,7 @@ struct run {
     double max_area;
     bool lattice; /* points are placed on a lattice */
     struct tri_error error;
-    int64_t given_up;
+    int64_t n_inserted;
 };
 
 static enum tri_status refine(struct run *r, int32_t points)
@@ -98,7 +98,7 @@ static enum tri_status refine(struct run *r, int32_t points)
     mesh.stop = r->stop;
     enum tri_status status = par_refine(&mesh, &fine.quality, &options, &report, &r->error);
     assert_true(status || report.way == PAR_SWEPT);
-    r->given_up = report.total.inserted_free;
+    r->n_inserted = report.total.inserted_free;
     par_report_free(&report);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
@@ -133,14 +133,14 @@ static void remove_all(void)
 }
 
 /* Requests a stop after this many tiles. */
-struct patience {
+struct tile_limit {
     const struct taker *taker;
     int64_t tiles; /* number of tiles after which to stop */
 };
 
 static bool is_over(void *user)
 {
-    const struct patience *p = user;
+    const struct tile_limit *p = user;
     return p->taker->n >= p->tiles;
 }
 
@@ -158,8 +158,8 @@ static void test_stopped_at_any_time(void **state)
         open_it(&c, rounds > 0);
         assert_int_equal(par_checkpoint_has_state(&c), kept > 0);
         struct run r = run_of(&c);
-        const struct patience patience = {&r.taker, 4 * rounds};
-        const struct tri_stop stop = {is_over, (void *)&patience};
+        const struct tile_limit tile_limit = {&r.taker, 4 * rounds};
+        const struct tri_stop stop = {is_over, (void *)&tile_limit};
         r.threads = rounds % 3 + 1;
         r.stop = &stop;
         status = refine(&r, POINTS);
@@ -403,7 +403,7 @@ static long length_of(const char *name)
 }
 
 /* Resumes the run and returns its status. */
-static enum tri_status go_on(void)
+static enum tri_status resume_run(void)
 {
     struct par_checkpoint c;
     enum tri_status status = par_checkpoint_open(&c, DIRECTORY, true, 7, NULL);
@@ -424,14 +424,14 @@ static void test_damage_is_found(void **state)
         long n = length_of(names[k]);
         for (long at = 0; at < n; at += every(3) * (n < 100 ? 3 : n / 7)) {
             flip(names[k], at);
-            assert_int_equal(go_on(), TRI_BAD_INPUT);
+            assert_int_equal(resume_run(), TRI_BAD_INPUT);
             flip(names[k], at);
         }
     }
     for (int k = 0; k < 3; k++) { /* the file is too short */
         leave_state();
         assert_int_equal(truncate(names[k], length_of(names[k]) / 2), 0);
-        assert_int_equal(go_on(), TRI_BAD_INPUT);
+        assert_int_equal(resume_run(), TRI_BAD_INPUT);
     }
     remove_all();
 }
@@ -463,14 +463,14 @@ static const struct way ways[] = {
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
 
-/* A run that stops after most_told phases have been reported, or after is_asked has been called most_asked times. */
+/* A run that stops after max_reported phases have been reported, or after is_asked has been called max_asked times. */
 struct whole_run {
     const struct way *way;
     struct par_checkpoint *checkpoint;
     int64_t memory; /* bound in bytes; 0: none */
     int threads;
     atomic_int told, asked;    /* reported phases; calls of is_asked, by all threads */
-    int most_told, most_asked; /* limits of both; most_asked 0: no limit */
+    int max_reported, max_asked; /* limits of both; max_asked 0: no limit */
     struct taker taker;
     uint64_t hash;     /* of the whole mesh */
     int64_t triangles; /* used if there is no sink */
@@ -486,10 +486,10 @@ static void count_phases(void *user, const struct par_place *place)
 
 static bool time_is_up; /* set when the checkpoint reports the time limit */
 
-static bool is_told_enough(void *user)
+static bool is_limit_reached(void *user)
 {
     struct whole_run *r = user;
-    return time_is_up || r->told >= r->most_told || (r->most_asked > 0 && ++r->asked > r->most_asked);
+    return time_is_up || r->told >= r->max_reported || (r->max_asked > 0 && ++r->asked > r->max_asked);
 }
 
 static uint64_t hash_of_mesh(const struct tri_mesh *m)
@@ -510,7 +510,7 @@ static enum tri_status refine_whole(struct whole_run *r)
     struct start start = trials_start_of(&r->way->trial);
     struct tri_mesh mesh = trials_coarse_mesh(&start);
     const struct tri_sink sink = {&r->taker, begin, take, end};
-    const struct tri_stop stop = {is_told_enough, r};
+    const struct tri_stop stop = {is_limit_reached, r};
     struct par_options options = {.threads = r->threads, .cell_triangles = r->way->trial.block, .memory = r->memory,
                                   .by_block = r->way->by_block, .tight_room = r->way->tight_room,
                                   .sink = r->way->has_sink ? &sink : NULL,
@@ -532,12 +532,12 @@ static enum tri_status refine_whole(struct whole_run *r)
 static struct whole_run whole_run_of(const struct way *way, struct par_checkpoint *checkpoint)
 {
     return (struct whole_run){.way = way, .checkpoint = checkpoint, .memory = way->memory, .threads = 2,
-                              .most_told = INT32_MAX, .taker = {.fail_at = -1}};
+                              .max_reported = INT32_MAX, .taker = {.fail_at = -1}};
 }
 
 /* Stops and resumes the run many times, in a phase or between two phases, each time with another number of threads, and
  * with the mesh in memory or in files. A resumed run that stops in its first phase has made no progress. */
-static void go_on_until_done(const struct way *way, const struct whole_run *wanted)
+static void resume_until_done(const struct way *way, const struct whole_run *wanted)
 {
     enum tri_status status = TRI_STOPPED;
     int rounds = 0, with_state = 0;
@@ -548,7 +548,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
         const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* making it again is reported */
-        r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
+        r.max_reported = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)
             r.memory = rounds % 2 * 1000;
@@ -569,7 +569,7 @@ static void test_whole_meshes_resume(void **state)
         struct whole_run wanted = whole_run_of(&ways[i], NULL);
         assert_int_equal(refine_whole(&wanted), TRI_OK);
         assert_int_equal(wanted.was, ways[i].expected);
-        go_on_until_done(&ways[i], &wanted);
+        resume_until_done(&ways[i], &wanted);
     }
 }
 
@@ -588,7 +588,7 @@ static void test_sequential_calls_resume(void **state)
             open_it(&c, rounds > 0);
             struct whole_run r = whole_run_of(&ways[i], &c);
             with_state += par_checkpoint_has_state(&c);
-            r.most_asked = 3 + rounds;
+            r.max_asked = 3 + rounds;
             r.threads = rounds % 3 + 1;
             status = refine_whole(&r);
             if (status == TRI_STOPPED && c.saved > 0 && !ways[i].has_sink)
@@ -613,7 +613,7 @@ static enum tri_status stop_short_of_memory(const struct way *way, const struct 
     open_it(&c, false);
     struct whole_run r = whole_run_of(way, &c);
     r.threads = 1;
-    r.most_asked = 9;
+    r.max_asked = 9;
     support_calls = 0;
     support_fail_at = fail_at;
     const enum tri_status status = refine_whole(&r);
@@ -735,7 +735,7 @@ static void test_the_last_state_begins_in_time(void **state)
 /* Simulates a run with its own clock: `rate` triangles a second, `each` seconds on the disk for a triangle, and a last
  * state that takes `slower` times as long. Returns the time when the run stops; *kept: number of triangles in the
  * state. */
-static double run_on_paper(double limit, double rate, double each, double slower, double *kept)
+static double simulate_run(double limit, double rate, double each, double slower, double *kept)
 {
     struct par_checkpoint c = par_checkpoint_closed(DIRECTORY);
     double now = 0, triangles = 0;
@@ -763,7 +763,7 @@ static void test_the_last_state_is_whole_before_the_limit(void **state)
             for (double rate = 1e5; rate <= 4e6; rate *= 6)
                 for (double slower = 1; slower < 2; slower += 0.4) {
                     double kept = 0;
-                    const double end = run_on_paper(limit, rate, 80 / speed, slower, &kept);
+                    const double end = simulate_run(limit, rate, 80 / speed, slower, &kept);
                     assert_true(kept > 0 && end <= limit + 2); /* the program allows 3 seconds */
                     assert_true(end >= limit / 4);
                 }

@@ -71,7 +71,7 @@ static void test_area_bounds(void **state)
 }
 
 /* Stores the area and first corner of the last call; rejects areas above 1. */
-static int remember(void *user, const double a[2], const double b[2], const double c[2], double area)
+static int record_call(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     double *told = user;
     (void)b, (void)c;
@@ -89,7 +89,7 @@ static void test_size_tests(void **state)
     double told[2];
     set_up(&s, (struct tri_point){0, 0}, (struct tri_point){3, 0}, (struct tri_point){0, 3});
     s.mesh.unit = 2;
-    s.options.unsuitable = remember;
+    s.options.unsuitable = record_call;
     s.options.unsuitable_user = told;
     assert_int_equal(judge(&s), TRI_BAD_SIZE);
     assert_true(told[0] == 0 && told[1] == 18);

@@ -31,7 +31,7 @@ static int teardown(void **state)
     return 0;
 }
 
-static void load(struct exact *e, struct tri_point p)
+static void set_exact(struct exact *e, struct tri_point p)
 {
     mpq_set_d(e->x, p.x);
     mpq_set_d(e->y, p.y);
@@ -61,7 +61,7 @@ static void square_of_length(mpq_t z, const struct exact *u, const struct exact 
 /* The distance of p from the line through u and v, with one or two roundings. */
 static double distance(struct tri_point u, struct tri_point v, struct tri_point p)
 {
-    load(&a, u), load(&b, v), load(&q, p);
+    set_exact(&a, u), set_exact(&b, v), set_exact(&q, p);
     cross(det, &a, &b, &q);
     square_of_length(length2, &a, &b);
     mpq_mul(det, det, det);
@@ -72,7 +72,7 @@ static double distance(struct tri_point u, struct tri_point v, struct tri_point 
 /* The distance from p to r along the line through u and v, with one or two roundings. */
 static double way_along(struct tri_point u, struct tri_point v, struct tri_point p, struct tri_point r)
 {
-    load(&a, u), load(&b, v), load(&c, p), load(&q, r);
+    set_exact(&a, u), set_exact(&b, v), set_exact(&c, p), set_exact(&q, r);
     mpq_sub(first, b.x, a.x);
     mpq_sub(second, q.x, c.x);
     mpq_mul(det, first, second);
@@ -112,7 +112,7 @@ static struct tri_point near_line(struct tri_point u, struct tri_point v, double
 }
 
 /* Two segments, p[0] p[1] and p[2] p[3]. */
-static void anywhere(struct tri_point p[4])
+static void random_segments(struct tri_point p[4])
 {
     for (int i = 0; i < 4; i++)
         p[i] = random_point(0, 1);
@@ -153,7 +153,7 @@ static void through_a_place(struct tri_point p[4])
     }
 }
 
-static void (*const make[])(struct tri_point p[4]) = {anywhere, nearly_parallel, beside_each_other, far_away,
+static void (*const make[])(struct tri_point p[4]) = {random_segments, nearly_parallel, beside_each_other, far_away,
                                                       through_a_place};
 
 enum { KINDS = sizeof make / sizeof *make, RUNS = 4000 };
@@ -166,7 +166,7 @@ static bool opposite(int s, int t) { return (s < 0 && t > 0) || (s > 0 && t < 0)
 
 static bool naively_cross(const struct tri_point p[4])
 {
-    load(&a, p[0]), load(&b, p[1]), load(&c, p[2]), load(&d, p[3]);
+    set_exact(&a, p[0]), set_exact(&b, p[1]), set_exact(&c, p[2]), set_exact(&d, p[3]);
     int side[4];
     cross(det, &a, &b, &c), side[0] = mpq_sgn(det);
     cross(det, &a, &b, &d), side[1] = mpq_sgn(det);
@@ -254,7 +254,7 @@ static void test_determinants(void **state)
             struct tri_point p[4];
             make[kind](p);
             struct tri_pair pair = tri_orient2d_pair(p[0], p[1], p[2]);
-            load(&a, p[0]), load(&b, p[1]), load(&c, p[2]);
+            set_exact(&a, p[0]), set_exact(&b, p[1]), set_exact(&c, p[2]);
             cross(det, &a, &b, &c);
             assert_int_equal((pair.head > 0) - (pair.head < 0), mpq_sgn(det));
             mpq_set_d(first, pair.head);

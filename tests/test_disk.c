@@ -25,7 +25,7 @@ static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg 
 
 /* n segments from the middle of a square. Each is turned from the previous one by an angle with a tangent between 1e-5
  * and 1. */
-static struct tri_pslg needles(int32_t n, uint64_t seed)
+static struct tri_pslg needle_figure(int32_t n, uint64_t seed)
 {
     struct support_random random = {seed};
     struct tri_pslg pslg = support_pslg(n + 5, n + 4, 0, 0);
@@ -54,7 +54,7 @@ static void test_needles_become_conforming(void **state)
     for (uint64_t seed = 0; seed < 40; seed++)
         for (int angle = 0; angle <= 30; angle += 30) {
             struct tri_report report;
-            struct tri_pslg pslg = needles(7, seed);
+            struct tri_pslg pslg = needle_figure(7, seed);
             struct tri_mesh mesh = conforming(&pslg, angle, &report);
             judge_conforming(&mesh, &pslg, &report);
             assert_true(angle > 0 || mesh.n_triangles < 1000);
@@ -190,7 +190,7 @@ static void test_protected_circles_are_counted(void **state)
     (void)state;
     int64_t count[TRI_EXCUSES];
     struct tri_report report;
-    struct tri_pslg pslg = needles(7, 1);
+    struct tri_pslg pslg = needle_figure(7, 1);
     struct tri_options options = support_quality(0, 0);
     options.quality.conforming = true;
     options.quality.protect = 2;

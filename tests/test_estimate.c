@@ -157,7 +157,7 @@ struct samples {
     bool inside;       /* all samples are in the unit square */
 };
 
-static bool take(void *user, struct tri_point q, double work)
+static bool record_sample(void *user, struct tri_point q, double work)
 {
     struct samples *s = user;
     if (s->n == s->room)
@@ -180,14 +180,14 @@ static void test_samples(void **state)
     int32_t before = 0;
     for (double grain = 2000; grain > 10; grain /= 5) {
         struct samples s = {.room = INT32_MAX, .inside = true};
-        assert_true(tri_sample_work(&mesh, &quality, grain, NULL, take, &s));
+        assert_true(tri_sample_work(&mesh, &quality, grain, NULL, record_sample, &s));
         assert_true(s.inside && s.n > before);
         assert_true(s.work <= all * (1 + 1e-9) && s.work > all - 2 * grain);
         assert_true(s.most < 2 * grain);
         before = s.n;
     }
     struct samples few = {.room = 3, .inside = true};
-    assert_false(tri_sample_work(&mesh, &quality, 10, NULL, take, &few));
+    assert_false(tri_sample_work(&mesh, &quality, 10, NULL, record_sample, &few));
     assert_int_equal(few.n, 3);
     tri_mesh_free(&mesh);
 }
@@ -205,7 +205,7 @@ static void test_threads_do_not_change_estimates(void **state)
         const struct tri_executor *executor = k ? &support_backwards : NULL;
         s[k] = (struct samples){.room = INT32_MAX, .inside = true};
         all[k] = tri_estimate(&mesh, &quality, executor, &sure[k]);
-        assert_true(tri_sample_work(&mesh, &quality, 10, executor, take, &s[k]));
+        assert_true(tri_sample_work(&mesh, &quality, 10, executor, record_sample, &s[k]));
     }
     assert_true(all[0] == all[1] && sure[0] == sure[1]);
     assert_true(s[0].work == s[1].work && s[0].most == s[1].most && s[0].n == s[1].n);

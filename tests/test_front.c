@@ -16,7 +16,7 @@ struct found {
                               * corners */
 };
 
-static struct found look_at(const struct tri_mesh *m, const struct tri_lengths *lengths)
+static struct found measure_mesh(const struct tri_mesh *m, const struct tri_lengths *lengths)
 {
     struct found f = {.shortest = HUGE_VAL};
     double wanted = 0;
@@ -71,7 +71,7 @@ static void test_edges_have_the_given_lengths(void **state)
         const struct tri_size_field field = {.kind = TRI_SIZE_NUMBER, .length = 0.017};
         struct tri_lengths *lengths;
         struct tri_mesh mesh = square_of(&field, way, &lengths);
-        const struct found f = look_at(&mesh, lengths);
+        const struct found f = measure_mesh(&mesh, lengths);
         print_message("  way %d: %d triangles, q %.4f, %.4f of the edges, n/want %.3f, shortest %.3f, widest"
                       " %.3f\n", way,
                       (int)mesh.n_triangles, f.quality, f.share, f.over, f.shortest, f.widest);
@@ -103,7 +103,7 @@ static void test_sides_are_divided_by_the_integral(void **state)
         assert_true(fabs(fabs(log((0.01 + 0.1 * a[0]) / (0.01 + 0.1 * b[0])) / 0.1) - each) < 0.03 * each);
     }
     assert_int_equal(parts, 2 * (int)floor(all + 0.5));
-    const struct found f = look_at(&mesh, lengths);
+    const struct found f = measure_mesh(&mesh, lengths);
     print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh.n_triangles, f.quality, f.share,
                   f.over);
     assert_true(f.quality > 0.955 && f.share > 0.97 && f.over < 1.05 && f.widest <= 0.8);
@@ -112,7 +112,7 @@ static void test_sides_are_divided_by_the_integral(void **state)
 }
 
 /* Makes the mesh with 1 and with 3 threads, and checks it. */
-static struct found look_at_blocks(struct trial trial)
+static struct found measure_blocks(struct trial trial)
 {
     struct start start = trials_start_of(&trial);
     struct tri_mesh mesh[2];
@@ -126,7 +126,7 @@ static struct found look_at_blocks(struct trial trial)
                                                  report.total.inserted_on_segments);
         par_report_free(&report);
     }
-    const struct found f = look_at(&mesh[0], start.options.quality.lengths);
+    const struct found f = measure_mesh(&mesh[0], start.options.quality.lengths);
     print_message("  %d triangles, q %.4f, %.4f of the edges, n/want %.3f\n", (int)mesh[0].n_triangles, f.quality,
                   f.share, f.over);
     const struct tri_check_options check = kept();
@@ -143,10 +143,10 @@ static struct found look_at_blocks(struct trial trial)
 static void test_blocks_are_as_good_as_one_call(void **state)
 {
     (void)state;
-    const struct found letter = look_at_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
+    const struct found letter = measure_blocks((struct trial){"letter.poly", 25, -100000, 60, false, false, 0});
     assert_true(letter.quality > 0.982 && letter.share > 0.98 && letter.over > 0.97 && letter.over < 1.03);
     const struct found coast =
-        look_at_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
+        measure_blocks((struct trial){"coast/norway_sea.poly", 25, -60000, 400, false, false, 0});
     assert_true(coast.quality > 0.9);
 }
 

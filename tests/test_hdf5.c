@@ -27,11 +27,11 @@ static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0
                             PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
 
 /* Writes the lattice to x.h5 and x.xdmf. */
-static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t most_narrow,
+static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t max_narrow,
                                      struct tri_error *error)
 {
     struct tri_output_set set;
-    struct tri_h5_options options = {.program = "test", .name = "x.h5", .markers = markers, .most_narrow = most_narrow};
+    struct tri_h5_options options = {.program = "test", .name = "x.h5", .markers = markers, .max_narrow = max_narrow};
     struct tri_h5_writer *writer = NULL;
     struct tri_sink sink;
     tri_outputs_begin(&set);
@@ -261,16 +261,16 @@ static enum tri_status end_parts(void *user, struct tri_error *error)
     enum tri_status status = TRI_OK;
     for (int i = 0; i < PARTS && !status; i++)
         status = tri_h5_part_end(p->part[i], error);
-    tri_h5_writer_tell(p->writer, p->lattice->side, p->bounds);
+    tri_h5_writer_set_totals(p->writer, p->lattice->side, p->bounds);
     return status ? status : p->whole.end(p->whole.user, error);
 }
 
-static enum tri_status write_parts(const struct lattice *lattice, bool markers, int64_t most_narrow,
+static enum tri_status write_parts(const struct lattice *lattice, bool markers, int64_t max_narrow,
                                    struct tri_error *error)
 {
     struct tri_output_set set;
     struct parts p = {.lattice = lattice, .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
-                      .options = {.program = "test", .name = "x.h5", .markers = markers, .most_narrow = most_narrow}};
+                      .options = {.program = "test", .name = "x.h5", .markers = markers, .max_narrow = max_narrow}};
     const struct tri_sink sink = {&p, begin_parts, take_part, end_parts};
     tri_outputs_begin(&set);
     enum tri_status status = tri_output_open(&set, "x.h5", &p.options.file, error);

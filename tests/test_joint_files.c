@@ -45,10 +45,10 @@ static enum tri_status open_all(struct opened *o, const struct tri_text_options 
     enum tri_status status = TRI_OK;
     *o = (struct opened){.text = *text, .h5 = {.program = "test", .name = "x.h5", .markers = true}};
     tri_outputs_begin(&o->set);
-    for (int i = 0; i < (tri_h5_is_there() ? FILES : 3) && !status; i++)
+    for (int i = 0; i < (tri_h5_is_available() ? FILES : 3) && !status; i++)
         status = tri_output_open(&o->set, names[i], outputs[i], error);
     status = status ? status : tri_text_stream_new(&o->text_stream, &o->text, &o->to_text, error);
-    if (!status && tri_h5_is_there())
+    if (!status && tri_h5_is_available())
         status = tri_h5_writer_new(&o->writer, &o->h5, &o->to_h5, error);
     return status;
 }
@@ -83,7 +83,7 @@ static struct tri_text_options text_options(const struct member *m)
 }
 
 /* Simulates a rank on another machine, where the same name is another file. */
-static bool spread_of_another(void *self, void *bytes, size_t n)
+static bool spread_other_file(void *self, void *bytes, size_t n)
 {
     struct par_carrier carrier = fake_carrier(((struct fake_rank *)self)->world, ((struct fake_rank *)self)->self);
     const bool spread = carrier.spread(self, bytes, n);
@@ -119,12 +119,12 @@ static void write_together(struct member *m, struct joint_files *joint)
     refine_to(m, &sink);
 }
 
-static void *be_a_rank(void *user)
+static void *run_rank(void *user)
 {
     struct member *m = user;
     struct joint_files joint = {.carrier = &m->carrier, .scratch = ".", .text_options = text_options(m)};
     if (m->mishap == SEES_ANOTHER_FILE)
-        m->carrier.spread = spread_of_another;
+        m->carrier.spread = spread_other_file;
     if (m->carrier.rank == 0) {
         m->status = open_all(&m->opened, &joint.text_options, &m->error);
         joint.text_options = m->opened.text;
@@ -161,7 +161,7 @@ static void run_ranks(struct member *member, const struct trial *trial, const st
                                     .carrier = fake_carrier(&world, p), .mishap = p == unlucky ? mishap : NONE};
         member[p].options.carrier = &member[p].carrier;
     }
-    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_run(&world, run_rank, member, sizeof *member);
     for (int p = 0; p < n_ranks; p++)
         tri_mesh_free(&member[p].mesh);
     fake_world_free(&world);
@@ -180,7 +180,7 @@ static enum tri_status begin_both(void *user, const struct tri_stream *stream, s
     return status || !o->writer ? status : o->to_h5.begin(o->to_h5.user, stream, error);
 }
 
-static enum tri_status take_both(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status hand_out_both(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct opened *o = ((struct both *)user)->opened;
     enum tri_status status = o->to_text.take(o->to_text.user, tile, error);
@@ -198,7 +198,7 @@ static void write_alone(const struct trial *trial, const struct start *start)
 {
     struct member m = {.start = start, .options = small_blocks(trial), .mesh = trials_coarse_mesh(start)};
     struct both both = {&m.opened};
-    const struct tri_sink sink = {&both, begin_both, take_both, end_both};
+    const struct tri_sink sink = {&both, begin_both, hand_out_both, end_both};
     const struct tri_text_options text = text_options(&m);
     assert_int_equal(open_all(&m.opened, &text, &m.error), TRI_OK);
     refine_to(&m, &sink);
@@ -219,7 +219,7 @@ static int remove_files(void **state)
 
 static void take_files(char *bytes[FILES], size_t n[FILES])
 {
-    for (int i = 0; i < (tri_h5_is_there() ? FILES : 3); i++) {
+    for (int i = 0; i < (tri_h5_is_available() ? FILES : 3); i++) {
         bytes[i] = file_bytes(names[i], &n[i]);
         remove(names[i]);
     }

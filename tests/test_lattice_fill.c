@@ -551,9 +551,9 @@ static void test_allocations_may_fail(void **state)
 /* Must not be called again after it has returned true. */
 static bool counts_down(void *user)
 {
-    int *left = user;
-    assert_true(*left > 0);
-    return --*left == 0;
+    int *bad_list = user;
+    assert_true(*bad_list > 0);
+    return --*bad_list == 0;
 }
 
 /* After a stop at any time the mesh is valid, and another call completes it. */
@@ -568,14 +568,14 @@ static void test_stops(void **state)
     for (int asked = 1; !is_ready; asked++) {
         struct tri_mesh mesh = coarse_mesh(&pslg, &options);
         struct tri_refine_report report;
-        int left = asked;
-        const struct tri_stop stop = {counts_down, &left};
+        int bad_list = asked;
+        const struct tri_stop stop = {counts_down, &bad_list};
         mesh.stop = &stop;
         const enum tri_status status = tri_refine(&mesh, &options.quality, &report, NULL);
         mesh.stop = NULL;
         is_ready = status == TRI_OK;
         stops += !is_ready;
-        assert_int_equal(status, left > 0 ? TRI_OK : TRI_STOPPED);
+        assert_int_equal(status, bad_list > 0 ? TRI_OK : TRI_STOPPED);
         judge_as_far_as_it_got(&mesh, &pslg);
         assert_true(mesh.n_vertices >= before);
         before = mesh.n_vertices;
@@ -736,18 +736,18 @@ static void test_quarters_commute(void **state)
     assert_true(cells > 2000);
 }
 
-struct left {
-    bool *is_told; /* [n] */
+struct bad_list {
+    bool *is_listed; /* [n] */
     int32_t n;
     int64_t calls;
 };
 
-static void note_left(void *user, tri_triangle_id triangle)
+static void record_deferred(void *user, tri_triangle_id triangle)
 {
-    struct left *left = user;
-    assert_true(triangle >= 0 && triangle < left->n);
-    left->is_told[triangle] = true;
-    left->calls++;
+    struct bad_list *bad_list = user;
+    assert_true(triangle >= 0 && triangle < bad_list->n);
+    bad_list->is_listed[triangle] = true;
+    bad_list->calls++;
 }
 
 /* Every triangle that is still bad has been reported to the caller, who refines it later. */
@@ -760,7 +760,7 @@ static void test_remaining_bad_triangles_are_reported(void **state)
         struct tri_pslg pslg;
         struct tri_mesh mesh = coarse_square(&pslg);
         const struct tri_options options = in_lattice(28, 0.006);
-        struct left left = {calloc(MOST, sizeof *left.is_told), MOST, 0};
+        struct bad_list bad_list = {calloc(MOST, sizeof *bad_list.is_listed), MOST, 0};
         int32_t *listed = calloc((size_t)mesh.n_triangles, sizeof *listed), n = 0;
         for (int32_t t = 0; t < mesh.n_triangles; t++) {
             double at[6];
@@ -770,10 +770,10 @@ static void test_remaining_bad_triangles_are_reported(void **state)
                 listed[n++] = t;
         }
         const struct tri_refine_hooks hooks = {.fence = &fences[f], .worklist = listed, .n_worklist = n,
-                                               .deferred = note_left, .deferred_user = &left};
+                                               .deferred = record_deferred, .deferred_user = &bad_list};
         struct tri_refine_report report;
         assert_int_equal(tri_refine_with(&mesh, &options.quality, &hooks, &report, NULL), TRI_OK);
-        assert_int_equal(left.calls, report.fenced);
+        assert_int_equal(bad_list.calls, report.fenced);
         assert_true(mesh.n_triangles <= MOST);
         int32_t *found = calloc((size_t)mesh.n_triangles, sizeof *found);
         const int32_t n_found = tri_find_work(&mesh, &options.quality, 0, mesh.n_triangles, found);
@@ -782,11 +782,11 @@ static void test_remaining_bad_triangles_are_reported(void **state)
             double at[6];
             for (int k = 0; k < 6; k++)
                 at[k] = k % 2 ? mesh.xy[mesh.tri[found[i]].v[k / 2]].y : mesh.xy[mesh.tri[found[i]].v[k / 2]].x;
-            assert_true(left.is_told[found[i]] || !is_owned(&fences[f], at));
+            assert_true(bad_list.is_listed[found[i]] || !is_owned(&fences[f], at));
         }
         free(found);
         free(listed);
-        free(left.is_told);
+        free(bad_list.is_listed);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -850,7 +850,8 @@ static void test_worklists(void **state)
         cells += host.cells;
         judge_as_far_as_it_got(&mesh, &pslg);
         for (int32_t t = 0; t < before; t++) /* a changed triangle has another generation */
-            assert_true(memcmp(old[t].v, mesh.tri[t].v, sizeof old[t].v) == 0 || mesh.tri[t].life != old[t].life);
+            assert_true(memcmp(old[t].v, mesh.tri[t].v, sizeof old[t].v) == 0 ||
+                        mesh.tri[t].generation != old[t].generation);
         assert_int_equal(tri_refine(&mesh, &fine.quality, &report, NULL), TRI_OK);
         judge(&mesh, &pslg, &fine, 0);
         assert_int_equal(tri_refine(&mesh, &fine.quality, &report, NULL), TRI_OK);

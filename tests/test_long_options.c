@@ -17,7 +17,7 @@ struct taken {
 };
 
 /* Parses one option, which is word 1. second NULL: there is no other word. */
-static enum tri_status take(struct taken *t, char *first, char *second)
+static enum tri_status parse_option(struct taken *t, char *first, char *second)
 {
     char program[] = "ptriangle";
     char *argv[] = {program, first, second};
@@ -25,8 +25,8 @@ static enum tri_status take(struct taken *t, char *first, char *second)
     return long_options_take(&t->options, &t->switches, second ? 3 : 2, argv, &t->at, &t->error);
 }
 
-#define TAKE(t, first, second) take(t, (char[]){first}, (char[]){second})
-#define TAKE_ALONE(t, first) take(t, (char[]){first}, NULL)
+#define TAKE(t, first, second) parse_option(t, (char[]){first}, (char[]){second})
+#define TAKE_ALONE(t, first) parse_option(t, (char[]){first}, NULL)
 
 static struct taken nothing(void) { return (struct taken){.switches = tri_switches_none()}; }
 
@@ -41,7 +41,7 @@ static void test_both_forms(void **state)
     assert_int_equal(t.options.threads, 8);
     assert_int_equal(t.at, 1);
     char name[] = "--output=a=b";
-    assert_int_equal(take(&t, name, NULL), TRI_OK);
+    assert_int_equal(parse_option(&t, name, NULL), TRI_OK);
     assert_string_equal(t.options.output, "a=b");
     assert_false(t.options.no_sync);
     assert_int_equal(TAKE_ALONE(&t, "--no-sync"), TRI_OK);
@@ -75,7 +75,7 @@ static void test_memory(void **state)
     assert_true(t.options.memory == 0x1p21);
     char *const wrong[] = {"", "G", "0", "-1G", "1g", "4GB", "0%", "101%", "nan", "1e99T", "1K", "4 G"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(take(&t, (char[]){"--memory"}, wrong[i]), TRI_BAD_INPUT);
+        assert_int_equal(parse_option(&t, (char[]){"--memory"}, wrong[i]), TRI_BAD_INPUT);
     assert_true(t.options.memory == 0x1p21);
     assert_int_equal(TAKE(&t, "--scratch", "/tmp"), TRI_OK);
     assert_string_equal(t.options.scratch, "/tmp");
@@ -141,7 +141,7 @@ static void test_refused(void **state)
         char first[32], second[32];
         strcpy(first, words[i][0]);
         strcpy(second, words[i][1] ? words[i][1] : "");
-        assert_int_equal(take(&t, first, words[i][1] ? second : NULL), TRI_BAD_INPUT);
+        assert_int_equal(parse_option(&t, first, words[i][1] ? second : NULL), TRI_BAD_INPUT);
         assert_true(strlen(t.error.text) > 10 && !strchr(t.error.text, '\n'));
         assert_int_equal(t.options.threads, 0);
         assert_null(t.options.output);
@@ -158,9 +158,9 @@ static void test_parts(void **state)
     assert_int_equal(t.options.n_parts, 512);
     assert_int_equal(long_options_check(&t.options, &t.error), TRI_BAD_INPUT);
     char vtu[] = "--output=a.vtu", msh[] = "--output=a.msh";
-    assert_int_equal(take(&t, vtu, NULL), TRI_OK);
+    assert_int_equal(parse_option(&t, vtu, NULL), TRI_OK);
     assert_int_equal(long_options_check(&t.options, &t.error), TRI_BAD_INPUT);
-    assert_int_equal(take(&t, msh, NULL), TRI_OK);
+    assert_int_equal(parse_option(&t, msh, NULL), TRI_OK);
     assert_int_equal(long_options_check(&t.options, &t.error), TRI_OK);
     assert_int_equal(TAKE(&t, "--parts", "0"), TRI_BAD_INPUT);
     assert_int_equal(TAKE(&t, "--parts", "513"), TRI_BAD_INPUT);

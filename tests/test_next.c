@@ -102,7 +102,7 @@ static enum tri_status begin_again(void *user, const struct tri_stream *stream, 
 
 static const struct tri_sink counting = {NULL, begin_again, count_tile, NULL}; /* counts the steps of the run */
 
-static bool never(void *user)
+static bool never_stop(void *user)
 {
     (void)user;
     return false;
@@ -119,10 +119,10 @@ static enum tri_status refine(const struct trial *trial, struct par_options opti
     options.sink = options.sink ? &sink : NULL;
     options.cell_triangles = trial->block;
     options.threads = 1;
-    options.went = note_step;
-    options.went_user = steps;
+    options.on_step = note_step;
+    options.on_step_user = steps;
     steps->last = -1;
-    mesh.stop = &(struct tri_stop){never, NULL};
+    mesh.stop = &(struct tri_stop){never_stop, NULL};
     enum tri_status status = par_refine(&mesh, &start.options.quality, &options, &report, &error);
     if (status && status != TRI_STOPPED)
         fail_msg("%s: %s", trial->file, error.text);
@@ -175,7 +175,7 @@ static void kill_at(const struct trial *trial, struct par_options options, struc
 }
 
 /* Another process continues to the end. */
-static void go_on(const struct trial *trial, struct par_options options, struct steps *steps)
+static void resume_run(const struct trial *trial, struct par_options options, struct steps *steps)
 {
     struct par_checkpoint c;
     assert_int_equal(par_checkpoint_open(&c, DIRECTORY, true, 7, NULL), TRI_OK);
@@ -194,7 +194,7 @@ static void run_killed(const struct trial *trial, struct par_options options, in
     at.kill_to = to;
     support_remove_directory(DIRECTORY);
     kill_at(trial, options, at, false);
-    go_on(trial, options, steps);
+    resume_run(trial, options, steps);
 }
 
 /* --- on ranks */
@@ -205,7 +205,7 @@ struct member {
     struct steps steps;
 };
 
-static void *be_a_rank(void *user)
+static void *run_rank(void *user)
 {
     struct member *m = user;
     struct par_options options = par_defaults();
@@ -224,7 +224,7 @@ static void run_on_ranks(const struct trial *trial, struct steps *steps)
     fake_world_init(&world, N);
     for (int p = 0; p < N; p++)
         member[p] = (struct member){trial, fake_carrier(&world, p), NO_STEPS};
-    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_run(&world, run_rank, member, sizeof *member);
     fake_world_free(&world);
     for (int p = 0; p < N; p++) {
         assert_memory_equal(member[p].steps.made, member[0].steps.made, sizeof member[0].steps.made);
@@ -303,7 +303,7 @@ static void test_a_sweep_is_killed_again_and_again(void **state)
     at.n_before_kill = 0;
     for (int k = 0; k < 2; k++)
         kill_at(&trial, swept(), at, true);
-    go_on(&trial, swept(), &last);
+    resume_run(&trial, swept(), &last);
     assert_true(last.n_triangles == whole.n_triangles && whole.n_triangles > 0);
 }
 

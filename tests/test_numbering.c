@@ -84,7 +84,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, int32_t hubs, stru
             fresh->n[(k + turn[t]) % 3] = old->n[k] >= 0 ? CODE(old->n[k]) : ~sub[~old->n[k]];
         }
         fresh->region = old->region;
-        fresh->life = (uint32_t)support_bits(random);
+        fresh->generation = (uint32_t)support_bits(random);
     }
     for (int32_t s = 0; s < from->n_subs; s++) {
         const struct tri_subsegment *old = &from->sub[s];

@@ -83,7 +83,7 @@ static void assert_boundaries_ascend(const struct par_partition *p)
     }
 }
 
-static bool meet(const struct tri_fence *a, const struct tri_fence *b)
+static bool fences_overlap(const struct tri_fence *a, const struct tri_fence *b)
 {
     return fmax(a->x_min, b->x_min) < fmin(a->x_max, b->x_max) && fmax(a->y_min, b->y_min) < fmin(a->y_max, b->y_max);
 }
@@ -97,7 +97,7 @@ static void assert_phases_are_disjoint(const struct par_partition *p)
         for (int32_t k = 0; k < i; k++) {
             struct tri_fence b = par_fence(p, k / p->n_rows, k % p->n_rows);
             if (phase_of(i / p->n_rows, i % p->n_rows) == phase_of(k / p->n_rows, k % p->n_rows))
-                assert_false(meet(&a, &b));
+                assert_false(fences_overlap(&a, &b));
         }
     }
 }
@@ -325,7 +325,7 @@ static int is_too_large(void *user, const double a[2], const double b[2], const 
     return area > 1e-7 + 1e-3 * (x * x + y * y);
 }
 
-static int is_never_right(void *user, const double a[2], const double b[2], const double c[2], double area)
+static int always_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     (void)user, (void)a, (void)b, (void)c;
     return area > 0;
@@ -340,7 +340,7 @@ static void test_size_tests_are_probed(void **state)
     struct tri_options options = support_quality(25, 0);
     options.refine = false;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    options.quality.unsuitable = is_never_right;
+    options.quality.unsuitable = always_unsuitable;
     assert_true(support_estimate(&mesh, &options.quality) < 100);
     options.quality.unsuitable = is_too_large;
     double estimate = support_estimate(&mesh, &options.quality);

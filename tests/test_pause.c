@@ -73,7 +73,7 @@ static void test_paused_refinement_gives_the_same_mesh(void **state)
     compare(NULL, &options);
 }
 
-static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
+static enum tri_status refuse_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
     (void)user, (void)mesh, (void)points, (void)error;
     return TRI_NO_ROOM;
@@ -102,7 +102,7 @@ static void compare_step_by_step(const char *name, const struct tri_options *opt
 {
     struct tri_pslg pslg, same;
     struct tri_mesh mesh = coarse(name, options, &pslg), twin = coarse(name, options, &same);
-    const struct tri_refine_hooks stepping = {.more_room = not_now};
+    const struct tri_refine_hooks stepping = {.more_room = refuse_room};
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     assert_int_equal(tri_refine(&twin, &options->quality, &report, NULL), TRI_OK);
@@ -172,7 +172,7 @@ static void test_pauses_within_a_fence_give_the_same_mesh(void **state)
         const double unit = mesh[stepping].unit;
         const struct tri_fence fence = {-9 / unit, -9 / unit, 0.7 / unit, 0.7 / unit};
         const struct tri_refine_hooks hooks = {.fence = &fence,
-                                               .more_room = stepping ? not_now : NULL,
+                                               .more_room = stepping ? refuse_room : NULL,
                                                .deferred = add_deferred,
                                                .deferred_user = &deferred[stepping]};
         assert_int_equal(

@@ -134,7 +134,7 @@ static void refine_and_relay(struct member *m)
     m->status = par_relay_finish(&relay, m->status, &m->error);
 }
 
-static void *be_a_rank(void *user)
+static void *run_rank(void *user)
 {
     struct member *m = user;
     if (m->relayed)
@@ -206,7 +206,7 @@ static void run_ranks(struct member *member, const struct start *start, const st
     struct fake_world world;
     fake_world_init(&world, n_ranks);
     new_members(member, start, options, &world, share, fails, relayed);
-    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_run(&world, run_rank, member, sizeof *member);
     fake_world_free(&world);
 }
 
@@ -335,7 +335,7 @@ static void run_a_step(struct member *member, const struct start *start, const s
         member[p].options.checkpoint = &member[p].checkpoint;
     }
     member[0].mesh.stop = &stop;
-    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_run(&world, run_rank, member, sizeof *member);
     fake_world_free(&world);
     for (int p = 0; p < n_ranks; p++)
         assert_int_equal(member[p].status, member[0].status);
@@ -501,7 +501,7 @@ struct caller {
     struct tri_error error;
 };
 
-static enum tri_status let_go(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status discard_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     (void)user, (void)tile, (void)error;
     return TRI_OK;
@@ -513,7 +513,7 @@ static void *call(void *user)
     const double points[] = {0, 0, 1, 0, c->corner, 1, 0, 1};
     struct tri_figure figure = tri_no_figure();
     struct tri_settings settings = tri_no_settings();
-    const struct tri_sink sink = {.take = c->has_sink ? let_go : NULL};
+    const struct tri_sink sink = {.take = c->has_sink ? discard_tile : NULL};
     figure.points = (struct tri_reals){.at = points, .n = 4, .width = 2, .stride = 2};
     settings.min_angle = 25;
     settings.max_area = c->area;

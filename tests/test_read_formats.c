@@ -31,7 +31,7 @@ static const int32_t segments[] = {0, 1, 1, 2, 2, 5, 5, 4, 4, 7, 7, 6, 6, 3, 3, 
 static const int32_t segment_markers[] = {2, 2, 1, 1, 1, 1, 0, 0, 5};
 enum { INNER = 1, OUTER = 8 }; /* markers of segments */
 
-static struct array_grid ell(int n_nodes)
+static struct array_grid l_shape(int n_nodes)
 {
     return (struct array_grid){.points = points, .attributes = depths, .markers = point_markers,
                                .nodes = n_nodes == 6 ? six : three, .columns = regions, .segments = segments,
@@ -167,7 +167,7 @@ static void test_written_meshes_are_read_back(void **state)
 {
     (void)state;
     for (int i = 0; i < FORMATS; i++) {
-        struct array_grid arrays = ell(formats[i].n_nodes);
+        struct array_grid arrays = l_shape(formats[i].n_nodes);
         struct mesh mesh;
         struct lines found, wanted;
         write_grid(formats[i].name, grid_of(&arrays));
@@ -207,7 +207,7 @@ static void test_parts_of_a_mesh_are_read(void **state)
 {
     (void)state;
     static const char *const names[] = {"p_1.msh", "p_2.msh", "p_3.msh"};
-    struct array_grid arrays = ell(3);
+    struct array_grid arrays = l_shape(3);
     struct tri_output_set set;
     struct tri_output *outputs[3];
     int triangles = 0, ends = 0;
@@ -354,7 +354,7 @@ static void test_damaged_files_are_harmless(void **state)
     static const char changes[] = {'\0', '\xff', '9', '-', '<', '\x7f'};
     for (int i = 0; i < FORMATS; i++) {
         const char *name = formats[i].name;
-        struct array_grid arrays = ell(formats[i].n_nodes);
+        struct array_grid arrays = l_shape(formats[i].n_nodes);
         size_t n;
         write_grid(name, grid_of(&arrays));
         char *bytes = file_bytes(name, &n);

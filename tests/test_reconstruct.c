@@ -893,7 +893,7 @@ static void narrow_spaces_stay_unfilled(void **state)
 
 /* The maximum distance of the ends of subsegments from their parent's line, in resolutions of the parent's larger
    end. */
-static double farthest_astray(const struct tri_mesh *mesh)
+static double max_distance_from_parents(const struct tri_mesh *mesh)
 {
     double most = 0;
     for (int32_t i = 0; i < 2 * mesh->n_subs; i++) {
@@ -930,7 +930,7 @@ static void boundaries_that_are_read_can_be_split(void **state)
         tri_count_encroached(&back, &then.quality, &report, count);
         for (int k = 0; k < TRI_EXCUSES; k++)
             assert_int_equal(count[k], 0);
-        assert_true(farthest_astray(&back) <= cases[i].most);
+        assert_true(max_distance_from_parents(&back) <= cases[i].most);
         tri_mesh_free(&back);
         free_input(&in);
         tri_mesh_free(&mesh);

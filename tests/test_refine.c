@@ -552,7 +552,7 @@ static void test_a_failed_request_for_room_is_returned(void **state)
     }
 }
 
-static enum tri_status not_now(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
+static enum tri_status refuse_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error)
 {
     (void)user, (void)mesh, (void)points, (void)error;
     return TRI_NO_ROOM;
@@ -573,7 +573,7 @@ static void test_pauses_change_nothing(void **state)
         int pauses = 0;
         options.conforming = conforming;
         assert_int_equal(tri_refine(&twin, &options, &twin_report, NULL), TRI_OK);
-        hooks.more_room = not_now;
+        hooks.more_room = refuse_room;
         assert_int_equal(tri_refiner_new(&refiner, &mesh, &options, &hooks, &report, NULL), TRI_OK);
         while ((status = tri_refiner_run(refiner, NULL)) == TRI_NO_ROOM) {
             struct tri_error fault = {0};

@@ -927,7 +927,7 @@ struct told {
 };
 
 /* Positions are reported in ascending order. */
-static void tell(void *user, const struct par_place *place)
+static void record_progress(void *user, const struct par_place *place)
 {
     struct told *told = user;
     const struct par_place *last = &told->last;
@@ -953,7 +953,7 @@ static void test_progress_is_reported_on_the_calling_thread(void **state)
         struct told told = {.thread = pthread_self()};
         struct par_options options = small_blocks(300, threads);
         struct par_report report;
-        options.progress = tell;
+        options.progress = record_progress;
         options.progress_user = &told;
         struct tri_mesh mesh = refine(&start, &options, &report);
         assert_true(told.n >= 5 && told.last.triangles > 1000);

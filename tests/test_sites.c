@@ -104,7 +104,7 @@ static enum verdict is_inside(const struct trial *trial, struct tri_point p, con
 
 /* Must the point be rejected because a corner of the triangle or a subsegment beside it is near? *vertex: the corner at
    this point. */
-static enum verdict is_wiped_out(const struct trial *trial, struct tri_point p, tri_triangle_id t,
+static enum verdict is_too_close(const struct trial *trial, struct tri_point p, tri_triangle_id t,
                                  tri_vertex_id *vertex)
 {
     const struct tri_triangle *tri = &trial->mesh.tri[t];
@@ -135,7 +135,7 @@ static enum verdict judge(const struct trial *trial, struct tri_point p, tri_ver
         for (int k = 0; k < 3; k++)
             corner[k] = trial->mesh.xy[trial->mesh.tri[t].v[k]];
         inside = either(inside, is_inside(trial, p, corner));
-        gone = either(gone, is_wiped_out(trial, p, t, vertex));
+        gone = either(gone, is_too_close(trial, p, t, vertex));
     }
     return inside == OUT || gone == IN ? OUT : inside == IN && gone == OUT ? IN : DOUBTFUL;
 }
@@ -320,7 +320,7 @@ static void choose(struct trial *trial, double chance, uint64_t seed)
 }
 
 /* As in a part of a mesh: triangles that are not listed have undefined content. */
-static void forget_others(const struct trial *trial)
+static void clear_unlisted(const struct trial *trial)
 {
     for (int32_t i = 0; i < trial->n; i++)
         for (int e = 0; e < 3; e++) {
@@ -376,7 +376,7 @@ static void test_sites_in_some_triangles(void **state)
             struct trial trial = begin(figure, 1, seed % 2 ? -2 : 0, seed >= 4);
             choose(&trial, seed % 2 ? 0.5 : 0.1, seed);
             if (seed % 3 == 0)
-                forget_others(&trial);
+                clear_unlisted(&trial);
             if (trial.n > 0)
                 check_sites(&trial);
             end(&trial);

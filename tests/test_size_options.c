@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-struct taken {
+struct parsed_options {
     struct size_options options;
     struct tri_switches switches;
     struct tri_error error;
@@ -18,7 +18,7 @@ struct taken {
 };
 
 /* Parses the option at word 1. value NULL: no word follows it. */
-static bool take(struct taken *t, const char *word, const char *value)
+static bool parse_option(struct parsed_options *t, const char *word, const char *value)
 {
     char program[] = "triangle", first[120], second[120];
     char *argv[] = {program, first, second};
@@ -29,35 +29,35 @@ static bool take(struct taken *t, const char *word, const char *value)
     return size_options_take(&t->options, &t->switches, value ? 3 : 2, argv, &t->at, &t->error);
 }
 
-static struct taken nothing(void) { return (struct taken){.switches = tri_switches_none()}; }
+static struct parsed_options no_options(void) { return (struct parsed_options){.switches = tri_switches_none()}; }
 
 static void test_valid_values_are_parsed(void **state)
 {
     (void)state;
-    struct taken t = nothing();
-    assert_true(take(&t, "--size", "5e2") && !t.error.status && t.at == 2);
+    struct parsed_options t = no_options();
+    assert_true(parse_option(&t, "--size", "5e2") && !t.error.status && t.at == 2);
     assert_true(t.options.source[0].field.kind == TRI_SIZE_NUMBER && t.options.source[0].field.length == 500);
-    assert_true(take(&t, "--size=coast.asc", "x") && !t.error.status && t.at == 1);
+    assert_true(parse_option(&t, "--size=coast.asc", "x") && !t.error.status && t.at == 1);
     assert_string_equal(t.options.source[1].path, "coast.asc");
-    assert_true(take(&t, "--size", "a@b.npy@0,-1,2e3,1") && !t.error.status);
+    assert_true(parse_option(&t, "--size", "a@b.npy@0,-1,2e3,1") && !t.error.status);
     assert_string_equal(t.options.source[2].path, "a@b.npy");
     assert_true(t.options.source[2].has_extent && t.options.source[2].extent[1] == -1);
     assert_true(t.options.source[2].extent[2] == 2000 && t.options.source[2].extent[3] == 1);
-    assert_true(take(&t, "--size-near", "-2:500") && !t.error.status);
+    assert_true(parse_option(&t, "--size-near", "-2:500") && !t.error.status);
     const struct tri_size_field *near = &t.options.source[3].field;
     assert_true(near->kind == TRI_SIZE_NEAR && near->marker == -2 && near->length == 500 && near->growth < 0);
-    assert_true(take(&t, "--size-near=7:1.5,0.15", NULL) && !t.error.status);
+    assert_true(parse_option(&t, "--size-near=7:1.5,0.15", NULL) && !t.error.status);
     near = &t.options.source[4].field;
     assert_true(near->marker == 7 && near->length == 1.5 && near->growth == 0.15);
-    assert_true(take(&t, "--gradation", "inf") && t.options.gradation == HUGE_VAL);
-    assert_true(take(&t, "--min-size", "3") && t.options.min_size == 3);
-    assert_true(take(&t, "--max-size", "30") && t.options.max_size == 30);
-    assert_true(take(&t, "--elements-across", "2.5") && t.options.elements_across == 2.5);
-    assert_true(take(&t, "--per-circle=40", NULL) && t.options.per_circle == 40);
-    assert_true(take(&t, "--placement", "classic") && t.switches.placement == TRI_PLACEMENT_CLASSIC);
-    assert_true(take(&t, "--placement=front", NULL) && t.switches.placement == TRI_PLACEMENT_FRONT);
-    assert_true(take(&t, "--placement=lattice", NULL) && t.switches.placement == TRI_PLACEMENT_LATTICE);
-    assert_false(take(&t, "--sizes", "3") || take(&t, "--siz", "3") || take(&t, "-size", "3"));
+    assert_true(parse_option(&t, "--gradation", "inf") && t.options.gradation == HUGE_VAL);
+    assert_true(parse_option(&t, "--min-size", "3") && t.options.min_size == 3);
+    assert_true(parse_option(&t, "--max-size", "30") && t.options.max_size == 30);
+    assert_true(parse_option(&t, "--elements-across", "2.5") && t.options.elements_across == 2.5);
+    assert_true(parse_option(&t, "--per-circle=40", NULL) && t.options.per_circle == 40);
+    assert_true(parse_option(&t, "--placement", "classic") && t.switches.placement == TRI_PLACEMENT_CLASSIC);
+    assert_true(parse_option(&t, "--placement=front", NULL) && t.switches.placement == TRI_PLACEMENT_FRONT);
+    assert_true(parse_option(&t, "--placement=lattice", NULL) && t.switches.placement == TRI_PLACEMENT_LATTICE);
+    assert_false(parse_option(&t, "--sizes", "3") || parse_option(&t, "--siz", "3") || parse_option(&t, "-size", "3"));
     char text[SIZE_OPTIONS_TEXT];
     size_options_print(&t.options, text);
     assert_string_equal(text, "500, coast.asc, a@b.npy, 500 at segments with marker -2, 1.5 at segments with marker 7 "
@@ -79,36 +79,36 @@ static void test_invalid_values_are_refused(void **state)
     };
     (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        struct taken t = nothing();
-        assert_true(take(&t, wrong[i][0], wrong[i][1]));
+        struct parsed_options t = no_options();
+        assert_true(parse_option(&t, wrong[i][0], wrong[i][1]));
         assert_int_equal(t.error.status, TRI_BAD_INPUT);
         assert_non_null(strstr(t.error.text, wrong[i][0]));
         size_options_free(&t.options);
     }
-    struct taken t = nothing();
-    assert_true(take(&t, "--size", NULL) && t.error.status == TRI_BAD_INPUT);
+    struct parsed_options t = no_options();
+    assert_true(parse_option(&t, "--size", NULL) && t.error.status == TRI_BAD_INPUT);
     for (int i = 0; i < SIZE_OPTIONS_MOST; i++)
-        assert_true(take(&t, i % 2 ? "--size" : "--size-near", i % 2 ? "1" : "1:1") && !t.error.status);
-    assert_true(take(&t, "--size", "1") && t.error.status == TRI_BAD_INPUT);
+        assert_true(parse_option(&t, i % 2 ? "--size" : "--size-near", i % 2 ? "1" : "1:1") && !t.error.status);
+    assert_true(parse_option(&t, "--size", "1") && t.error.status == TRI_BAD_INPUT);
 }
 
 /* Lengths set -q. Limits without lengths are an error. */
 static void test_limits_need_lengths(void **state)
 {
     (void)state;
-    struct taken t = nothing();
+    struct parsed_options t = no_options();
     assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
     assert_false(t.switches.angle);
-    take(&t, "--gradation", "0.3");
+    parse_option(&t, "--gradation", "0.3");
     assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_BAD_INPUT);
-    take(&t, "--max-size", "3");
+    parse_option(&t, "--max-size", "3");
     assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
     assert_true(t.switches.angle && t.switches.min_angle == 20);
-    take(&t, "--min-size", "4");
+    parse_option(&t, "--min-size", "4");
     assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_BAD_INPUT);
-    t = nothing();
+    t = no_options();
     tri_switches_add(&t.switches, "q30");
-    take(&t, "--size", "3");
+    parse_option(&t, "--size", "3");
     assert_int_equal(size_options_end(&t.options, &t.switches, &t.error), TRI_OK);
     assert_true(t.switches.min_angle == 30);
 }

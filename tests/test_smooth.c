@@ -94,7 +94,7 @@ static int64_t count_bad(const struct tri_mesh *mesh)
 }
 
 /* Checksum of vertices and segments on the boundary, independent of numbering. */
-static uint64_t sum_of_fixed(const struct tri_mesh *mesh)
+static uint64_t boundary_checksum(const struct tri_mesh *mesh)
 {
     uint64_t sum = 0;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
@@ -142,7 +142,7 @@ static void test_smoothing_improves_meshes(void **state)
             else
                 assert_true(1 - share_of_six(&one) < 0.9 * (1 - six));
             assert_true(mean_quality(&one) > quality && count_bad(&one) <= count_bad(&before));
-            assert_true(sum_of_fixed(&one) == sum_of_fixed(&before));
+            assert_true(boundary_checksum(&one) == boundary_checksum(&before));
             quality = mean_quality(&one);
             tri_mesh_free(&one);
             tri_mesh_free(&three);

@@ -19,7 +19,7 @@ static double between(double low, double high) { return low + (high - low) * sup
 static int32_t below(int32_t n) { return support_below(&random_numbers, n); }
 
 /* Moves a point by up to the given number of units in the last place. */
-static double beside(double x, int32_t ulps)
+static double moved_by_ulps(double x, int32_t ulps)
 {
     for (int32_t n = below(2 * ulps + 1) - ulps; n != 0; n += n < 0 ? 1 : -1)
         x = nextafter(x, n < 0 ? -INFINITY : INFINITY);
@@ -44,7 +44,8 @@ static int32_t add(struct tri_pslg *pslg, const struct frame *f, double x, doubl
 
 static int32_t add_copy(struct tri_pslg *pslg, int32_t v, int32_t ulps)
 {
-    return support_add_point(pslg, beside(pslg->points[2 * v], ulps), beside(pslg->points[2 * v + 1], ulps));
+    return support_add_point(pslg, moved_by_ulps(pslg->points[2 * v], ulps),
+                             moved_by_ulps(pslg->points[2 * v + 1], ulps));
 }
 
 static void add_hole(struct tri_pslg *pslg, const struct frame *f, double x, double y)
@@ -135,7 +136,7 @@ static struct tri_pslg holes_wall_to_wall(void)
             int32_t first = add(&pslg, &f, i, j);
             add(&pslg, &f, i + 1, j), add(&pslg, &f, i + 1, j + 1), add(&pslg, &f, i, j + 1);
             for (int32_t k = 0; k < 8; k++)
-                pslg.points[2 * first + k] = beside(pslg.points[2 * first + k], ulps);
+                pslg.points[2 * first + k] = moved_by_ulps(pslg.points[2 * first + k], ulps);
             close_ring(&pslg, first);
             add_hole(&pslg, &f, i + 0.5, j + 0.5);
         }

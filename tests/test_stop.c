@@ -210,7 +210,7 @@ static void test_reading_and_writing_stop_anywhere(void **state)
     tri_pslg_free(&pslg);
 }
 
-static int says_yes(void *user)
+static int stop_when_triggered(void *user)
 {
     struct trigger *trigger = user;
     return is_asked(trigger);
@@ -224,7 +224,7 @@ static void test_triangulate_stops(void **state)
     for (int after = 0; status != TRIANGULATE_OK; after++) {
         struct trigger trigger = {.after = after};
         struct triangulateio in = {0}, out = {0};
-        struct triangulate_options options = {.stop = says_yes, .stop_user = &trigger, .threads = 1};
+        struct triangulate_options options = {.stop = stop_when_triggered, .stop_user = &trigger, .threads = 1};
         in.pointlist = corners;
         in.numberofpoints = 4;
         status = triangulate_with("Qq33a0.0001", &in, &out, NULL, &options);

@@ -32,9 +32,9 @@ static void test_scratch_files_are_distinct(void **state)
     const tri_file first = tri_scratch_file("."), second = tri_scratch_file("./");
     assert_true(first != TRI_NO_FILE && second != TRI_NO_FILE);
     assert_int_equal(files_here(), before);
-    assert_true(tri_write_at(first, "ab", 2, 0) && tri_read_again(first, found, 2, 0));
+    assert_true(tri_write_at(first, "ab", 2, 0) && tri_read_back(first, found, 2, 0));
     assert_memory_equal(found, "ab", 2);
-    assert_true(tri_file_look(second, &about) && about.kind == TRI_REGULAR && about.size == 0 && about.names == 0);
+    assert_true(tri_file_get_facts(second, &about) && about.kind == TRI_REGULAR && about.size == 0 && about.names == 0);
     assert_true(tri_file_close(first) && tri_file_close(second));
 }
 
@@ -152,9 +152,9 @@ static void test_reading_and_writing_at_an_offset(void **state)
     assert_int_equal(tri_read_at(file, found, 8, 1003), 3);
     assert_memory_equal(found, "ond", 3);
     errno = 0;
-    assert_false(tri_read_again(file, found, 8, 1003));
+    assert_false(tri_read_back(file, found, 8, 1003));
     assert_int_equal(errno, EIO);
-    assert_true(tri_file_cut(file, 2) && tri_file_look(file, &about));
+    assert_true(tri_file_set_size(file, 2) && tri_file_get_facts(file, &about));
     assert_int_equal(about.size, 2);
     assert_int_equal(tri_file_open("placed", TRI_OPEN_NEW), TRI_NO_FILE);
     assert_int_equal(errno, EEXIST);
@@ -175,10 +175,10 @@ static void test_asynchronous_writes_arrive(void **state)
     for (int k = 0; k < N; k++)
         bytes[k] = (char)(k % 97);
     for (int k = 0; k < 2; k++) {
-        struct tri_behind *behind = tri_behind_start(k && direct != TRI_NO_FILE ? direct : file, bytes, N, k * N);
+        struct tri_async *behind = tri_async_start(k && direct != TRI_NO_FILE ? direct : file, bytes, N, k * N);
         assert_non_null(behind);
-        assert_int_equal(tri_behind_wait(behind), N);
-        assert_true(tri_read_again(file, found, N, k * N));
+        assert_int_equal(tri_async_wait(behind), N);
+        assert_true(tri_read_back(file, found, N, k * N));
         assert_memory_equal(found, bytes, N);
     }
     free(bytes);
@@ -200,10 +200,10 @@ static void test_files_are_linked_and_renamed(void **state)
     (void)state;
     struct tri_file_facts one, other;
     make("one");
-    assert_true(tri_path_link("one", "two") && tri_path_look("one", &one) && tri_path_look("two", &other));
+    assert_true(tri_path_link("one", "two") && tri_path_get_facts("one", &one) && tri_path_get_facts("two", &other));
     assert_true(one.node == other.node && one.device == other.device && one.names == 2);
     make("three");
-    assert_true(tri_path_rename("three", "two") && tri_path_look("two", &other) && other.node != one.node);
+    assert_true(tri_path_rename("three", "two") && tri_path_get_facts("two", &other) && other.node != one.node);
     assert_false(tri_path_allows("three", TRI_THERE));
     assert_true(tri_path_remove("one") && tri_path_remove("two"));
     assert_false(tri_path_remove("one"));
@@ -251,7 +251,7 @@ static void test_files_get_names_when_complete(void **state)
     const tri_file folder = tri_folder_open("folder", true);
     assert_true(folder != TRI_NO_FILE);
     tri_file file = tri_folder_create(folder, "state");
-    assert_true(file != TRI_NO_FILE && tri_write_at(file, "x", 1, 0) && tri_folder_end(folder, "state", file));
+    assert_true(file != TRI_NO_FILE && tri_write_at(file, "x", 1, 0) && tri_folder_commit(folder, "state", file));
     assert_true(tri_file_close(file) && tri_folder_has(folder, "state") && tri_file_sync(folder));
     assert_true(tri_folder_list(folder, count_names, &names));
     assert_int_equal(names, 1);
@@ -262,8 +262,8 @@ static void test_files_get_names_when_complete(void **state)
     assert_int_equal(errno, EPERM);
     file = tri_folder_file(folder, "second", TRI_FOLDER_READ);
     assert_true(file != TRI_NO_FILE && tri_file_close(file));
-    assert_true(tri_folder_rename(folder, "second", "first") && tri_folder_drop(folder, "first"));
-    assert_true(tri_folder_drop(folder, "link") && tri_folder_drop(folder, "state") && tri_file_close(folder));
+    assert_true(tri_folder_rename(folder, "second", "first") && tri_folder_unlink(folder, "first"));
+    assert_true(tri_folder_unlink(folder, "link") && tri_folder_unlink(folder, "state") && tri_file_close(folder));
     assert_true(tri_folder_remove("folder"));
     assert_int_equal(tri_folder_open("folder", false), TRI_NO_FILE);
 }

@@ -24,21 +24,21 @@ static void test_the_program_finds_its_own_path(void **state)
 {
     (void)state;
     char path[TRI_PATH];
-    if (tri_own_path(path))
+    if (tri_program_path(path))
         assert_non_null(strstr(path, "test_system_process"));
     assert_true(tri_processors() >= 1);
 }
 
 static volatile sig_atomic_t asked, alarms;
 
-static void note_asked(int number) { asked = number; }
+static void record_interrupt(int number) { asked = number; }
 static void note_time(void) { alarms++; }
 static void note_crash(void) {}
 
 static void test_interrupts_are_noticed(void **state)
 {
     (void)state;
-    static const struct tri_interrupts handlers = {note_asked, note_time, note_crash};
+    static const struct tri_interrupts handlers = {record_interrupt, note_time, note_crash};
     const bool has_alarm = tri_interrupts_catch(&handlers);
     assert_int_equal(raise(SIGTERM), 0);
     assert_int_equal(asked, SIGTERM);

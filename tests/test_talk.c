@@ -35,14 +35,15 @@ static void free_pair(struct pair *pair)
 }
 
 /* Sends triangles from..end - 1 in the given step, in any order. Returns false if memory ran out. */
-static bool tell(struct pair *pair, int32_t from, int32_t end, struct par_message *m, struct par_bytes *bytes)
+static bool write_triangles(struct pair *pair, int32_t from, int32_t end, struct par_message *m,
+                            struct par_bytes *bytes)
 {
     int32_t first = pair->teller.triangle.n;
     bool memory = true;
     m->first = first;
     for (int32_t t = from; memory && t < end; t++)
         memory = par_talk_add_triangle(&pair->teller, t);
-    memory = memory && par_message_tell(m, &pair->teller, &pair->mesh, pair->n_common);
+    memory = memory && par_message_fill(m, &pair->teller, &pair->mesh, pair->n_common);
     for (int32_t i = first; memory && i < pair->teller.triangle.n; i += 7)
         memory = par_message_add_entry(m, (uint64_t)i << 32, pair->teller.triangle.n - 1 - (i - first));
     return memory && par_message_write(m, &pair->teller, &pair->mesh, pair->n_common, bytes);
@@ -93,7 +94,7 @@ static void assert_same_message(const struct par_message *a, const struct par_me
         assert_true(a->entry[i].key == b->entry[i].key && a->entry[i].triangle == b->entry[i].triangle);
 }
 
-static enum tri_status hear(const struct pair *pair, const struct par_bytes *bytes, struct par_message *m)
+static enum tri_status read_message(const struct pair *pair, const struct par_bytes *bytes, struct par_message *m)
 {
     struct tri_error error = {0};
     enum tri_status status = par_message_read(m, &pair->listener, &pair->mesh, pair->n_common, bytes, &error);
@@ -113,8 +114,9 @@ static void test_messages_are_read_as_written(void **state)
             assert_true(par_ids_add(&told.gone, i));
             pair.teller.triangle.item[i] = TRI_NONE;
         }
-        assert_true(tell(&pair, part * (n / parts), part < parts - 1 ? (part + 1) * (n / parts) : n, &told, &bytes));
-        assert_int_equal(hear(&pair, &bytes, &heard), TRI_OK);
+        assert_true(write_triangles(&pair, part * (n / parts), part < parts - 1 ? (part + 1) * (n / parts) : n, &told,
+                                    &bytes));
+        assert_int_equal(read_message(&pair, &bytes, &heard), TRI_OK);
         assert_same_message(&told, &heard, pair.listener.sub.n);
         assert_true(part == 0 || told.triangle[told.n_triangles - 1].next[0] != 0);
         print_message("  %d bytes for %d triangles and %d vertices\n", (int)bytes.n, (int)told.n_triangles,
@@ -135,21 +137,21 @@ static void test_invalid_messages_are_refused(void **state)
     struct par_message told = {0}, heard;
     struct par_bytes bytes = {0};
     struct support_random random = {3};
-    assert_true(tell(&pair, 0, pair.mesh.n_triangles / 3, &told, &bytes));
+    assert_true(write_triangles(&pair, 0, pair.mesh.n_triangles / 3, &told, &bytes));
     for (int k = 0; k < 300; k++) {
         size_t at = (size_t)support_below(&random, (int32_t)bytes.n);
         char kept = bytes.at[at];
         bytes.at[at] = (char)(kept ^ (1 << support_below(&random, 8)));
-        assert_int_equal(hear(&pair, &bytes, &heard), TRI_INTERNAL);
+        assert_int_equal(read_message(&pair, &bytes, &heard), TRI_INTERNAL);
         par_message_free(&heard);
         bytes.at[at] = kept;
     }
     for (struct par_bytes cut = {bytes.at, 0, 0}; cut.n < bytes.n; cut.n += 1 + bytes.n / 50) {
-        assert_int_equal(hear(&pair, &cut, &heard), TRI_INTERNAL);
+        assert_int_equal(read_message(&pair, &cut, &heard), TRI_INTERNAL);
         par_message_free(&heard);
     }
     catch_up(&pair); /* triangles that were sent are not sent again */
-    assert_int_equal(hear(&pair, &bytes, &heard), TRI_OK);
+    assert_int_equal(read_message(&pair, &bytes, &heard), TRI_OK);
     par_message_free(&heard);
     par_message_free(&told);
     free(bytes.at);
@@ -167,8 +169,8 @@ static void test_every_allocation_may_fail(void **state)
         struct par_bytes bytes = {0};
         support_calls = 0;
         support_fail_at = k;
-        done = tell(&pair, 0, pair.mesh.n_triangles / 3, &told, &bytes);
-        enum tri_status status = done ? hear(&pair, &bytes, &heard) : TRI_OK;
+        done = write_triangles(&pair, 0, pair.mesh.n_triangles / 3, &told, &bytes);
+        enum tri_status status = done ? read_message(&pair, &bytes, &heard) : TRI_OK;
         support_fail_at = INT64_MAX;
         assert_true(status == TRI_OK || status == TRI_NO_MEMORY);
         done = done && !status;

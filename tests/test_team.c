@@ -63,7 +63,7 @@ struct meeting {
 };
 
 /* All threads run at the same time if the system grants them: each task waits for the others. One ends later. */
-static void meet(void *context, size_t index)
+static void wait_for_all(void *context, size_t index)
 {
     struct meeting *meeting = context;
     atomic_fetch_add(&meeting->here, 1);
@@ -81,13 +81,13 @@ static void test_threads_work_side_by_side(void **state)
     const struct tri_executor executor = par_executor(&team);
     for (int i = 0; i < 20; i++) {
         struct meeting meeting = {0};
-        executor.run(executor.self, 3, meet, &meeting);
+        executor.run(executor.self, 3, wait_for_all, &meeting);
         assert_int_equal(meeting.left[0] + meeting.left[1] + meeting.left[2], 3);
     }
     par_team_end(&team);
 }
 
-static void *be_caller(void *done)
+static void *run_caller(void *done)
 {
     *(bool *)done = are_jobs_done(3, 500);
     return NULL;
@@ -100,7 +100,7 @@ static void test_callers_have_teams_of_their_own(void **state)
     bool done[CALLERS] = {false};
     struct tri_thread *caller[CALLERS];
     for (int i = 0; i < CALLERS; i++)
-        assert_non_null(caller[i] = tri_thread_start(be_caller, &done[i]));
+        assert_non_null(caller[i] = tri_thread_start(run_caller, &done[i]));
     for (int i = 0; i < CALLERS; i++) {
         tri_thread_join(caller[i]);
         assert_true(done[i]);
@@ -148,7 +148,7 @@ static void test_without_memory_the_caller_works_alone(void **state)
     }
 }
 
-static void ask(void *context, size_t index) { ((int *)context)[index] = par_threads(0, false); }
+static void count_threads(void *context, size_t index) { ((int *)context)[index] = par_threads(0, false); }
 
 static void test_the_number_of_threads_is_predicted(void **state)
 {
@@ -156,7 +156,7 @@ static void test_the_number_of_threads_is_predicted(void **state)
     int asked[3] = {0};
     struct par_team team = {.threads = 3};
     const struct tri_executor executor = par_executor(&team);
-    executor.run(executor.self, 3, ask, asked); /* the team's other threads use the other processors */
+    executor.run(executor.self, 3, count_threads, asked); /* the team's other threads use the other processors */
     par_team_end(&team);
     for (int i = 0; i < 3; i++)
         assert_int_equal(asked[i], 1);

@@ -1257,7 +1257,7 @@ struct asked {
     double largest;
 };
 
-static int too_long(void *user, const REAL *a, const REAL *b, const REAL *c, REAL area)
+static int is_longer_than_bound(void *user, const REAL *a, const REAL *b, const REAL *c, REAL area)
 {
     struct asked *asked = user;
     double twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
@@ -1302,7 +1302,7 @@ static void test_meshes_without_areas_have_no_bounds(void **state)
     static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2};
     static int nodes[] = {0, 1, 2, 0, 2, 3};
     struct asked asked = {0};
-    struct triangulate_options options = {.unsuitable = too_long, .unsuitable_user = &asked};
+    struct triangulate_options options = {.unsuitable = is_longer_than_bound, .unsuitable_user = &asked};
     struct triangulateio mesh = points_only(xy, 4), out, vorout;
     mesh.trianglelist = nodes;
     mesh.numberoftriangles = 2;
@@ -1351,14 +1351,15 @@ static void test_the_size_test_of_the_options_is_called(void **state)
 {
     (void)state;
     struct asked asked = {0};
-    struct triangulate_options options = {.unsuitable = too_long, .unsuitable_user = &asked};
+    struct triangulate_options options = {.unsuitable = is_longer_than_bound, .unsuitable_user = &asked};
     struct triangulateio in = figure("pz"), out, vorout;
     prepare("pz", &out, &vorout);
     assert_int_equal(triangulate_with("pqa.5uz", &in, &out, NULL, &options), 0);
     assert_true(asked.calls >= out.numberoftriangles && asked.largest <= 0.5);
     for (int t = 0; t < out.numberoftriangles; t++) {
         const int *v = &out.trianglelist[3 * t];
-        assert_false(too_long(&asked, &out.pointlist[2 * v[0]], &out.pointlist[2 * v[1]], &out.pointlist[2 * v[2]],
+        assert_false(is_longer_than_bound(
+                              &asked, &out.pointlist[2 * v[0]], &out.pointlist[2 * v[1]], &out.pointlist[2 * v[2]],
                               0.5 * ((out.pointlist[2 * v[1]] - out.pointlist[2 * v[0]]) *
                                          (out.pointlist[2 * v[2] + 1] - out.pointlist[2 * v[0] + 1]) -
                                      (out.pointlist[2 * v[2]] - out.pointlist[2 * v[0]]) *
@@ -1385,7 +1386,7 @@ static void test_switches_of_clients_are_accepted(void **state)
         "pzA[Q][o2][Y]a0.1q20.0", "pzenqQYY", "pzNn", "pzDQ", "pznjQ", "pqczeQ", "-z -i -q", "pqa..DBPzQ",
         "pecnzqvDV a.1"};
     struct asked asked = {0};
-    struct triangulate_options options = {.unsuitable = too_long, .unsuitable_user = &asked};
+    struct triangulate_options options = {.unsuitable = is_longer_than_bound, .unsuitable_user = &asked};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         bool area = strstr(all[i], "a..") != NULL; /* an area of 0 is an error, as in Triangle */
         struct triangulateio in = figure(all[i]), out, vorout;
@@ -1400,7 +1401,7 @@ static void test_switches_of_clients_are_accepted(void **state)
 
 /* --- the same call again, and concurrent calls */
 
-static void *mesh_often(void *user)
+static void *mesh_repeatedly(void *user)
 {
     const int *kind = user;
     const char *switches = *kind ? "pq30a.01z" : "pqa.02Dz";
@@ -1429,7 +1430,7 @@ static void test_concurrent_calls_give_the_same_mesh(void **state)
     pthread_t threads[4];
     static int kinds[4] = {0, 1, 0, 1};
     for (int i = 0; i < 4; i++)
-        assert_int_equal(pthread_create(&threads[i], NULL, mesh_often, &kinds[i]), 0);
+        assert_int_equal(pthread_create(&threads[i], NULL, mesh_repeatedly, &kinds[i]), 0);
     for (int i = 0; i < 4; i++) {
         void *good;
         assert_int_equal(pthread_join(threads[i], &good), 0);

@@ -71,7 +71,7 @@ static void test_the_worklist_holds_all_bad_triangles(void **state)
     assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, &support_backwards, &radius, NULL), TRI_OK);
     assert_holds_all_bad(&worklist, &mesh, &quality, radius);
     for (int32_t t = 0; t < mesh.n_triangles; t++)
-        assert_int_equal(mesh.tri[t].life, 0);
+        assert_int_equal(mesh.tri[t].generation, 0);
     free(worklist.item);
     tri_mesh_free(&mesh);
 }

@@ -626,8 +626,8 @@ static const char *events_of(uint64_t bytes, bool sync)
 static void files_are_synced_before_they_get_their_names(void **state)
 {
     (void)state;
-    assert_string_equal(events_of(TRI_WAITED_FOR, true), "ssrrd");
-    assert_string_equal(events_of(TRI_WAITED_FOR, false), "rr");
+    assert_string_equal(events_of(TRI_SYNC_BYTES, true), "ssrrd");
+    assert_string_equal(events_of(TRI_SYNC_BYTES, false), "rr");
     assert_string_equal(events_of(1000, true), "rr");
 }
 
@@ -644,7 +644,7 @@ static void syncing_is_stopped(void **state)
     const struct tri_stop stop = {always, NULL};
     struct tri_output_set set;
     struct tri_output *output = open_one(&set, in_directory("a"));
-    assert_int_equal(ftruncate(output->file, TRI_WAITED_FOR), 0);
+    assert_int_equal(ftruncate(output->file, TRI_SYNC_BYTES), 0);
     output->stop = &stop;
     memset(events, 0, sizeof events);
     assert_int_equal(tri_outputs_sync(&set, NULL), TRI_STOPPED);

@@ -37,11 +37,11 @@ bool judged_cut_text_suffix(char *path)
 static double size_of(const char *path)
 {
     struct tri_file_facts facts;
-    return path != NULL && tri_path_look(path, &facts) ? (double)facts.size : 0;
+    return path != NULL && tri_path_get_facts(path, &facts) ? (double)facts.size : 0;
 }
 
 /* Reads the text of the input into memory. */
-static enum tri_status check_input_size(const struct judged_ask *ask, struct tri_error *error)
+static enum tri_status check_input_size(const struct judged_request *ask, struct tri_error *error)
 {
     const double size = size_of(ask->input);
     if (size < JUDGED_WORTH_A_LOOK || size <= ask->memory)
@@ -51,7 +51,7 @@ static enum tri_status check_input_size(const struct judged_ask *ask, struct tri
                     tri_size_text(ask->memory).text);
 }
 
-static enum tri_status read_input(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+static enum tri_status read_input(struct judged_files *f, const struct judged_request *ask, struct tri_error *error)
 {
     const char *path = ask->input;
     enum tri_status fits = check_input_size(ask, error);
@@ -127,7 +127,7 @@ static bool fits(const char *base, double memory)
     return BOUNDARY_SHARE * size[POLY] + share * (size[NODE] + size[ELE] + size[NEIGH]) <= memory;
 }
 
-static enum tri_status read_texts(struct judged_files *f, const struct judged_ask *ask,
+static enum tri_status read_texts(struct judged_files *f, const struct judged_request *ask,
                                   const struct judged_names *names, struct tri_error *error)
 {
     const char *folder = fits(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input)) ? NULL : ask->scratch;
@@ -140,7 +140,7 @@ static enum tri_status read_texts(struct judged_files *f, const struct judged_as
     return status;
 }
 
-static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+static enum tri_status read_mesh(struct judged_files *f, const struct judged_request *ask, struct tri_error *error)
 {
     struct tri_names own;
     char *neigh = tri_joined(ask->base, ".neigh");
@@ -204,7 +204,7 @@ static struct tri_check_source h5_source(struct tri_h5 *h5)
                                      .user = h5};
 }
 
-static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+static enum tri_status open_h5(struct judged_files *f, const struct judged_request *ask, struct tri_error *error)
 {
     enum tri_status status = tri_h5_open(ask->base, &f->h5, error);
     if (status != TRI_OK)
@@ -218,11 +218,11 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
 
 /* --- any format */
 
-static bool is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
+static bool is_h5(const struct judged_request *ask) { return !ask->is_base && tri_name_h5(ask->base) > 0; }
 
 /* Returns the format of the file; NULL: the mesh is in HDF5 or in Triangle's files. A name such as mesh.14 is a base
  * name if mesh.14.node exists and mesh.14 does not. */
-static const struct tri_format *format_of(const struct judged_ask *ask)
+static const struct tri_format *format_of(const struct judged_request *ask)
 {
     const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
     if (format == NULL || tri_path_allows(ask->base, TRI_THERE))
@@ -245,7 +245,7 @@ static enum tri_status check_size(const char *path, double memory, struct tri_er
 }
 
 /* If a format stores only the boundary, the segments inside are not known. */
-static enum tri_status read_format(struct judged_files *f, const struct judged_ask *ask,
+static enum tri_status read_format(struct judged_files *f, const struct judged_request *ask,
                                    const struct tri_format *format, struct tri_error *error)
 {
     enum tri_status status = check_size(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input), error);
@@ -260,7 +260,7 @@ static enum tri_status read_format(struct judged_files *f, const struct judged_a
     return TRI_OK;
 }
 
-enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+enum tri_status judged_read(struct judged_files *f, const struct judged_request *ask, struct tri_error *error)
 {
     const struct tri_format *format = format_of(ask);
     enum tri_status status = is_h5(ask) ? open_h5(f, ask, error)

@@ -36,7 +36,7 @@ struct judged_files {
     struct tri_h5 *h5; /* NULL: the mesh is not in HDF5 */
 };
 
-struct judged_ask {
+struct judged_request {
     const char *base;    /* base of the mesh's file names, or name of one file */
     bool is_base;        /* a base name, regardless of its ending */
     bool may_lack_triangles; /* points and segments without triangles are allowed */
@@ -48,7 +48,7 @@ struct judged_ask {
 
 /* Reads base.node or base.poly, base.ele and base.neigh, or the single file base; and the input, a .poly or .node
  * file. */
-enum tri_status judged_read(struct judged_files *files, const struct judged_ask *ask, struct tri_error *error);
+enum tri_status judged_read(struct judged_files *files, const struct judged_request *ask, struct tri_error *error);
 void judged_files_free(struct judged_files *files);
 
 /* Removes the suffix if it is one of the text files of a mesh. */

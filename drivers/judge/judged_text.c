@@ -40,7 +40,7 @@ static enum tri_status read_rows(const struct scratch *s, int64_t first, int64_t
 {
     if (s->file == TRI_NO_FILE)
         memcpy(rows, s->bytes + first * (int64_t)s->width, (size_t)n * s->width);
-    else if (!tri_read_again(s->file, rows, (size_t)n * s->width, (uint64_t)first * s->width))
+    else if (!tri_read_back(s->file, rows, (size_t)n * s->width, (uint64_t)first * s->width))
         return tri_fail(error, TRI_CANNOT_READ, "", 0, "cannot read a scratch file");
     return TRI_OK;
 }
@@ -255,7 +255,7 @@ static enum tri_status check_attributes(const struct rows *r, struct tri_error *
     struct tri_file_facts facts;
     if (n < 0)
         return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of attributes is negative");
-    if (n > FREE_ATTRIBUTES && r->fields[0] > 0 && tri_file_look(r->window->file, &facts) &&
+    if (n > FREE_ATTRIBUTES && r->fields[0] > 0 && tri_file_get_facts(r->window->file, &facts) &&
         (n > INT32_MAX || n > (int64_t)facts.size / r->fields[0]))
         return tri_fail(error, TRI_BAD_INPUT, name, line, "%lld attributes are announced, more than the file can hold",
                         (long long)n);
@@ -374,7 +374,7 @@ static enum tri_status read_poly(struct rows *r, const char *folder, struct tri_
     if (!status && r->fields[0] > 0)
         status = read_vertices(r, folder, error);
     else if (!status && r->text->given == 0)
-        return TRI_OK; /* read again, after the .node file */
+        return TRI_OK; /* the points are in the .node file; this file is read again after it */
     return status ? status : read_segments(r, folder, error);
 }
 

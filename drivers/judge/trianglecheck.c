@@ -351,7 +351,7 @@ static int run(const struct settings *s, struct par_team *team, struct judged_fi
     const int threads = team->threads;
     const struct tri_executor executor = par_executor(team);
     const char *scratch = s->scratch != NULL ? s->scratch : tri_scratch_folder();
-    struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
+    struct judged_request ask = {.base = s->base, .is_base = s->is_base, .input = s->input, .memory = memory_to_use(s),
                              .scratch = scratch, .executor = &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors) {

@@ -42,14 +42,14 @@ void console_remark(const struct console *console, const char *format, ...)
 }
 
 /* An error has been printed, or the loss of standard output: no further message about output follows. */
-static bool told;
+static bool error_is_printed;
 
 void console_error(const struct console *console, const struct tri_error *error)
 {
     one_line_error(stdout, "Error:  ", error);
     fflush(stdout);
-    told = true;
-    if (tri_standard_is_one())
+    error_is_printed = true;
+    if (tri_standard_is_same_file())
         return;
     if (!error->file[0])
         fprintf(stderr, "%s: ", console->program);
@@ -68,8 +68,8 @@ bool console_close(const struct console *console)
 {
     if (console_flush(NULL) == TRI_OK)
         return true;
-    if (!told)
+    if (!error_is_printed)
         fprintf(stderr, "%s: cannot write to standard output\n", console->program);
-    told = true;
+    error_is_printed = true;
     return false;
 }

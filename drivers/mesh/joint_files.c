@@ -137,7 +137,7 @@ static enum tri_status share_layout(struct joint_files *j, int i, const struct t
     struct joint_h5 *h = &j->h5[i];
     status = par_spread(j->carrier, PAR_MOVE_TILES, &h->layout, sizeof h->layout, status, error);
     for (int kind = 0; kind < TRI_H5_KINDS; kind++) {
-        struct tri_h5_laid *laid = &h->layout.array[kind];
+        struct tri_h5_plan *laid = &h->layout.array[kind];
         const size_t bytes = (size_t)laid->n * sizeof *laid->place;
         if (!is_first(j)) /* received from the first rank */
             laid->place = status ? NULL : malloc(bytes + 1);
@@ -223,7 +223,7 @@ static enum tri_status put_texts(struct joint_files *j, enum tri_status status, 
 static enum tri_status leave_all(struct joint_files *j, struct tri_error *error)
 {
     enum { MOST_BYTES = 128 }; /* bytes of a triangle with its share of vertices, without attributes */
-    const bool on_disk = !j->no_sync && j->total[1] >= TRI_WAITED_FOR / MOST_BYTES;
+    const bool on_disk = !j->no_sync && j->total[1] >= TRI_SYNC_BYTES / MOST_BYTES;
     enum tri_status status = TRI_OK;
     for (int i = 0; i < JOINT_FILES && !status; i++)
         status = tri_output_leave(&j->file[i], on_disk, error);
@@ -256,7 +256,7 @@ static enum tri_status end_first(struct joint_files *j, const double bounds[4], 
     enum tri_status status = j->text.end ? j->text.end(j->text.user, error) : TRI_OK;
     for (int i = 0; i < JOINT_H5 && !status; i++)
         if (j->h5[i].writer) {
-            tri_h5_writer_tell(j->h5[i].writer, j->n_input, bounds);
+            tri_h5_writer_set_totals(j->h5[i].writer, j->n_input, bounds);
             status = j->h5[i].sink.end(j->h5[i].sink.user, error);
         }
     return status;

@@ -20,7 +20,7 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     *launch = (struct launch){0};
     if (tasks == 1)
         return TRI_OK;
-    launch->voice = tri_standard_error_again();
+    launch->voice = tri_standard_error_reopen();
     if (task != 0)
         fall_silent();
     enum tri_status status = launch_ranks(launch, tasks, error);

@@ -115,7 +115,7 @@ static const struct kind *find_kind(const char *name, size_t length)
 /* --- values; functions return false, and change nothing, if the text is invalid */
 
 /* Reads a whole number from 1 to most. */
-static bool take_whole(const char *text, int most, int *value)
+static bool read_whole(const char *text, int most, int *value)
 {
     int64_t number;
     const char *end = text + strlen(text);
@@ -125,19 +125,19 @@ static bool take_whole(const char *text, int most, int *value)
     return true;
 }
 
-static bool take_word(const char *text, const char *off, const char *on, bool *value)
+static bool read_choice(const char *text, const char *off, const char *on, bool *value)
 {
     const bool is_on = strcmp(text, on) == 0, known = is_on || strcmp(text, off) == 0;
     *value = known ? is_on : *value;
     return known;
 }
 
-static bool take_value(struct long_options *options, struct tri_switches *switches, enum id id, const char *text)
+static bool read_value(struct long_options *options, struct tri_switches *switches, enum id id, const char *text)
 {
     static const double seconds[] = {1, 60, 3600};
     switch (id) {
-    case THREADS: return take_whole(text, LONG_OPTIONS_MAX_THREADS, &options->threads);
-    case PARTS: return take_whole(text, TRI_MOST_PARTS, &options->n_parts);
+    case THREADS: return read_whole(text, LONG_OPTIONS_MAX_THREADS, &options->threads);
+    case PARTS: return read_whole(text, TRI_MOST_PARTS, &options->n_parts);
     case MAX_AREA:
         return words_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, &switches->max_area) &&
                (switches->area = true);
@@ -145,8 +145,8 @@ static bool take_value(struct long_options *options, struct tri_switches *switch
     case EVERY: return words_take_real(text, "", NULL, 0, 1e6, &options->every) && (options->has_every = true);
     case TIME_LIMIT: return words_take_real(text, "smh", seconds, 1e-3, 1e9, &options->time_limit);
     case MEMORY: return words_take_size(text, 1e6, &options->memory, &options->memory_share);
-    case HOLES: return take_word(text, "points", "auto", &switches->even_odd);
-    case NUMBERING: return take_word(text, "curve", "blocks", &options->by_block);
+    case HOLES: return read_choice(text, "points", "auto", &switches->even_odd);
+    case NUMBERING: return read_choice(text, "curve", "blocks", &options->by_block);
     default: return false;
     }
 }
@@ -156,7 +156,7 @@ int long_options_threads(const struct long_options *options)
     const char *openmp = getenv("OMP_NUM_THREADS"), *slurm = getenv("SLURM_CPUS_PER_TASK");
     int threads = options->threads;
     if (threads == 0 && slurm && !(openmp && *openmp))
-        (void)take_whole(slurm, LONG_OPTIONS_MAX_THREADS, &threads);
+        (void)read_whole(slurm, LONG_OPTIONS_MAX_THREADS, &threads);
     return threads;
 }
 
@@ -180,7 +180,7 @@ static bool is_base(const char *value)
            !tri_name_ends(last, ".vtkhdf");
 }
 
-static enum tri_status take_output(struct long_options *options, const char *value, struct tri_error *error)
+static enum tri_status read_output(struct long_options *options, const char *value, struct tri_error *error)
 {
     if (tri_name_h5(value) > 0)
         return add_file(options->streams, &options->n_streams, value, error);
@@ -221,10 +221,10 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case NAME: *(const char **)at = value; return TRI_OK;
     case PROGRESS: options->progress = PROGRESS_YES; return TRI_OK;
     case NO_PROGRESS: options->progress = PROGRESS_NO; return TRI_OK;
-    case OUTPUT: return take_output(options, value, error);
+    case OUTPUT: return read_output(options, value, error);
     default: break;
     }
-    if (take_value(options, switches, kind->id, value))
+    if (read_value(options, switches, kind->id, value))
         return TRI_OK;
     return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s: \"%.40s\" is %s", kind->name, value, kind->wanted);
 }

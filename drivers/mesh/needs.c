@@ -158,7 +158,7 @@ static bool is_swept(const struct run *run)
 bool estimate_can_park(const struct run *run, double held)
 {
     const bool bounded = run->settings.options->memory > 0;
-    return tri_memory_end() != TRI_ENDS_ADDRESS_SPACE || (bounded && held <= tri_memory_left());
+    return tri_memory_nearest_limit() != TRI_LIMIT_ADDRESS_SPACE || (bounded && held <= tri_memory_left());
 }
 
 struct estimate estimate_make(const struct run *run, bool with_seconds)

@@ -35,13 +35,13 @@ static const double BUFFER_BYTES = 3e7;
  * fail. */
 static bool is_strict(const struct run *run)
 {
-    return run->settings.options->memory > 0 || tri_memory_end() != TRI_ENDS_SYSTEM;
+    return run->settings.options->memory > 0 || tri_memory_nearest_limit() != TRI_LIMIT_SYSTEM;
 }
 
 /* Limits of a process count all allocations, including unused parts of stacks and buffers. */
 static double system_memory_left(const struct run *run)
 {
-    const bool counts_all = tri_memory_end() != TRI_ENDS_SYSTEM;
+    const bool counts_all = tri_memory_nearest_limit() != TRI_LIMIT_SYSTEM;
     const double untouched = counts_all ? tri_memory_of_stacks(run->settings.threads) + BUFFER_BYTES : 0;
     return fmax(tri_memory_left() - untouched, 0);
 }
@@ -60,7 +60,7 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     struct tri_file_facts facts;
     double size = 0;
     for (int i = 0; i < files->n; i++)
-        size += tri_path_look(files->name[i], &facts) ? (double)facts.size : 0;
+        size += tri_path_get_facts(files->name[i], &facts) ? (double)facts.size : 0;
     if (size < WORTH_A_LOOK && !is_strict(run))
         return TRI_OK;
     const double left = plan_memory_left(run);
@@ -239,7 +239,7 @@ static bool look_at(const struct disk_place *place, struct tri_file_facts *facts
 {
     char folder[TRI_PATH];
     tri_path_folder(place->path, folder);
-    return tri_path_look(folder, facts);
+    return tri_path_get_facts(folder, facts);
 }
 
 static bool are_on_one_disk(const struct disk_place *a, const struct disk_place *b)
@@ -307,7 +307,7 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
 static enum tri_status check_scratch(const struct run *run)
 {
     const char *folder = run->settings.options->scratch;
-    if (!tri_path_allows(folder, TRI_TAKES_FILES))
+    if (!tri_path_allows(folder, TRI_ACCEPTS_FILES))
         return tri_fail(run->error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
     return TRI_OK;

@@ -103,7 +103,7 @@ static void rewrite(struct progress *p, double time, const struct par_place *pla
 
 /* Returns true if a log gets a line: for each round of a whole mesh, for the first place before or in the phases, for
  * the first column of a sweep, and every PROGRESS_LOG_SECONDS. */
-static bool is_news(const struct progress *p, double time, const struct par_place *place)
+static bool is_new_line(const struct progress *p, double time, const struct par_place *place)
 {
     const struct par_place *last = &p->last;
     return !p->is_told || place->phase == PAR_NUMBERING || is_before_phases(place) != is_before_phases(last) ||
@@ -148,7 +148,7 @@ void progress_step(void *user, const struct par_place *place)
     const bool soon = time - p->told < SECONDS_BETWEEN_LINES && place->phase != PAR_NUMBERING;
     if (p->mode == PROGRESS_LINE && !soon) {
         rewrite(p, time, place);
-    } else if (p->mode == PROGRESS_LOG && is_news(p, time, place)) {
+    } else if (p->mode == PROGRESS_LOG && is_new_line(p, time, place)) {
         print_step(p, time, place);
         fputc('\n', stderr);
     } else {

@@ -56,7 +56,7 @@ struct program {
 
 /* Returns a setting for tests from the environment: the triangles of a cell, or a sweep of a mesh that fits in memory.
  * 0: not set. */
-static double for_tests(const char *name)
+static double test_setting(const char *name)
 {
 #ifdef PTRIANGLE_TESTS
     const char *text = getenv(name);
@@ -70,18 +70,18 @@ static double for_tests(const char *name)
 /* --- refinement */
 
 /* A rank knows only the triangles of its own part. */
-static void tell_reached(const struct program *p, int64_t triangles)
+static void report_reached(const struct program *p, int64_t triangles)
 {
     const bool in_parts = p->run.settings.n_ranks > 1;
     interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
 }
 
-static void follow(void *user, const struct par_place *place)
+static void follow_progress(void *user, const struct par_place *place)
 {
     struct program *p = user;
     interrupt_stage(place->phase == PAR_NUMBERING ? "numbering" : "refining");
     if (place->phase != PAR_NUMBERING)
-        tell_reached(p, place->triangles);
+        report_reached(p, place->triangles);
     progress_step(&p->progress, place);
 }
 
@@ -92,8 +92,8 @@ static struct par_options options_of(struct program *p)
     struct par_options options = par_defaults();
     options.team = &p->team;
     options.by_block = p->options.by_block;
-    options.cell_triangles = for_tests("PTRIANGLE_TEST_BLOCK");
-    options.progress = follow;
+    options.cell_triangles = test_setting("PTRIANGLE_TEST_BLOCK");
+    options.progress = follow_progress;
     options.progress_user = p;
     options.figure = &run->input.pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->input.pslg, &run->input.elements).regions;
@@ -127,7 +127,7 @@ static enum tri_status refine_with(struct program *p, const struct par_options *
     if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
         interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* triangles of all ranks */
     else if (status == TRI_STOPPED && !options->sweep)
-        tell_reached(p, p->run.mesh.n_triangles);
+        report_reached(p, p->run.mesh.n_triangles);
     return status;
 }
 
@@ -151,7 +151,7 @@ static int64_t waiting_bytes(const struct program *p)
 }
 
 /* Shows the first rank's files, which only that rank knows. */
-static void show_streams(struct program *p)
+static void share_streams(struct program *p)
 {
     struct joint_files *joint = &p->joint;
     joint->text_options = p->streams.text_options;
@@ -172,7 +172,7 @@ static enum tri_status join_files(struct program *p, enum tri_status status)
                                     .text_options = {.base = p->run.input.base, .figure = &p->run.input.pslg,
                                                      .markers = !p->run.arguments->switches.no_markers}};
     if (!status && p->launch.rank == 0)
-        show_streams(p);
+        share_streams(p);
     const bool wanted = p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1;
     return joint_files_open(&p->joint, wanted, status, p->run.error);
 }
@@ -217,7 +217,7 @@ static enum tri_status refine_on_ranks(struct program *p, const struct tri_sink 
 }
 
 /* Reports data that did not fit in memory, or a mesh that could not be swept. */
-static void tell_of_parking(const struct program *p)
+static void report_parking(const struct program *p)
 {
     if (p->schedule.parked > 0)
         console_say(&p->run.console, "%s parked in %s: %s.\n",
@@ -238,7 +238,7 @@ static enum tri_status sweep(struct program *p)
     else if (!status)
         status = refine_into(p, &streams);
     streams_close(&p->streams);
-    tell_of_parking(p);
+    report_parking(p);
     if (!status)
         count_streamed(p, &before);
     run->remain_known = !status && p->schedule.remain_known;
@@ -272,7 +272,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         struct par_options options = options_of(p);
         options.park = run->plan.filed ? &p->park : NULL;
         status = refine_with(p, &options);
-        tell_of_parking(p);
+        report_parking(p);
         if (!status)
             progress_stage(&p->progress, "writing");
     }
@@ -292,7 +292,7 @@ static enum tri_status make_room(struct program *p, double bytes)
     p->schedule.parked = par_park_bytes(p->park);
     if (p->schedule.parked > 0 && p->schedule.way == PAR_IN_MEMORY) {
         p->schedule.way = PAR_PARKED;
-        tell_of_parking(p);
+        report_parking(p);
     }
     return status;
 }
@@ -393,7 +393,7 @@ static enum tri_status write_all(struct program *p)
     run_write_begin(run);
     enum tri_status status = run->plan.swept ? TRI_OK : make_room(p, run_write_bytes(run));
     status = status ? status : run_write_mesh(run);
-    status = status ? status : run_tell(run);
+    status = status ? status : run_print_statistics(run);
     if (!status && run->arguments->switches.check)
         status = check(p);
     status = status ? status : write_further(p);
@@ -403,7 +403,7 @@ static enum tri_status write_all(struct program *p)
 /* --- the run */
 
 /* Makes all ranks return the same status with the same error. */
-static enum tri_status agree(struct program *p, enum tri_status status)
+static enum tri_status agree_on_status(struct program *p, enum tri_status status)
 {
     return p->launch.carrier ? par_agree(p->launch.carrier, status, p->run.error) : status;
 }
@@ -420,8 +420,8 @@ static enum tri_status read_input(struct program *p)
 static enum tri_status write_output(struct program *p)
 {
     if (p->launch.rank > 0)
-        return agree(p, TRI_OK);
-    return run_commit(&p->run, agree(p, write_all(p)));
+        return agree_on_status(p, TRI_OK);
+    return run_commit(&p->run, agree_on_status(p, write_all(p)));
 }
 
 /* Makes the mesh, from the input file to the output files. A failed rank joins the agreement at which the others
@@ -434,7 +434,7 @@ static int make_mesh(struct program *p)
     status = status ? status : run_make(run);
     if (!status && !p->options.dry_run)
         status = write_output(p);
-    return run_end(run, status ? agree(p, status) : TRI_OK);
+    return run_end(run, status ? agree_on_status(p, status) : TRI_OK);
 }
 
 /* --- arguments */
@@ -512,7 +512,7 @@ static char *scratch_of(const struct long_options *options, const struct argumen
 }
 
 /* Converts a share of the memory to bytes. If the memory is unknown, a share is an error. */
-static enum tri_status settle_memory(struct long_options *options, struct tri_error *error)
+static enum tri_status resolve_memory(struct long_options *options, struct tri_error *error)
 {
     const double total = options->memory_share > 0 ? tri_memory_total() : 0;
     if (total == HUGE_VAL)
@@ -529,7 +529,7 @@ static struct run_settings settings_of(const struct program *p)
     return (struct run_settings){.options = &p->options, .executor = &p->executor, .threads = p->team.threads,
                                  .schedule_needs = schedule_needs, .n_ranks = carrier ? carrier->n_ranks : 0,
                                  .written_elsewhere = p->launch.rank > 0,
-                                 .always_sweep = goes_on || carrier || for_tests("PTRIANGLE_TEST_SWEEP") > 0};
+                                 .always_sweep = goes_on || carrier || test_setting("PTRIANGLE_TEST_SWEEP") > 0};
 }
 
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
@@ -573,7 +573,7 @@ static void free_program(struct program *p)
 }
 
 /* Runs the program after the arguments have been read. */
-static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
+static int run_options(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     if (p->options.version) {
         printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
@@ -583,7 +583,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    if (!settle_memory(&p->options, error) && arguments->file)
+    if (!resolve_memory(&p->options, error) && arguments->file)
         restart_open(&p->restart, &p->options, PROGRAM, arguments, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);
@@ -615,7 +615,7 @@ int program_main(int argc, char **argv)
     if (!joined || take_words(&program, &arguments, &error))
         console_error(&console, &error);
     else
-        code = carry_out(&program, &arguments, &error);
+        code = run_options(&program, &arguments, &error);
     free_program(&program);
     arguments_free(&arguments);
     code = console_close(&console) ? code : EXIT_FAILURE;

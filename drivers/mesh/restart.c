@@ -78,14 +78,14 @@ static void add_command(struct line *to, const struct restart *r, const char *pr
     add_word(to, r->checkpoint.directory);
 }
 
-static void tell_kept(void *user, int64_t triangles)
+static void report_kept(void *user, int64_t triangles)
 {
     const struct restart *restart = user;
     interrupt_kept(triangles, restart->go_on);
 }
 
 /* From now on a stop reports what is kept. */
-static enum tri_status follow(struct restart *r, const char *program, const struct arguments *arguments,
+static enum tri_status report_checkpoints(struct restart *r, const char *program, const struct arguments *arguments,
                               struct tri_error *error)
 {
     struct line line = {0};
@@ -93,9 +93,9 @@ static enum tri_status follow(struct restart *r, const char *program, const stru
     r->go_on = line.text;
     if (line.no_memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the command that goes on");
-    r->checkpoint.told = tell_kept;
+    r->checkpoint.told = report_kept;
     r->checkpoint.told_user = r;
-    tell_kept(r, par_checkpoint_has_state(&r->checkpoint) ? r->checkpoint.manifest.triangles : 0);
+    report_kept(r, par_checkpoint_has_state(&r->checkpoint) ? r->checkpoint.manifest.triangles : 0);
     return TRI_OK;
 }
 
@@ -122,7 +122,7 @@ enum tri_status restart_open(struct restart *restart, const struct long_options 
     bool wanted = !status && directory && !o->dry_run;
     status = wanted ? open_directory(restart, o, directory, error) : status;
     if (wanted && !status && !restart->follows)
-        status = follow(restart, program, arguments, error);
+        status = report_checkpoints(restart, program, arguments, error);
     if (wanted && status && restart->checkpoint.lock >= 0)
         par_checkpoint_close(&restart->checkpoint, !par_checkpoint_has_state(&restart->checkpoint));
     restart->wanted = wanted && !status;
@@ -139,7 +139,7 @@ void restart_close(struct restart *r, int code)
         return;
     const bool stopped = code >= FIRST_STOP, has_state = par_checkpoint_has_state(&r->checkpoint);
     if (code != EXIT_SUCCESS && !stopped && has_state && r->checkpoint.saved > 0)
-        interrupt_tell_kept();
+        interrupt_print_kept();
     r->checkpoint.told = NULL;
     par_checkpoint_close(&r->checkpoint, code == EXIT_SUCCESS || (!has_state && !stopped));
 }

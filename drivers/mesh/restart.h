@@ -22,7 +22,7 @@ enum tri_status restart_open(struct restart *restart, const struct long_options 
                              const struct arguments *arguments, struct par_carrier *carrier, struct tri_error *error);
 
 /* Closes the checkpoint at the end of the run. Its files stay after a stop, and after an error if there is a state.
- * After an error this is reported here (interrupt_tell_kept); after a stop it has been reported already. */
+ * After an error this is reported here (interrupt_print_kept); after a stop it has been reported already. */
 void restart_close(struct restart *restart, int code);
 
 #endif

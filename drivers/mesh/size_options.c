@@ -42,13 +42,13 @@ static const struct kind *find_kind(const char *word)
 
 /* --- values; functions return false if the text is invalid */
 
-static bool take_length(const char *text, double *length)
+static bool read_length(const char *text, double *length)
 {
     return words_take_real(text, "", NULL, DBL_TRUE_MIN, DBL_MAX, length);
 }
 
 /* Reads four numbers separated by commas. extent: receives them. */
-static bool take_extent(const char *text, double extent[4])
+static bool read_extent(const char *text, double extent[4])
 {
     const char *const end = text + strlen(text);
     for (int k = 0; k < 4; k++) {
@@ -70,7 +70,7 @@ static bool take_file(struct size_source *source, const char *text)
     if (!at)
         return false;
     source->path[at - text] = 0;
-    source->has_extent = take_extent(at + 1, source->extent);
+    source->has_extent = read_extent(at + 1, source->extent);
     return source->has_extent && tri_name_ends(source->path, ".npy");
 }
 
@@ -81,7 +81,7 @@ static bool take_size(struct size_source *source, const char *text)
     if (tri_scan_real(text, end, &number) != end || end == text)
         return take_file(source, text);
     source->field.kind = TRI_SIZE_NUMBER;
-    return take_length(text, &source->field.length);
+    return read_length(text, &source->field.length);
 }
 
 static bool take_near(struct size_source *source, const char *text)
@@ -135,8 +135,8 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case SIZE:
     case SIZE_NEAR: return take_source(options, id, text);
     case GRADATION: return words_take_real(text, "", NULL, DBL_TRUE_MIN, HUGE_VAL, &options->gradation);
-    case MIN_SIZE: return take_length(text, &options->min_size);
-    case MAX_SIZE: return take_length(text, &options->max_size);
+    case MIN_SIZE: return read_length(text, &options->min_size);
+    case MAX_SIZE: return read_length(text, &options->max_size);
     case ELEMENTS_ACROSS: return words_take_real(text, "", NULL, 0.1, 1000, &options->elements_across);
     case PER_CIRCLE: return words_take_real(text, "", NULL, 3, 1e5, &options->per_circle);
     case PLACEMENT: return take_placement(switches, text);

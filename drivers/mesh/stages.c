@@ -424,7 +424,7 @@ static void tell_of_stop(struct run *r, bool partial)
     if (!partial)
         interrupt_tell();
     console_error(&r->console, &line);
-    interrupt_tell_kept();
+    interrupt_print_kept();
     if (!partial)
         interrupt_told();
 }
@@ -476,7 +476,7 @@ enum tri_status run_write_mesh(struct run *r)
     return TRI_OK;
 }
 
-enum tri_status run_tell(struct run *r)
+enum tri_status run_print_statistics(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
     enum tri_status status = TRI_OK;

@@ -82,7 +82,7 @@ struct run {
                                        otherwise NULL */
     struct orphans unused;          /* vertices in no triangle, by the caller's numbers; n is -1: not counted */
     struct tri_report report;
-    struct tri_counts counts;       /* counts of the finished mesh; set by a sweep, otherwise by run_tell */
+    struct tri_counts counts;       /* counts of the finished mesh; set by a sweep, otherwise by run_print_statistics */
     int64_t remain[TRI_EXCUSES];    /* triangles that violate the bounds, by reason */
     bool remain_known;              /* `remain` has been counted */
     struct run_time time;
@@ -126,7 +126,7 @@ double run_write_bytes(const struct run *run);
 enum tri_status run_write_mesh(struct run *run);
 
 /* Prints the statistics. */
-enum tri_status run_tell(struct run *run);
+enum tri_status run_print_statistics(struct run *run);
 
 /* Commits the output, after run_write_begin. All files appear together, as the last action that can fail; after a
  * failure (status) none. */

@@ -123,7 +123,7 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
 }
 
 /* Hands out, as the last tile, input segments whose ends are points but which are no edges of the mesh. */
-static enum tri_status take_loose(struct streams *streams, struct tri_error *error)
+static enum tri_status hand_out_loose_segments(struct streams *streams, struct tri_error *error)
 {
     const struct run *run = streams->run;
     const struct tri_pslg *pslg = &run->input.pslg;
@@ -162,7 +162,7 @@ static enum tri_status write_exports(struct streams *streams, struct tri_error *
 static enum tri_status end_all(void *user, struct tri_error *error)
 {
     struct streams *streams = user;
-    enum tri_status status = streams->run->report.loose > 0 ? take_loose(streams, error) : TRI_OK;
+    enum tri_status status = streams->run->report.loose > 0 ? hand_out_loose_segments(streams, error) : TRI_OK;
     for (int i = 0; !status && i < streams->n_sinks; i++)
         status = streams->sink[i].end ? streams->sink[i].end(streams->sink[i].user, error) : TRI_OK;
     return status || !streams->store ? status : write_exports(streams, error);

@@ -45,7 +45,7 @@ static enum tri_status write_output(struct run *run)
 {
     run_write_begin(run);
     enum tri_status status = run_write_mesh(run);
-    status = status ? status : run_tell(run);
+    status = status ? status : run_print_statistics(run);
     if (!status && run->arguments->switches.check)
         status = self_check(run, 0);
     status = status ? status : console_flush(run->error);

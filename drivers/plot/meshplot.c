@@ -150,7 +150,7 @@ static struct plot_box whole(const struct plot_mesh *mesh)
 
 /* --- meshes of any size */
 
-static enum tri_status take_densities(struct settings *s, struct files *f, const struct tri_check_source *source,
+static enum tri_status read_densities(struct settings *s, struct files *f, const struct tri_check_source *source,
                                       struct tri_error *error)
 {
     f->density.box = s->style.window;
@@ -159,7 +159,7 @@ static enum tri_status take_densities(struct settings *s, struct files *f, const
 }
 
 /* Reads the triangles inside the window. TRI_TOO_LARGE: there are too many to be drawn, and nothing is kept. */
-static enum tri_status take_triangles(const struct plot_box *window, struct files *f,
+static enum tri_status read_visible_triangles(const struct plot_box *window, struct files *f,
                                       const struct tri_check_source *source, bool all, struct tri_error *error)
 {
     if (all && source->n_triangles > plot_most_triangles())
@@ -173,14 +173,14 @@ static enum tri_status take_triangles(const struct plot_box *window, struct file
     return status;
 }
 
-static void say_densities(struct settings *s)
+static void warn_of_densities(struct settings *s)
 {
     fprintf(stderr, PTRIANGLE_NAME ": there are more than %d triangles to show: a picture of densities; --window shows "
                                    "those of a part\n", (int)plot_most_triangles());
     s->colour = BY_DENSITY;
 }
 
-static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
+static enum tri_status read_visible_part(struct settings *s, struct files *f, const struct tri_check_source *source,
                                  struct tri_error *error)
 {
     const bool all = !s->has_window || s->colour == BY_BLOCK;
@@ -189,26 +189,26 @@ static enum tri_status take_part(struct settings *s, struct files *f, const stru
     f->all_points = source->n_points;
     f->all_triangles = source->n_triangles;
     if (status == TRI_OK && s->colour != BY_DENSITY)
-        status = take_triangles(&box, f, source, all, error);
+        status = read_visible_triangles(&box, f, source, all, error);
     if (status == TRI_TOO_LARGE && s->colour != BY_BLOCK) {
-        say_densities(s);
+        warn_of_densities(s);
         status = TRI_OK;
     }
     if (s->colour != BY_DENSITY)
         return status;
     s->style.window = box;
     s->has_window = true;
-    return status != TRI_OK ? status : take_densities(s, f, source, error);
+    return status != TRI_OK ? status : read_densities(s, f, source, error);
 }
 
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
-    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .may_lack_triangles = true,
+    const struct judged_request ask = {.base = s->base, .is_base = s->is_base, .may_lack_triangles = true,
                                    .memory = 0.8 * tri_memory_left(), .scratch = tri_scratch_folder()};
     struct judged_files judged = {0};
     enum tri_status status = judged_read(&judged, &ask, error);
     if (status == TRI_OK)
-        status = take_part(s, f, &judged.source, error);
+        status = read_visible_part(s, f, &judged.source, error);
     judged_files_free(&judged);
     return status;
 }

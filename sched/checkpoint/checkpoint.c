@@ -37,7 +37,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
 bool par_checkpoint_end_piece(const char *directory, const char *path, tri_file file)
 {
     const tri_file folder = tri_folder_open(directory, true);
-    const bool done = folder != TRI_NO_FILE && tri_folder_end(folder, path + tri_path_folder_length(path), file) &&
+    const bool done = folder != TRI_NO_FILE && tri_folder_commit(folder, path + tri_path_folder_length(path), file) &&
                       tri_file_sync(folder);
     (void)tri_file_close(folder);
     return done;
@@ -65,7 +65,7 @@ static enum tri_status read_manifest(struct par_manifest *m, const struct par_ch
     const tri_file file = tri_folder_file(c->folder, manifest_name, TRI_FOLDER_READ);
     if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_BAD_INPUT, directory, "holds no checkpoint", errno);
-    bool whole = tri_read_again(file, m, sizeof *m, 0) && is_manifest(m);
+    bool whole = tri_read_back(file, m, sizeof *m, 0) && is_manifest(m);
     (void)tri_file_close(file);
     if (whole)
         return TRI_OK;
@@ -80,7 +80,7 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
     m.word = MANIFEST;
     m.hash = hash_of(&m);
     bool done = file != TRI_NO_FILE && tri_write_at(file, &m, sizeof m, 0) &&
-                tri_folder_end(c->folder, fresh_name, file);
+                tri_folder_commit(c->folder, fresh_name, file);
     done = tri_file_close(file) && done;
     if (!done || !tri_folder_rename(c->folder, fresh_name, manifest_name) || !tri_file_sync(c->folder))
         return cannot_write(c->directory, manifest_name, error);
@@ -113,8 +113,8 @@ static bool is_fresh_manifest(tri_file folder)
     struct par_manifest m;
     struct tri_file_facts facts;
     const tri_file file = tri_folder_file(folder, fresh_name, TRI_FOLDER_READ);
-    const bool known = file != TRI_NO_FILE && tri_file_look(file, &facts);
-    const bool is = known && (facts.size == 0 || (facts.size == sizeof m && tri_read_again(file, &m, sizeof m, 0) &&
+    const bool known = file != TRI_NO_FILE && tri_file_get_facts(file, &facts);
+    const bool is = known && (facts.size == 0 || (facts.size == sizeof m && tri_read_back(file, &m, sizeof m, 0) &&
                                                   is_manifest(&m)));
     (void)tri_file_close(file);
     return is;
@@ -274,7 +274,7 @@ static bool remove_piece(void *user, const char *name)
 {
     const struct par_checkpoint *c = user;
     if (is_piece(name))
-        (void)tri_folder_drop(c->folder, name);
+        (void)tri_folder_unlink(c->folder, name);
     return true;
 }
 
@@ -284,11 +284,11 @@ static void remove_all(struct par_checkpoint *c)
 {
     (void)write_manifest(c, manifest_of_none(&c->manifest, c->manifest.kind), NULL);
     (void)tri_folder_list(c->folder, remove_piece, c); /* the pieces of all ranks */
-    (void)tri_folder_drop(c->folder, state_name[0]);
-    (void)tri_folder_drop(c->folder, state_name[1]);
-    (void)tri_folder_drop(c->folder, tiles_name);
-    (void)tri_folder_drop(c->folder, fresh_name);
-    (void)tri_folder_drop(c->folder, manifest_name);
+    (void)tri_folder_unlink(c->folder, state_name[0]);
+    (void)tri_folder_unlink(c->folder, state_name[1]);
+    (void)tri_folder_unlink(c->folder, tiles_name);
+    (void)tri_folder_unlink(c->folder, fresh_name);
+    (void)tri_folder_unlink(c->folder, manifest_name);
 }
 
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
@@ -314,7 +314,7 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, stru
     /* The hash is written with the next manifest. */
     c->manifest.run = run;
     assert(c->lock != TRI_NO_FILE);
-    if (!tri_file_cut(c->spool.file, (uint64_t)c->spool.length))
+    if (!tri_file_set_size(c->spool.file, (uint64_t)c->spool.length))
         return cannot_write(c->directory, tiles_name, error);
     return TRI_OK;
 }
@@ -326,7 +326,7 @@ enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_k
         return status;
     /* The new manifest counts no tiles, so they can be cut off now. */
     c->spool.length = c->spool.sent = 0;
-    return tri_file_cut(c->spool.file, 0) ? TRI_OK : cannot_write(c->directory, tiles_name, error);
+    return tri_file_set_size(c->spool.file, 0) ? TRI_OK : cannot_write(c->directory, tiles_name, error);
 }
 
 /* --- state files */
@@ -338,7 +338,7 @@ static bool is_zero(const char *bytes, size_t n) { return bytes[0] == 0 && memcm
  * in the file, because unused room of blocks, most of a mesh during its first phase, is zero. Full buffers bypass the
  * system's cache if possible. The last, partial buffer goes through the cache, since direct writing needs whole
  * blocks. */
-static bool write_waiting(struct par_state_file *f, size_t n)
+static bool write_buffer(struct par_state_file *f, size_t n)
 {
     const uint64_t place = (uint64_t)f->place - n;
     f->hash = tri_hash(f->hash, f->waiting, n);
@@ -353,14 +353,14 @@ static bool write_waiting(struct par_state_file *f, size_t n)
 }
 
 /* Appends bytes to the buffer, and writes it each time that it is full. */
-static void put_bytes(struct par_state_file *f, const char *at, size_t n)
+static void append_bytes(struct par_state_file *f, const char *at, size_t n)
 {
     while (n > 0 && !f->failed) {
         const size_t waits = (size_t)(f->place % PAR_STATE_WRITE), room = PAR_STATE_WRITE - waits;
         const size_t part = n < room ? n : room;
         memcpy(f->waiting + waits, at, part);
         f->place += (int64_t)part;
-        f->failed = part == room && !write_waiting(f, PAR_STATE_WRITE);
+        f->failed = part == room && !write_buffer(f, PAR_STATE_WRITE);
         at += part;
         n -= part;
     }
@@ -371,10 +371,10 @@ void par_carry(struct par_state_file *f, void *bytes, size_t n)
     if (n == 0 || f->failed)
         return;
     if (!f->reads) {
-        put_bytes(f, bytes, n);
+        append_bytes(f, bytes, n);
         return;
     }
-    f->failed = !tri_read_again(f->file, bytes, n, (uint64_t)f->place);
+    f->failed = !tri_read_back(f->file, bytes, n, (uint64_t)f->place);
     f->place += (int64_t)n;
 }
 
@@ -395,10 +395,10 @@ static enum tri_status write_state(const struct par_checkpoint *c, const char *n
     /* Collect and write the state through par_carry. */
     enum tri_status status = walk(to, user, error);
     /* Write the rest of the buffer; cutting sets the length if the state ends with a hole. */
-    bool done = !to->failed && write_waiting(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
-                tri_file_cut(to->file, (uint64_t)to->place);
+    bool done = !to->failed && write_buffer(to, (size_t)(to->place % PAR_STATE_WRITE)) &&
+                tri_file_set_size(to->file, (uint64_t)to->place);
     const double began = tri_seconds();
-    done = done && tri_folder_end(c->folder, name, to->file);
+    done = done && tri_folder_commit(c->folder, name, to->file);
     const int fault = errno;
     to->writing += tri_seconds() - began;
     done = tri_file_close(to->direct) && done;
@@ -454,7 +454,7 @@ static enum tri_status check(const struct par_checkpoint *c, tri_file file, stru
     /* Read in pieces of the size in which the state was written, because the hash is computed piece by piece. */
     for (int64_t place = 0; bytes && sound && !stopped && place < all; place += PAR_STATE_WRITE) {
         const size_t n = all - place < PAR_STATE_WRITE ? (size_t)(all - place) : PAR_STATE_WRITE;
-        sound = tri_read_again(file, bytes, n, (uint64_t)place);
+        sound = tri_read_back(file, bytes, n, (uint64_t)place);
         hash = sound ? tri_hash(hash, bytes, n) : hash;
         stopped = tri_stop_is_asked(stop);
     }

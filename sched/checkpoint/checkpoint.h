@@ -59,7 +59,7 @@ struct par_checkpoint {
     double size;                  /* number of triangles in the last state */
     double limit;                 /* time at which the run will be stopped, by tri_seconds(); 0: unknown. Set it after
                                      opening */
-    double looked;                /* time at which ranks last checked whether a state is due */
+    double last_check;                /* time at which ranks last checked whether a state is due */
     struct par_spool spool;       /* the tiles of a sweep */
     char tiles_path[PAR_CHECKPOINT_PATH]; /* path of the file `tiles`, for messages */
     struct tri_sink sink;         /* the sink of a sweep, which appends to the spool */

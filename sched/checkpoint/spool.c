@@ -34,7 +34,7 @@ static void arrays_of(const struct tri_tile *tile, int32_t n_attributes, struct 
 }
 
 /* Returns the size of a tile's packed arrays, with padding. */
-static size_t bytes_of(const struct tri_tile *tile, int32_t n_attributes)
+static size_t packed_size(const struct tri_tile *tile, int32_t n_attributes)
 {
     struct par_array array[PAR_TILE_ARRAYS];
     size_t sum = 0;
@@ -94,18 +94,18 @@ static enum tri_status fail_writing(const struct par_spool *spool, struct tri_er
 
 /* Asks the system to begin writing recent tiles to the disk, so that syncing them, when a state is written, takes
  * little time. Only a hint, which the system may ignore. */
-static void send_off(struct par_spool *spool)
+static void start_writing(struct par_spool *spool)
 {
     if (spool->length - spool->sent < PAR_SPOOL_SHIP)
         return;
-    tri_file_send_off(spool->file, (uint64_t)spool->sent, (uint64_t)(spool->length - spool->sent));
+    tri_file_start_sync(spool->file, (uint64_t)spool->sent, (uint64_t)(spool->length - spool->sent));
     spool->sent = spool->length;
 }
 
 /* Appends a tile to the file. On errors spool->length does not change, so a partly written tile does not count. */
 static enum tri_status append_tile(struct par_spool *spool, const struct tri_tile *tile, struct tri_error *error)
 {
-    const size_t n = bytes_of(tile, spool->n_attributes);
+    const size_t n = packed_size(tile, spool->n_attributes);
     struct head *h = calloc(1, sizeof *h + n);
     enum tri_status status = TRI_OK;
     if (!h)
@@ -124,7 +124,7 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
         status = fail_writing(spool, error);
     spool->length += status ? 0 : (int64_t)(sizeof *h + n);
     /* spool->length now includes the tile, unless writing has failed. */
-    send_off(spool);
+    start_writing(spool);
     free(h);
     return status;
 }
@@ -132,7 +132,7 @@ static enum tri_status append_tile(struct par_spool *spool, const struct tri_til
 /* --- handing out the tiles of the file again */
 
 /* Unpacks numbers of vertices (see pack_numbers), into malloc'ed memory. NULL: no memory. */
-static int64_t *unpacked(const char *at, size_t n, int64_t end)
+static int64_t *unpack_numbers(const char *at, size_t n, int64_t end)
 {
     int64_t *number = malloc((n + 1) * sizeof *number);
     for (size_t i = 0; number && i < n; i++) {
@@ -156,10 +156,10 @@ static enum tri_status hand_out_tile(const struct par_spool *spool, const struct
         array[k].at = arrays;
         if (!is_of_numbers(k))
             continue;
-        array[k].at = number[k] = unpacked(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
+        array[k].at = number[k] = unpack_numbers(arrays, array[k].bytes / 4, tile.first_vertex + tile.n_vertices);
         memory = memory && number[k];
     }
-    /* The arrays of vertex numbers have been unpacked. The other arrays are used in place. */
+    /* The arrays of vertex numbers have been unpack_numbers. The other arrays are used in place. */
     par_tile_point_at(&tile, array);
     enum tri_status status = memory ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(number[PAR_TILE_CORNERS]);
@@ -181,14 +181,14 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
     /* Check the head before its lengths are used. */
     int64_t left = spool->length - place - (int64_t)sizeof *h;
     *arrays = NULL;
-    if (left < 0 || !tri_read_again(spool->file, h, sizeof *h, (uint64_t)place) || h->word != TILE || h->bytes < 0 ||
+    if (left < 0 || !tri_read_back(spool->file, h, sizeof *h, (uint64_t)place) || h->word != TILE || h->bytes < 0 ||
         h->bytes > left || h->n_attributes != spool->n_attributes)
         return fail_damaged(spool, place, error);
     *arrays = malloc((size_t)h->bytes + 1);
     if (!*arrays)
         return no_memory(spool, error);
-    if (!tri_read_again(spool->file, *arrays, (size_t)h->bytes, (uint64_t)place + sizeof *h) ||
-        h->hash != hash_of(h, *arrays) || (size_t)h->bytes != bytes_of(&h->tile, h->n_attributes))
+    if (!tri_read_back(spool->file, *arrays, (size_t)h->bytes, (uint64_t)place + sizeof *h) ||
+        h->hash != hash_of(h, *arrays) || (size_t)h->bytes != packed_size(&h->tile, h->n_attributes))
         return fail_damaged(spool, place, error);
     return TRI_OK;
 }

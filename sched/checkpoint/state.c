@@ -140,7 +140,7 @@ static void carry_partition(struct cargo *cargo, struct par_state_file *f, struc
 }
 
 /* Returns how many items are missing. */
-static int32_t more(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
+static int32_t items_missing(int32_t wanted, int32_t there) { return wanted > there ? wanted - there : 0; }
 
 /* The counts of the mesh. When reading, its arrays grow to hold them. */
 static void carry_counts(struct cargo *cargo, struct par_state_file *f, struct tri_mesh *m)
@@ -149,9 +149,9 @@ static void carry_counts(struct cargo *cargo, struct par_state_file *f, struct t
     CARRY(f, v);
     CARRY(f, t);
     CARRY(f, s);
-    cargo->memory = cargo->memory && tri_mesh_reserve_vertices(m, more(v, m->n_vertices), NULL) == TRI_OK &&
-                    tri_mesh_reserve_triangles(m, more(t, m->n_triangles), NULL) == TRI_OK &&
-                    tri_mesh_reserve_subs(m, more(s, m->n_subs), NULL) == TRI_OK;
+    cargo->memory = cargo->memory && tri_mesh_reserve_vertices(m, items_missing(v, m->n_vertices), NULL) == TRI_OK &&
+                    tri_mesh_reserve_triangles(m, items_missing(t, m->n_triangles), NULL) == TRI_OK &&
+                    tri_mesh_reserve_subs(m, items_missing(s, m->n_subs), NULL) == TRI_OK;
     if (cargo->memory) {
         m->n_vertices = v;
         m->n_triangles = t;

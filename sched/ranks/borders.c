@@ -17,7 +17,7 @@ static int worker_at(const struct par_ranks *r, struct tri_point q)
 }
 
 /* Adds a triangle to the talk, unless it is there already. False: no memory. */
-static bool tell_of(struct par_talk *talk, tri_triangle_id t)
+static bool add_to_talk(struct par_talk *talk, tri_triangle_id t)
 {
     return par_talk_number(talk, t) != TRI_NONE || par_talk_add_triangle(talk, t);
 }
@@ -76,18 +76,18 @@ static bool tell_around(const struct telling *telling, tri_halfedge corner, stru
     bool memory = true;
     assert(par_is_own(&r->territory, mesh->xy[vertex_at(mesh, corner)])); /* so this rank holds all its triangles */
     do {
-        memory = memory && tell_of(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
+        memory = memory && add_to_talk(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
         at = turn_corner(mesh, at, true);
     } while (memory && at != TRI_NONE && at != corner);
     if (at == corner)
         return memory;
     for (at = turn_corner(mesh, corner, false); memory && at != TRI_NONE; at = turn_corner(mesh, at, false))
-        memory = tell_of(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
+        memory = add_to_talk(talk, tri_of(at)) && join_corners(telling, next, tri_of(at));
     return memory;
 }
 
 /* Sends layer after layer, starting with the given one, which is freed. False: no memory. */
-static bool tell_layers(const struct telling *telling, struct par_ids *layer)
+static bool send_layers(const struct telling *telling, struct par_ids *layer)
 {
     const struct par_ranks *r = telling->ranks;
     bool memory = true;
@@ -112,13 +112,13 @@ static bool tell_straddlers(const struct par_ranks *r)
     for (int32_t i = 0; memory && i < r->straddlers.n; i++)
         for (int k = 0; memory && k < 3; k++) {
             int w = worker_at(r, mesh->xy[mesh->tri[r->straddlers.item[i]].v[k]]);
-            memory = w < 0 || tell_of(&r->lent[w], r->straddlers.item[i]);
+            memory = w < 0 || add_to_talk(&r->lent[w], r->straddlers.item[i]);
         }
     return memory;
 }
 
 /* Returns the rank that is lent entry i of the worklist, or -1. */
-static int taker_of(const struct par_ranks *r, int32_t i)
+static int borrower_of(const struct par_ranks *r, int32_t i)
 {
     int32_t block = r->shift.block_of[i];
     return block != TRI_NONE ? r->shift.worker[block] : -1;
@@ -130,12 +130,12 @@ static bool tell_surroundings(const struct par_ranks *r)
     struct par_ids *layer = calloc((size_t)r->carrier->n_ranks, sizeof *layer);
     bool memory = layer;
     for (int32_t i = 0; memory && i < r->run->worklist.n; i++) {
-        const struct telling telling = {r, taker_of(r, i), PAR_GHOST_LAYERS};
+        const struct telling telling = {r, borrower_of(r, i), PAR_GHOST_LAYERS};
         memory = telling.w < 0 || join_corners(&telling, &layer[telling.w], r->run->worklist.item[i]);
     }
     for (int w = 0; layer && w < r->carrier->n_ranks; w++) {
         const struct telling telling = {r, w, memory ? PAR_GHOST_LAYERS : 0};
-        memory = tell_layers(&telling, &layer[w]) && memory;
+        memory = send_layers(&telling, &layer[w]) && memory;
     }
     free(layer);
     return memory;
@@ -149,7 +149,7 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
     bool memory = true;
     int32_t kept = 0;
     for (int32_t i = 0; i < run->worklist.n; i++) {
-        int w = taker_of(r, i);
+        int w = borrower_of(r, i);
         if (w < 0) {
             par_keep_entry(run, i, &kept);
             continue;
@@ -165,7 +165,7 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
 enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
 {
     struct par_message *message = par_messages_begin(r, r->lent);
-    bool memory = message && tell_straddlers(r) && tell_surroundings(r) && par_messages_tell(r, r->lent, message) &&
+    bool memory = message && tell_straddlers(r) && tell_surroundings(r) && par_messages_fill(r, r->lent, message) &&
                   lend_entries(r, message) && par_messages_send(r, r->lent, message);
     par_messages_free(r, message);
     return memory ? TRI_OK : par_ranks_no_memory(error);
@@ -239,7 +239,7 @@ static bool answer_requests(const struct par_ranks *r, int w)
         const struct telling telling = {r, w, request[i].layers > 0 ? 2 * request[i].layers : PAR_GHOST_LAYERS};
         struct par_ids layer = {0};
         memory = join_layer(&telling, &layer, request[i].corner);
-        memory = tell_layers(&telling, &layer) && memory;
+        memory = send_layers(&telling, &layer) && memory;
     }
     free(request);
     return memory;
@@ -253,7 +253,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
         memory = bad || r->in[w].n == 0 || answer_requests(r, w);
     }
-    memory = memory && par_messages_tell(r, r->lent, message) && par_messages_send(r, r->lent, message);
+    memory = memory && par_messages_fill(r, r->lent, message) && par_messages_send(r, r->lent, message);
     par_messages_free(r, message);
     if (bad)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank requests vertices that were not sent to it");
@@ -343,7 +343,7 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, struct tri_error *error)
+enum tri_status par_request_layers(struct par_ranks *r, const struct par_ids *vertices, struct tri_error *error)
 {
     for (int32_t i = 0; i < vertices->n; i++) {
         assert(vertices->item[i] >= 0 && vertices->item[i] < r->run->mesh->n_vertices);
@@ -485,7 +485,7 @@ static bool give_all(struct par_ranks *r, const struct par_ids *changed, const s
     bool memory = message;
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
-    memory = memory && add_new(r, changed) && par_messages_tell(r, r->borrowed, message) &&
+    memory = memory && add_new(r, changed) && par_messages_fill(r, r->borrowed, message) &&
              give_entries(r, message) && par_messages_send(r, r->borrowed, message);
     par_messages_free(r, message);
     return memory;
@@ -559,7 +559,7 @@ static void cut_off(struct par_ranks *r)
 }
 
 /* Drops t if it has no own corner. Otherwise keeps it, as a straddler if other ranks hold it as well. */
-static bool put_in_place(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
+static bool keep_or_drop(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 {
     int n = par_own_corners(r, t);
     if (n == 0)
@@ -586,7 +586,7 @@ static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const s
     bool memory = word;
     par_forget_straddlers(r, set);
     for (int32_t i = 0; memory && i < changed->n; i++)
-        memory = put_in_place(r, changed->item[i], word);
+        memory = keep_or_drop(r, changed->item[i], word);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = drop_borrowed(r, &r->borrowed[h].triangle, word);
     if (memory)
@@ -643,7 +643,7 @@ enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
     keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
-            memory = put_in_place(r, t, word); /* all ranks keep the coarse vertices */
+            memory = keep_or_drop(r, t, word); /* all ranks keep the coarse vertices */
     if (memory)
         cut_off(r);
     free(word);

@@ -106,7 +106,7 @@ static int64_t count_subs(struct handing *h)
 /* --- exchange of vertex numbers */
 
 /* Adds a vertex and its number to the message to rank p, unless the message contains it. False: no memory. */
-static bool tell_number(struct handing *h, tri_vertex_id v, int p)
+static bool add_number(struct handing *h, tri_vertex_id v, int p)
 {
     const struct numbered_place place = {h->mesh->xy[v], h->tiles->number[v]};
     assert(place.number >= h->tiles->n_kept && place.number < h->tiles->n_vertices);
@@ -117,12 +117,12 @@ static bool tell_number(struct handing *h, tri_vertex_id v, int p)
 
 /* Adds those corners v of a straddler that are new vertices in this rank's tiles to the message to rank p, which is
  * higher and also holds the straddler. False: no memory. */
-static bool tell_numbers(struct handing *h, const tri_vertex_id v[3], int p)
+static bool add_own_corners(struct handing *h, const tri_vertex_id v[3], int p)
 {
     bool memory = true;
     for (int k = 0; k < 3; k++)
         if (v[k] >= h->tiles->n_kept && is_own(h, tile_of(h, v[k])))
-            memory = memory && tell_number(h, v[k], p);
+            memory = memory && add_number(h, v[k], p);
     return memory;
 }
 
@@ -135,7 +135,7 @@ static bool tell_all(struct handing *h)
         const tri_vertex_id *v = h->mesh->tri[r->straddlers.item[i]].v;
         for (int k = 0; memory && k < 3; k++)
             if (tile_of(h, v[k]) >= h->end_tile)
-                memory = tell_numbers(h, v, par_owner_at(&r->territory, h->mesh->xy[v[k]]));
+                memory = add_own_corners(h, v, par_owner_at(&r->territory, h->mesh->xy[v[k]]));
     }
     return memory;
 }
@@ -160,7 +160,7 @@ static bool are_numbers(const struct handing *h, const struct par_bytes *told)
 }
 
 /* Stores received numbers for those corners of straddlers that lie in tiles of other ranks. Sorts the message. */
-static void take_numbers(struct handing *h, struct par_bytes *told)
+static void store_numbers(struct handing *h, struct par_bytes *told)
 {
     const struct par_ids *straddlers = &h->ranks->straddlers;
     size_t n = told->n / sizeof(struct numbered_place);
@@ -189,7 +189,7 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
     status = par_swap(r->carrier, PAR_MOVE_NUMBERS, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
         if (!status && are_numbers(h, &r->in[p]))
-            take_numbers(h, &r->in[p]);
+            store_numbers(h, &r->in[p]);
         else if (!status)
             status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank has sent invalid vertex numbers");
     }
@@ -264,7 +264,7 @@ static void clean_up(struct handing *h)
 
 /* Collective: computes the first numbers of each rank from the counts of all ranks. *first receives three arrays of
  * n_ranks + 1 numbers, for vertices, triangles and segments; the caller frees it, also after an error. */
-static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
+static enum tri_status compute_first_numbers(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
                               int64_t **first, enum tri_status status, struct tri_error *error)
 {
     size_t n = (size_t)carrier->n_ranks;
@@ -282,7 +282,7 @@ static enum tri_status sum_up(struct par_carrier *carrier, int32_t n_kept, const
     return status;
 }
 
-/* Passes the arrays that sum_up has made to the stream. They are borrowed. */
+/* Passes the arrays that compute_first_numbers has made to the stream. They are borrowed. */
 static void tell_first(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
 {
     tiles->ranks.n = carrier->n_ranks;
@@ -320,7 +320,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->run->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare_tiles(&h, count, error);
-    status = sum_up(r->carrier, tiles->n_kept, count, &first, status, error);
+    status = compute_first_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
         tell_first(tiles, r->carrier, first);
     for (int k = 0; !status && k < 3; k++)

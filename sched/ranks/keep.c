@@ -125,14 +125,14 @@ static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_me
 }
 
 /* Fills the message with the triangles, subsegments and worklist entries of a tile. False: no memory. */
-static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
+static bool fill_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
 {
     const struct par_run *run = s->ranks->run;
     const struct par_ids *triangles = &s->lists[tile][0], *entries = &s->lists[tile][1];
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
-    memory = memory && par_message_tell(message, talk, run->mesh, s->ranks->n_common);
+    memory = memory && par_message_fill(message, talk, run->mesh, s->ranks->n_common);
     for (int32_t i = 0; memory && i < entries->n; i++) {
         int32_t entry = entries->item[i];
         memory = par_message_add_entry(message, run->key.item[entry],
@@ -151,7 +151,7 @@ static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *
     struct par_talk talk = {0};
     struct par_message message = {0};
     bytes->n = 0;
-    bool memory = tell_piece(s, tile, &talk, &message) &&
+    bool memory = fill_piece(s, tile, &talk, &message) &&
                   par_message_write(&message, &talk, s->ranks->run->mesh, s->ranks->n_common, bytes);
     par_message_free(&message);
     par_talk_free(&talk);
@@ -236,7 +236,7 @@ static int64_t *read_offsets(tri_file file, int32_t first, int32_t n_tiles, uint
     struct head head;
     size_t n = ((size_t)n_tiles + 1) * sizeof(int64_t);
     int64_t *offset = malloc(n);
-    if (offset && tri_read_again(file, &head, sizeof head, 0) && tri_read_again(file, offset, n, sizeof head) &&
+    if (offset && tri_read_back(file, &head, sizeof head, 0) && tri_read_back(file, offset, n, sizeof head) &&
         memcmp(&head, &wanted, sizeof head) == 0 && tri_hash(tri_hash(0, &head, sizeof head), offset, n) == hash)
         return offset;
     free(offset);
@@ -254,7 +254,7 @@ static enum tri_status read_piece(struct par_ranks *r, tri_file file, const char
     if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
         return par_ranks_no_memory(error);
     bytes.n = (size_t)(offset[1] - offset[0]);
-    const bool whole = tri_read_again(file, bytes.at, bytes.n, (uint64_t)offset[0]);
+    const bool whole = tri_read_back(file, bytes.at, bytes.n, (uint64_t)offset[0]);
     enum tri_status status = whole ? TRI_OK : damaged(path, error);
     status = status ? status : par_borrow_from(r, &talk, &bytes, error);
     par_talk_free(&talk);
@@ -325,7 +325,7 @@ static enum tri_status carry_kept(struct par_state_file *file, void *user, struc
 /* --- resuming */
 
 /* Empties the mesh, except for the coarse vertices, which all ranks hold. The pieces contain everything else. */
-static void forget_all(struct par_run *run, int32_t n_common)
+static void clear_mesh(struct par_run *run, int32_t n_common)
 {
     run->mesh->n_vertices = n_common;
     run->mesh->n_triangles = run->mesh->n_subs = 0;
@@ -348,7 +348,7 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
                                    struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    forget_all(r->run, r->n_common);
+    clear_mesh(r->run, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
     for (int p = 0; !status && p < m->n_ranks; p++) {
@@ -360,7 +360,7 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
 }
 
 /* Restores position and report. The counters of all ranks are added to the report of rank 0. */
-static void go_on_from(struct par_ranks *r, const struct kept *c)
+static void restore_position(struct par_ranks *r, const struct kept *c)
 {
     r->run->place.next = (enum par_next)c->next;
     r->run->place.round = c->round;
@@ -384,7 +384,7 @@ static enum tri_status read_all(struct par_ranks *r, const struct par_manifest *
     status = par_spread(r->carrier, PAR_MOVE_INPUT, kept, size_of(m->n_ranks), status, error);
     status = status ? status : read_pieces(r, m, kept->writer, error);
     if (!status)
-        go_on_from(r, kept);
+        restore_position(r, kept);
     free(kept);
     return status;
 }
@@ -402,7 +402,7 @@ static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *
     return par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
 }
 
-enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *error)
+enum tri_status par_resume(struct par_ranks *r, bool *again, struct tri_error *error)
 {
     struct par_checkpoint *c = r->run->asked.options->checkpoint;
     struct par_manifest m;
@@ -410,12 +410,12 @@ enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *
     if (!c)
         return TRI_OK;
     c->stop = r->run->mesh->stop;
-    c->last = c->looked = tri_seconds();
+    c->last = c->last_check = tri_seconds();
     enum tri_status status = check_manifest(r, &m, error);
     if (status || m.state_bytes == 0)
         return status;
     *again = true;
-    r->run->mesh->stop = NULL; /* from now on par_keep stops the run, after a checkpoint */
+    r->run->mesh->stop = NULL; /* from now on par_offer_checkpoint stops the run, after a checkpoint */
     return read_all(r, &m, error);
 }
 
@@ -432,9 +432,9 @@ static int64_t count_triangles(const struct par_ranks *r)
     return n;
 }
 
-/* Rank 0 only: writes the state file and the manifest. done: counters of all ranks. told: hash and number of triangles
- * of each rank. */
-static enum tri_status write_state(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
+/* Rank 0 only: writes the state file and the manifest. done: counters of all ranks. file_facts: hash and number of
+ * triangles of each rank. */
+static enum tri_status write_state(struct par_ranks *r, const int64_t *file_facts, const int64_t done[PAR_DONE],
                                    struct tri_error *error)
 {
     const int n_ranks = r->carrier->n_ranks;
@@ -448,8 +448,8 @@ static enum tri_status write_state(struct par_ranks *r, const int64_t *told, con
                           .rounds = r->run->report->rounds - r->rounds_before, .n_ranks = n_ranks};
     memcpy(kept->done, done, sizeof kept->done);
     for (int p = 0; p < n_ranks; p++) {
-        kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
-        triangles += told[2 * p + 1];
+        kept->writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)file_facts[2 * p]};
+        triangles += file_facts[2 * p + 1];
     }
     struct par_checkpoint *c = r->run->asked.options->checkpoint;
     enum tri_status status = par_checkpoint_write(c, PAR_RANKS_STATE, n_ranks, triangles, carry_kept, kept, error);
@@ -458,44 +458,44 @@ static enum tri_status write_state(struct par_ranks *r, const int64_t *told, con
 }
 
 /* Collective: rank 0 sends the number of the next state, which only its manifest determines; then each rank writes its
- * file. told: receives the hash and the number of triangles of this rank. */
-static enum tri_status write_own(struct par_ranks *r, int64_t told[2], struct tri_error *error)
+ * file. file_facts: receives the hash and the number of triangles of this rank. */
+static enum tri_status write_own(struct par_ranks *r, int64_t file_facts[2], struct tri_error *error)
 {
     uint64_t hash = 0;
     int64_t which = par_checkpoint_next(r->run->asked.options->checkpoint);
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
     status = status ? status : write_piece_file(r, which, &hash, error);
-    told[0] = (int64_t)hash;
-    told[1] = count_triangles(r);
+    file_facts[0] = (int64_t)hash;
+    file_facts[1] = count_triangles(r);
     return status;
 }
 
 /* Collective: writes a checkpoint. */
 static enum tri_status write_all(struct par_ranks *r, struct tri_error *error)
 {
-    int64_t mine[PAR_DONE], done[PAR_DONE], told[2] = {0};
+    int64_t mine[PAR_DONE], done[PAR_DONE], file_facts[2] = {0};
     int64_t *all = malloc(2 * (size_t)r->carrier->n_ranks * sizeof *all);
     par_count_done(r, mine);
     enum tri_status status = all ? TRI_OK : par_ranks_no_memory(error);
     status = par_sum(r->carrier, mine, PAR_DONE, done, status, error);
-    status = status ? status : write_own(r, told, error);
-    status = par_gather(r->carrier, told, 2, all, status, error);
+    status = status ? status : write_own(r, file_facts, error);
+    status = par_gather(r->carrier, file_facts, 2, all, status, error);
     if (!status && r->carrier->rank == 0)
         status = write_state(r, all, done, error);
     free(all);
     return par_agree(r->carrier, status, error);
 }
 
-enum tri_status par_keep(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+enum tri_status par_offer_checkpoint(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     struct par_checkpoint *c = r->run->asked.options->checkpoint;
     int64_t asked[2], sum[2];
     if (!c)
         return status;
     r->run->mesh->stop = NULL; /* stop only here, after a checkpoint */
-    const double began = tri_seconds(), step = began - c->looked, triangles = (double)par_triangles(r->run);
+    const double began = tri_seconds(), step = began - c->last_check, triangles = (double)par_triangles(r->run);
     const bool is_last = r->carrier->rank == 0 && par_state_is_last(c, began + step, triangles);
-    c->looked = began;
+    c->last_check = began;
     asked[0] = is_last || tri_stop_is_asked(c->stop);
     asked[1] = r->carrier->rank == 0 && par_state_is_due(c, began, triangles);
     status = par_sum(r->carrier, asked, 2, sum, status, error);

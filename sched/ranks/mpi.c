@@ -113,7 +113,7 @@ static bool spread(void *self, void *bytes, size_t n)
 /* --- requests to stop */
 
 /* Sends the reason to all other ranks. Not collective. */
-static void tell_all(struct messenger *m, int why)
+static void send_reason(struct messenger *m, int why)
 {
     m->why = why;
     for (int p = 0; p < m->carrier.n_ranks; p++)
@@ -122,7 +122,7 @@ static void tell_all(struct messenger *m, int why)
 }
 
 /* Receives a reason. Not collective. */
-static int hear(struct messenger *m, int from)
+static int receive_reason(struct messenger *m, int from)
 {
     int32_t why = 0;
     MPI_Recv(&why, 1, MPI_INT32_T, from, TAG_STOP, m->comm, MPI_STATUS_IGNORE);
@@ -136,10 +136,10 @@ static int pass_on(void *self, int why)
     MPI_Status status;
     int there = 0;
     if (why != 0 && m->why == 0 && m->heard == 0) /* a rank that has notified this one has notified all others */
-        tell_all(m, why);
+        send_reason(m, why);
     if (MPI_Iprobe(MPI_ANY_SOURCE, TAG_STOP, m->comm, &there, &status) != MPI_SUCCESS || !there)
         return 0;
-    return hear(m, status.MPI_SOURCE);
+    return receive_reason(m, status.MPI_SOURCE);
 }
 
 /* Collective: receives all messages with TAG_STOP that are still under way. */
@@ -149,7 +149,7 @@ static void hear_all(struct messenger *m)
     if (MPI_Allreduce(&tells, &all, 1, MPI_INT, MPI_SUM, m->comm) != MPI_SUCCESS)
         return;
     while (m->heard < all - tells)
-        hear(m, MPI_ANY_SOURCE);
+        receive_reason(m, MPI_ANY_SOURCE);
     for (int p = 0; p < m->carrier.n_ranks; p++)
         MPI_Wait(&m->telling[p], MPI_STATUS_IGNORE);
 }
@@ -165,7 +165,7 @@ static bool is_running(void)
 }
 
 /* Copies this rank's traffic counters to the caller's struct, unless that is NULL. */
-static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges *exchanges)
+static void copy_traffic(const struct par_carrier *carrier, struct par_exchanges *exchanges)
 {
     _Static_assert((int)PAR_MOVES == (int)PAR_EXCHANGES, "mpi.h has a counter for each purpose of messages");
     for (int k = 0; exchanges && k < PAR_EXCHANGES; k++) {
@@ -282,7 +282,7 @@ enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, co
     if (status)
         return status;
     status = par_stream_over(carrier, figure, settings, sink, error);
-    tell_traffic(carrier, exchanges);
+    copy_traffic(carrier, exchanges);
     par_mpi_carrier_free(carrier);
     return status;
 }

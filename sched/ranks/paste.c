@@ -26,11 +26,11 @@ struct par_message *par_messages_begin(const struct par_ranks *r, const struct p
     return message;
 }
 
-bool par_messages_tell(const struct par_ranks *r, struct par_talk *talk, struct par_message *message)
+bool par_messages_fill(const struct par_ranks *r, struct par_talk *talk, struct par_message *message)
 {
     bool memory = true;
     for (int p = 0; memory && p < r->carrier->n_ranks; p++)
-        memory = par_message_tell(&message[p], &talk[p], r->run->mesh, r->n_common);
+        memory = par_message_fill(&message[p], &talk[p], r->run->mesh, r->n_common);
     return memory;
 }
 
@@ -123,7 +123,7 @@ static const void *key_of(const struct par_index *index, const struct tri_mesh *
 }
 
 /* Returns the slot that contains the id with this key, or the free slot (TRI_NONE) for it. */
-static int32_t *find(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
+static int32_t *find_slot(const struct par_index *index, const struct tri_mesh *mesh, const void *key)
 {
     const size_t width = index->is_of_places ? sizeof(struct tri_point) : 3 * sizeof(tri_vertex_id);
     uint32_t mask = (uint32_t)index->capacity - 1, at = (uint32_t)tri_hash(0, key, width) & mask;
@@ -149,16 +149,16 @@ static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, 
         larger.id[i] = TRI_NONE;
     for (int32_t i = 0; i < index->capacity; i++)
         if (index->id[i] != TRI_NONE)
-            *find(&larger, mesh, key_of(&larger, mesh, index->id[i])) = index->id[i];
+            *find_slot(&larger, mesh, key_of(&larger, mesh, index->id[i])) = index->id[i];
     free(index->id);
     *index = larger;
     return true;
 }
 
 /* Adds an id to the index; replaces another id with the same key. */
-static void note(struct par_index *index, const struct tri_mesh *mesh, int32_t id)
+static void add_to_index(struct par_index *index, const struct tri_mesh *mesh, int32_t id)
 {
-    int32_t *at = find(index, mesh, key_of(index, mesh, id));
+    int32_t *at = find_slot(index, mesh, key_of(index, mesh, id));
     index->n += *at == TRI_NONE;
     *at = id;
 }
@@ -175,10 +175,10 @@ bool par_index_straddlers(struct par_ranks *r)
         return false;
     for (int32_t i = 0; i < r->straddlers.n; i++) {
         const tri_vertex_id *v = mesh->tri[r->straddlers.item[i]].v;
-        note(&r->triangles, mesh, r->straddlers.item[i]);
+        add_to_index(&r->triangles, mesh, r->straddlers.item[i]);
         for (int k = 0; k < 3; k++)
             if (v[k] >= r->n_common)
-                note(&r->places, mesh, v[k]);
+                add_to_index(&r->places, mesh, v[k]);
     }
     return true;
 }
@@ -232,10 +232,10 @@ static bool paste_vertices(struct pasting *p)
         /* A new vertex in changes that are given back is not added to the index, because only one rank sends it: it was
          * inserted by one block, and no other block of the phase changes its triangles (triangle/refine/refine.h). */
         if (v == TRI_NONE) {
-            v = *find(&p->ranks->places, p->mesh, &told->xy);
+            v = *find_slot(&p->ranks->places, p->mesh, &told->xy);
             v = v != TRI_NONE ? v : append_vertex(p, i);
             if (p->is_borrowed)
-                note(&p->ranks->places, p->mesh, v);
+                add_to_index(&p->ranks->places, p->mesh, v);
         }
         memory = par_talk_add_vertex(p->talk, v);
     }
@@ -255,13 +255,13 @@ static bool may_be_here(const struct pasting *p, const struct par_told_triangle 
 static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle *told)
 {
     const int32_t *id = p->talk->vertex.item, v[3] = {id[told->v[0]], id[told->v[1]], id[told->v[2]]};
-    tri_triangle_id t = may_be_here(p, told) ? *find(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
+    tri_triangle_id t = may_be_here(p, told) ? *find_slot(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
     if (t != TRI_NONE)
         return t;
     t = take_id(p->ranks->run, PAR_TRIANGLES);
     p->mesh->tri[t] = (struct tri_triangle){{v[0], v[1], v[2]}, {TRI_BEYOND, TRI_BEYOND, TRI_BEYOND}, told->region, 0};
     if (p->is_borrowed)
-        note(&p->ranks->triangles, p->mesh, t);
+        add_to_index(&p->ranks->triangles, p->mesh, t);
     return t;
 }
 

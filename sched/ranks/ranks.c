@@ -164,7 +164,7 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
     *any = !status && sum > 0;
     if (!*any)
         return status;
-    status = par_ask(r, asked, error);
+    status = par_request_layers(r, asked, error);
     status = swap_bytes(r, PAR_MOVE_BORDERS, status, error);
     status = status ? status : par_lend_more(r, error);
     free_in(r);
@@ -180,7 +180,7 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
 }
 
 /* Is the triangle in a border block that this rank refines? */
-static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
+static bool is_in_own_border_block(const struct par_ranks *r, tri_triangle_id t)
 {
     const struct par_shift *s = &r->shift;
     int32_t block = s->partition ? par_owner_of(s->partition, s->phase, r->run->mesh, t) : 0;
@@ -197,7 +197,7 @@ static bool find_unknown(const struct par_ranks *r, struct par_ids *asked)
     for (int32_t i = 0; i < list->n; i++) {
         const struct tri_triangle *t = &r->run->mesh->tri[list->item[i]];
         for (int e = 0; memory && e < 3; e++)
-            if (t->n[e] == TRI_BEYOND && is_taken(r, list->item[i]))
+            if (t->n[e] == TRI_BEYOND && is_in_own_border_block(r, list->item[i]))
                 memory = par_ids_add(asked, t->v[tri_next[e]]) && par_ids_add(asked, t->v[tri_prev[e]]);
     }
     return memory;
@@ -290,7 +290,7 @@ static enum tri_status refine_step(struct par_ranks *r, struct tri_error *error)
     struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch_more,
                               .user = r};
     const struct par_turn turn = {.partition = r->shift.partition, .only = TRI_NONE, .share = &share};
-    par_tell(r->run, r->run->place.phase + 1);
+    par_report_phase(r->run, r->run->place.phase + 1);
     enum tri_status status = par_phase(r->run, &turn, error);
     r->shift.changed = share.changed;
     return status;
@@ -310,7 +310,7 @@ static enum tri_status run_phase(void *self, struct tri_error *error)
         status = work_shift(r, shift, refine_step, error);
         place->step = (place->step + 1) % n_steps;
         place->phase += place->step == 0;
-        status = par_keep(r, status, error);
+        status = par_offer_checkpoint(r, status, error);
     } while (!status && place->step > 0);
     return status;
 }
@@ -382,7 +382,7 @@ enum tri_status par_refine_rest_on_ranks(struct par_run *run, struct tri_error *
     struct par_ranks *r = run->ranks;
     enum tri_status status = work_shift(r, (struct par_shift){.n_steps = 1}, refine_left, error);
     par_go(run, par_is_of_sizes(run->place.next) ? PAR_BOUNDS_WHOLE : PAR_HAND_OUT);
-    return par_keep(r, status, error);
+    return par_offer_checkpoint(r, status, error);
 }
 
 /* --- beginning and end */
@@ -438,13 +438,13 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
 }
 
 /* Collective: reduces the coarse mesh to this rank's part, or restores that part from a checkpoint. */
-static enum tri_status take_part(struct par_ranks *r, struct tri_error *error)
+static enum tri_status make_own_part(struct par_ranks *r, struct tri_error *error)
 {
     bool again;
     const char *words = "the ranks were given different inputs or settings";
     const bool is_of_sizes = par_is_of_sizes(r->run->place.next);
     enum tri_status status = par_expect_same(r->carrier, r->of_run, words, TRI_OK, error);
-    status = status ? status : par_take_up(r, &again, error);
+    status = status ? status : par_resume(r, &again, error);
     status = status || again ? status : par_keep_own(r, error);
     r->run->n_schedules += is_of_sizes && r->run->place.next > PAR_BOUNDS_WHOLE; /* the second schedule has begun */
     return par_agree(r->carrier, status, error);
@@ -473,7 +473,7 @@ enum tri_status par_ranks_begin(struct par_run *run, struct tri_error *error)
         run->ranks = r;
     }
     enum tri_status status = par_agree(carrier, r && init_ranks(r) ? TRI_OK : par_ranks_no_memory(error), error);
-    return status ? status : take_part(r, error);
+    return status ? status : make_own_part(r, error);
 }
 
 enum tri_status par_ranks_hand_out(struct par_run *run, enum tri_status status, struct tri_error *error)

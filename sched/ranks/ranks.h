@@ -60,7 +60,7 @@ struct par_ranks {
 
 /* Collective, at the start of the schedule of the whole mesh. Cells, worklist and place must be the same on all ranks;
  * the number of threads may differ. Creates run->ranks and reduces the mesh to this rank's part, or restores part and
- * place from a checkpoint. TRI_NO_MEMORY, or as par_take_up. */
+ * place from a checkpoint. TRI_NO_MEMORY, or as par_resume. */
 enum tri_status par_ranks_begin(struct par_run *run, struct tri_error *error);
 
 /* Collective: the rounds of a struct par_schedule, and the final call for triangles that they left over, which also
@@ -87,12 +87,12 @@ void par_add_done(struct par_ranks *ranks, const int64_t done[PAR_DONE]);
 
 /* Collective. If a checkpoint exists, sets *again and replaces mesh, worklist, report and place by the saved ones.
  * TRI_BAD_INPUT: it belongs to another run, or is damaged. */
-enum tri_status par_take_up(struct par_ranks *ranks, bool *again, struct tri_error *error);
+enum tri_status par_resume(struct par_ranks *ranks, bool *again, struct tri_error *error);
 
 /* Collective, between two steps: writes a checkpoint if one is due or if a stop was requested; after a stop request,
  * returns TRI_STOPPED. After the first step, runs stop only between steps. status: the status of the step.
  * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status par_keep(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
+enum tri_status par_offer_checkpoint(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
 
 /* --- borders.c: blocks that other ranks refine. Not collective: each fills `out` for the next exchange or reads `in`
  * of the last one. TRI_NO_MEMORY. */
@@ -116,7 +116,7 @@ enum tri_status par_borrow_from(struct par_ranks *ranks, struct par_talk *talk, 
 enum tri_status par_borrow(struct par_ranks *ranks, struct tri_error *error);
 
 /* out[h]: those of the vertices that rank h owns, to request more layers around them. */
-enum tri_status par_ask(struct par_ranks *ranks, const struct par_ids *vertices, struct tri_error *error);
+enum tri_status par_request_layers(struct par_ranks *ranks, const struct par_ids *vertices, struct tri_error *error);
 
 /* out[h]: the changes to what rank h lent, given the triangles made. Then drops the borrowed triangles. */
 enum tri_status par_give_back(struct par_ranks *ranks, struct par_ids *changed, struct tri_error *error);
@@ -128,8 +128,8 @@ enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);
 
 /* Returns [n_ranks] messages that will hold what is added to the talks from now on. NULL: no memory. */
 struct par_message *par_messages_begin(const struct par_ranks *ranks, const struct par_talk *talk);
-/* Calls par_message_tell for each message. False: no memory. */
-bool par_messages_tell(const struct par_ranks *ranks, struct par_talk *talk, struct par_message *message);
+/* Calls par_message_fill for each message. False: no memory. */
+bool par_messages_fill(const struct par_ranks *ranks, struct par_talk *talk, struct par_message *message);
 /* out[p]: the encoded message to rank p, unless it is empty. False: no memory. */
 bool par_messages_send(struct par_ranks *ranks, const struct par_talk *talk, struct par_message *message);
 void par_messages_free(const struct par_ranks *ranks, struct par_message *message);

@@ -188,7 +188,7 @@ static bool tell_triangle(struct telling *telling, tri_triangle_id t)
 
 /* Adds the waiting triangles that are connected with the seed, in depth-first order: most triangles are a neighbour of
  * their predecessor. False: no memory. */
-static bool tell_from(struct telling *telling, tri_triangle_id seed)
+static bool add_connected(struct telling *telling, tri_triangle_id seed)
 {
     bool memory = par_ids_add(&telling->stack, seed);
     while (memory && telling->stack.n > 0) {
@@ -202,7 +202,7 @@ static bool tell_from(struct telling *telling, tri_triangle_id seed)
     return memory;
 }
 
-bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common)
+bool par_message_fill(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common)
 {
     const int32_t first = m->first;
     struct telling telling = {.message = m, .talk = talk, .mesh = mesh, .n_common = n_common,
@@ -216,7 +216,7 @@ bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct
         memcpy(telling.waiting, talk->triangle.item + first, (size_t)telling.n * sizeof *telling.waiting);
     talk->triangle.n = first;
     for (int32_t i = 0; memory && i < telling.n; i++)
-        memory = telling.waiting[i] == TRI_NONE || tell_from(&telling, telling.waiting[i]);
+        memory = telling.waiting[i] == TRI_NONE || add_connected(&telling, telling.waiting[i]);
     assert(!memory || talk->triangle.n == first + telling.n);
     free(telling.waiting);
     free(telling.stack.item);

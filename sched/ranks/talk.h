@@ -98,7 +98,7 @@ void par_message_free(struct par_message *message);
 
 /* Adds the talk's triangles from number message->first on, which were just added to it, to the message. Renumbers them
  * so that most are adjacent to their predecessor. n_common: number of vertices of the coarse mesh. False: no memory. */
-bool par_message_tell(struct par_message *message, struct par_talk *talk, const struct tri_mesh *mesh,
+bool par_message_fill(struct par_message *message, struct par_talk *talk, const struct tri_mesh *mesh,
                       int32_t n_common);
 
 bool par_message_add_entry(struct par_message *message, uint64_t key, int32_t triangle);

@@ -57,7 +57,7 @@ struct leftovers {
 };
 
 /* Marks a triangle, and returns whether it was unmarked. Safe to call from several threads. */
-static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
+static bool mark_seen(const struct leftovers *left, tri_triangle_id triangle)
 {
     const uint64_t bit = (uint64_t)1 << triangle % 64;
     return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
@@ -67,19 +67,19 @@ static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
  * subsegments would be listed three times, and nine times after the next phase. Two blocks never leave the same
  * triangle, since each leaves only triangles with two corners in its box, and boxes of one phase are disjoint. So the
  * result does not depend on the order in which these tasks run. */
-static void drop_repeated(void *context, size_t index)
+static void drop_duplicates(void *context, size_t index)
 {
     const struct leftovers *left = context;
     struct par_ids *own = &left->p->tasks[index].left;
     int32_t n = 0;
     for (int32_t k = 0; k < own->n; k++)
-        if (is_new(left, own->item[k]))
+        if (mark_seen(left, own->item[k]))
             own->item[n++] = own->item[k];
     own->n = n;
 }
 
 /* A task: copies the list of one task to its place, and gives each triangle its key. */
-static void gather_own(void *context, size_t index)
+static void copy_left(void *context, size_t index)
 {
     const struct leftovers *left = context;
     const struct par_phase_run *p = left->p;
@@ -104,7 +104,7 @@ static bool gather_left(struct leftovers *left)
     if (!left->seen || !left->before)
         return false;
     /* First remove duplicates, then compute where each list begins, then copy. */
-    tri_execute(&p->run->asked.executor, n, drop_repeated, left);
+    tri_execute(&p->run->asked.executor, n, drop_duplicates, left);
     left->before[0] = 0;
     for (size_t i = 0; i < n; i++) {
         memory = memory && !p->tasks[i].lost;
@@ -114,7 +114,7 @@ static bool gather_left(struct leftovers *left)
     left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
     memory = memory && left->item && left->key;
     if (memory)
-        tri_execute(&p->run->asked.executor, n, gather_own, left);
+        tri_execute(&p->run->asked.executor, n, copy_left, left);
     return memory;
 }
 
@@ -164,7 +164,7 @@ static bool gather_lists(const struct par_phase_run *p)
 }
 
 /* Merges what the tasks have left into the worklist, and gathers the other lists. False: no memory. */
-static bool take_back(struct par_phase_run *p)
+static bool merge_left(struct par_phase_run *p)
 {
     struct leftovers left = {.p = p};
     bool memory = gather_left(&left) &&
@@ -212,7 +212,7 @@ static bool release_erased(const struct par_phase_run *p, const struct par_task 
 enum tri_status par_collect(struct par_phase_run *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    bool memory = take_back(p);
+    bool memory = merge_left(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct par_task *task = &p->tasks[i];
         /* The first failure in canonical order counts, so errors do not depend on timing. */

@@ -55,7 +55,7 @@ struct hands {
 };
 
 /* A worker: fetches the next tile and processes it, until no tile is left. */
-static void take_tiles(void *context, size_t hand)
+static void process_tiles(void *context, size_t hand)
 {
     struct hands *h = context;
     for (size_t tile; (tile = atomic_fetch_add(&h->next, 1)) < h->n_tiles;)
@@ -80,5 +80,5 @@ void par_deal_work(const struct par_deal *deal, const struct tri_executor *execu
     /* The scratch memory suffices for this many workers. */
     const size_t most = (size_t)deal->n / largest;
     struct hands hands = {work, context, n_tiles, room, 2 * largest, 0};
-    tri_execute(executor, most < n_tiles ? most : n_tiles, take_tiles, &hands);
+    tri_execute(executor, most < n_tiles ? most : n_tiles, process_tiles, &hands);
 }

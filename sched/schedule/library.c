@@ -8,7 +8,7 @@
 #include "triangle/api/opaque_mesh.h"
 
 /* A progress callback of the schedule: passes the number of triangles on to the hook of the library call. */
-static void follow(void *user, const struct par_place *place)
+static void pass_progress(void *user, const struct par_place *place)
 {
     const struct tri_refine_hooks *hooks = user;
     hooks->told(hooks->told_user, place->triangles);
@@ -26,8 +26,8 @@ static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *me
     how.figure = way->figure;
     how.region_column = way->has_attributes;
     how.hooks = hooks;
-    how.progress = hooks->told ? follow : NULL;
-    how.progress_user = (void *)hooks; /* follow only reads them */
+    how.progress = hooks->told ? pass_progress : NULL;
+    how.progress_user = (void *)hooks; /* pass_progress only reads them */
     enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
     *report = schedule.total;
     par_report_free(&schedule);

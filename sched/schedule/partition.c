@@ -272,7 +272,7 @@ struct boxing {
 };
 
 /* Extends a box by another one. */
-static void widen(struct tri_point *low, struct tri_point *high, struct tri_point from, struct tri_point to)
+static void extend_box(struct tri_point *low, struct tri_point *high, struct tri_point from, struct tri_point to)
 {
     low->x = from.x < low->x ? from.x : low->x;
     low->y = from.y < low->y ? from.y : low->y;
@@ -287,7 +287,7 @@ static void box_share(void *context, size_t share)
     const struct tri_range range = tri_share(share, b->mesh->n_vertices);
     struct tri_point low = b->mesh->xy[range.first], high = low;
     for (tri_vertex_id v = range.first; v < range.last; v++)
-        widen(&low, &high, b->mesh->xy[v], b->mesh->xy[v]);
+        extend_box(&low, &high, b->mesh->xy[v], b->mesh->xy[v]);
     b->low[share] = low;
     b->high[share] = high;
 }
@@ -300,7 +300,7 @@ static void find_box(struct par_partition *p, const struct tri_mesh *mesh, const
     p->low = boxing.low[0];
     p->high = boxing.high[0];
     for (size_t share = 1; share < tri_shares(mesh->n_vertices); share++)
-        widen(&p->low, &p->high, boxing.low[share], boxing.high[share]);
+        extend_box(&p->low, &p->high, boxing.low[share], boxing.high[share]);
 }
 
 /* Chooses the numbers of columns and rows so that cells are about square on average in a box of this shape. Both
@@ -333,16 +333,16 @@ static bool choose_for_work(struct par_partition *p, double cell_triangles)
     int32_t columns = p->n_columns, rows = p->n_rows;
     double width = p->high.x - p->low.x, height = p->high.y - p->low.y, middle = middle_half(p->x, columns);
     /* The height is measured in the middle column. */
-    double beside = middle_half(p->y + (size_t)(columns / 2) * (size_t)rows, rows);
-    if (PAR_SKEW * middle * height < beside * width)
-        choose_numbers(p, cell_triangles, PAR_SKEW * middle, beside);
-    else if (PAR_SKEW * beside * width < middle * height)
-        choose_numbers(p, cell_triangles, middle, PAR_SKEW * beside);
+    double middle_height = middle_half(p->y + (size_t)(columns / 2) * (size_t)rows, rows);
+    if (PAR_SKEW * middle * height < middle_height * width)
+        choose_numbers(p, cell_triangles, PAR_SKEW * middle, middle_height);
+    else if (PAR_SKEW * middle_height * width < middle * height)
+        choose_numbers(p, cell_triangles, middle, PAR_SKEW * middle_height);
     return p->n_columns != columns || p->n_rows != rows;
 }
 
 /* Cuts the plane with the current numbers of columns and rows. False: no memory. */
-static bool cut_anew(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
+static bool cut_again(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
 {
     free(p->x);
     free(p->y);
@@ -363,10 +363,10 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     }
     /* Each sample stands for about this much work. */
     double grain = estimate / par_cells(p) / PAR_SAMPLES_PER_CELL;
-    bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_anew(p, &s, executor);
+    bool done = tri_sample_work(mesh, quality, grain, executor, add_sample, &s) && cut_again(p, &s, executor);
     /* If the first cut shows that the work is very elongated, cut again. */
     if (done && choose_for_work(p, cell_triangles))
-        done = cut_anew(p, &s, executor);
+        done = cut_again(p, &s, executor);
     free(s.item);
     if (done)
         return TRI_OK;
@@ -421,7 +421,7 @@ void par_partition_free(struct par_partition *p)
 }
 
 /* The interval of block k along one axis; outer blocks reach to infinity. */
-static void span(const double *bounds, int32_t k, int32_t n, double *low, double *high)
+static void block_interval(const double *bounds, int32_t k, int32_t n, double *low, double *high)
 {
     *low = k < 2 ? -HUGE_VAL : bounds[k - 1];
     *high = k >= n - 2 ? HUGE_VAL : bounds[k + 1];
@@ -437,8 +437,8 @@ struct tri_fence par_fence(const struct par_partition *p, int32_t column, int32_
 {
     struct tri_fence fence;
     assert(column >= 0 && column < p->n_columns && row >= 0 && row < p->n_rows);
-    span(p->x, column, p->n_columns, &fence.x_min, &fence.x_max);
-    span(rows_of(p, column), row, p->n_rows, &fence.y_min, &fence.y_max);
+    block_interval(p->x, column, p->n_columns, &fence.x_min, &fence.x_max);
+    block_interval(rows_of(p, column), row, p->n_rows, &fence.y_min, &fence.y_max);
     return fence;
 }
 

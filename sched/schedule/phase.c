@@ -27,7 +27,7 @@ enum { GONE = -2 }; /* in par_phase_run.block_of: the triangle no longer exists 
 /* --- callbacks of the loop, called on the thread that runs the task. Each appends to a list of the task. If memory
  * runs out, `lost` is set, and par_collect reports the error. */
 
-static void leave_triangle(void *user, tri_triangle_id triangle)
+static void note_deferred(void *user, tri_triangle_id triangle)
 {
     struct par_task *task = user;
     task->lost |= !par_ids_add(&task->left, triangle);
@@ -52,7 +52,7 @@ static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
     task->lost |= !par_ids_add_all(&task->changed, triangle, n);
 }
 
-static void ask_for(void *user, const tri_vertex_id edge[2])
+static void note_asked_edge(void *user, const tri_vertex_id edge[2])
 {
     struct par_task *task = user;
     task->lost |= !par_ids_add_all(&task->asked, edge, 2);
@@ -88,7 +88,7 @@ static void assign_share(void *context, size_t share)
 
 /* Estimates the number of triangles that a block makes in this phase, from the total work of its entries. The estimate
  * is a little low on purpose, because a pause costs less than unused room. */
-static int32_t expect(int phase, double work)
+static int32_t estimate_triangles_made(int phase, double work)
 {
     static const double share[PAR_PHASES] = PAR_DONE_IN_PHASES;
     double expected = share[phase] * work + 128;
@@ -161,7 +161,7 @@ static bool make_tasks(const struct dealing *d)
             work += work_at(d, share)[bin];
         if (start[bin + 1] > start[bin])
             p->tasks[p->n_tasks++] = (struct par_task){
-                .block = bin - 1, .expected = expect(p->phase, work),
+                .block = bin - 1, .expected = estimate_triangles_made(p->phase, work),
                 .hooks = {.worklist = p->worklist + start[bin] - start[1], .n_worklist = start[bin + 1] - start[bin]}};
     }
     return p->tasks;
@@ -209,17 +209,17 @@ static bool deal_worklists(struct par_phase_run *p)
 
 /* Prepares a task: its fence, and the hooks by which the loop reports to it. Its part of the worklist has been set by
  * make_tasks. */
-static void set_up(struct par_phase_run *p, struct par_task *task)
+static void set_up_task(struct par_phase_run *p, struct par_task *task)
 {
     const struct par_run *run = p->run;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
-    task->part = (struct tri_part){note_changes, ask_for, task};
+    task->part = (struct tri_part){note_changes, note_asked_edge, task};
     task->hooks = (struct tri_refine_hooks){
         .fence = &task->fence,
         .part = p->share && p->share->is_border[task->block] ? &task->part : NULL,
         .worklist = task->hooks.worklist,
         .n_worklist = task->hooks.n_worklist,
-        .deferred = leave_triangle,
+        .deferred = note_deferred,
         .deferred_user = task,
         .given_up = run->remain.is_on ? note_given_up : NULL,
         .given_up_user = task,
@@ -234,7 +234,7 @@ static void set_up(struct par_phase_run *p, struct par_task *task)
  * blocks wait for the slowest block. If areas decide, the first estimate is about right, so a sixteenth of it is
  * enough; otherwise it is a guess, and a quarter is given. The amount doubles at each pause, but is at most as much as
  * the task has made so far. Room that stays unused serves later phases. */
-static int32_t more_for(const struct par_task *task, const struct tri_quality *quality)
+static int32_t triangles_to_add(const struct par_task *task, const struct tri_quality *quality)
 {
     double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
     bool areas = quality->max_area > 0 || quality->region_areas;
@@ -254,10 +254,10 @@ static void reserve_room(struct par_phase_run *p)
 /* Returns for how many triangles a paused task must have room; the result is passed to par_room_extend. If only room
  * for subsegments has run out, as happens along a coast line, more triangles would stay unused. In this case the number
  * of unused triangles is returned, and the task gets only the subsegments that belong to them. */
-static int32_t refill(struct par_task *task, const struct tri_quality *quality)
+static int32_t triangles_needed(struct par_task *task, const struct tri_quality *quality)
 {
     const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
-    const int32_t more = more_for(task, quality), left = par_room_left(&task->view.room, PAR_TRIANGLES);
+    const int32_t more = triangles_to_add(task, quality), left = par_room_left(&task->view.room, PAR_TRIANGLES);
     task->view.room.on_segments = all > 0 ? (double)on_segments / (double)all : 0;
     if (left >= more / 4)
         return left;
@@ -269,7 +269,7 @@ static int32_t refill(struct par_task *task, const struct tri_quality *quality)
  * for at least these. */
 static enum tri_status extend_room(struct par_phase_run *p, struct par_task *task, struct tri_error *error)
 {
-    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task, &p->run->bounds);
+    int32_t more = task->progress == PAR_NEW ? task->expected : triangles_needed(task, &p->run->bounds);
     if (p->run->asked.options->tight_room > 0)
         more = p->run->asked.options->tight_room;
     if (more < 2 * task->view.points)
@@ -313,7 +313,7 @@ static enum tri_status fetch_more(struct par_phase_run *p, struct tri_error *err
 
 /* In debug builds every block marks the triangles that it changes, and an assertion in cavity.c fails if two blocks
  * change the same one. Extends the marks to the capacity of the arrays. False: no memory. */
-static bool watch_owners(struct par_phase_run *p)
+static bool extend_owner_marks(struct par_phase_run *p)
 {
 #ifdef NDEBUG
     (void)p;
@@ -364,7 +364,7 @@ int64_t par_triangles(const struct par_run *run)
 static _Thread_local char here;
 
 /* Calls the caller's progress callback. Called on the calling thread only. */
-static void tell_place(const struct par_run *run, int phase, double done, int64_t triangles)
+static void report_progress(const struct par_run *run, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = run->asked.options;
     const struct par_place place = {.level = run->place.level, .sizes = par_is_of_sizes(run->place.next),
@@ -376,7 +376,7 @@ static void tell_place(const struct par_run *run, int phase, double done, int64_
         options->progress(options->progress_user, &place);
 }
 
-void par_tell(const struct par_run *run, int phase) { tell_place(run, phase, 0, par_triangles(run)); }
+void par_report_phase(const struct par_run *run, int phase) { report_progress(run, phase, 0, par_triangles(run)); }
 
 /* Returns the least number of triangles that a task has made. A free point makes two triangles; a point on a segment
  * makes two or, on the boundary, one. */
@@ -385,19 +385,19 @@ static int64_t least_made_by(const struct par_task *task) { return par_inserted_
 /* Called on the thread that ran the task, when the task has ended. Adds the task to the progress of all threads; if
  * this is the calling thread, also reports the progress. The number of triangles counts only triangles that have
  * certainly been made, so it never decreases. */
-static void note_end(struct par_phase_run *p, const struct par_task *task)
+static void report_task_end(struct par_phase_run *p, const struct par_task *task)
 {
     const int64_t made = least_made_by(task);
     const int64_t all = atomic_fetch_add_explicit(&p->run->reached, made, memory_order_relaxed) + made;
     const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
     const double before = p->run->share_done, share = (double)done / (double)p->expected;
     if (p->caller == &here)
-        tell_place(p->run, p->phase + 1, before + (1 - before) * share, all);
+        report_progress(p->run, p->phase + 1, before + (1 - before) * share, all);
 }
 
 /* Runs the task at position index of the starting order, unless it is not ready, the end is requested, or the phase is
  * halted before the task has begun. A task that has begun continues in spite of a halt. */
-static void run_next(void *context, size_t index)
+static void run_queued_task(void *context, size_t index)
 {
     struct par_phase_run *p = context;
     struct par_task *task = &p->tasks[p->order[index]];
@@ -407,7 +407,7 @@ static void run_next(void *context, size_t index)
         return;
     run_task(p, task);
     if (task->progress == PAR_ENDED)
-        note_end(p, task);
+        report_task_end(p, task);
 }
 
 /* Runs all tasks that are ready, until each has ended, has paused, or is stopped. After a halt is requested no new task
@@ -420,7 +420,7 @@ static void run_tasks(struct par_phase_run *p)
     memcpy(shared, report->seconds_shared, sizeof shared);
     /* Tasks compare this with the address on their own thread. */
     p->caller = &here;
-    tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_next, p);
+    tri_execute(&p->run->asked.executor, (size_t)p->n_tasks, run_queued_task, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
     double seconds = tri_seconds() - began;
     report->seconds_refine += seconds;
@@ -428,7 +428,7 @@ static void run_tasks(struct par_phase_run *p)
 }
 
 /* Returns whether any task is in this state. */
-static bool is_any(const struct par_phase_run *p, enum par_progress progress)
+static bool is_any_task(const struct par_phase_run *p, enum par_progress progress)
 {
     for (int32_t i = 0; i < p->n_tasks; i++)
         if (p->tasks[i].progress == progress)
@@ -481,7 +481,7 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
     double assigned = tri_seconds();
     bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
-        set_up(p, &p->tasks[i]);
+        set_up_task(p, &p->tasks[i]);
     if (!memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;
@@ -491,11 +491,11 @@ static enum tri_status begin_tasks(struct par_phase_run *p, struct tri_error *er
 
 /* Gives room to the tasks that wait for it, after all others have stopped. So the room that a task gets does not depend
  * on when others stopped. */
-static enum tri_status give_room(struct par_phase_run *p, struct tri_error *error)
+static enum tri_status prepare_run(struct par_phase_run *p, struct tri_error *error)
 {
     double dealing = tri_seconds();
     enum tri_status status = deal_room(p, error);
-    if (!status && !watch_owners(p))
+    if (!status && !extend_owner_marks(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
     p->run->report->seconds_room += tri_seconds() - dealing;
     return status;
@@ -511,22 +511,22 @@ static enum tri_status run_to_end(struct par_phase_run *p, struct tri_error *err
     p->run->report->seconds_room += tri_seconds() - reserving;
     do {
         /* All tasks have stopped here, so the arrays may move. */
-        status = give_room(p, error);
+        status = prepare_run(p, error);
         if (status)
             break;
         run_tasks(p);
         /* A task that is still ready was stopped or, after a halt, has not begun. Tasks that have begun run to their
          * end in spite of a halt, so the loop goes on while some of them wait. */
-        status = is_any(p, PAR_READY) && !p->halt ? tri_fail_stopped(error) : fetch_more(p, error);
-    } while (!status && is_any(p, PAR_FULL));
+        status = is_any_task(p, PAR_READY) && !p->halt ? tri_fail_stopped(error) : fetch_more(p, error);
+    } while (!status && is_any_task(p, PAR_FULL));
     free(p->mark);
     p->mark = NULL;
-    return !status && is_any(p, PAR_READY) ? tri_fail_stopped(error) : status;
+    return !status && is_any_task(p, PAR_READY) ? tri_fail_stopped(error) : status;
 }
 
 /* After a halt: lists the blocks that have ended in run->place.done, and adds their share of the work to
  * run->share_done. False: no memory. */
-static bool note_done(struct par_phase_run *p)
+static bool list_done_blocks(struct par_phase_run *p)
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
@@ -540,7 +540,7 @@ static bool note_done(struct par_phase_run *p)
 
 /* After a halt: restores the worklist as it was before it was dealt, without the entries whose triangle no longer
  * exists and those of blocks that have ended. */
-static void put_back(struct par_phase_run *p)
+static void restore_worklist(struct par_phase_run *p)
 {
     struct par_ids *list = &p->given;
     struct par_keys *key = &p->given_key;
@@ -572,9 +572,9 @@ static enum tri_status run_phase(struct par_phase_run *p, struct tri_error *erro
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
     status = status ? status : run_to_end(p, error);
     if (status == TRI_STOPPED && p->halt) {
-        if (!note_done(p))
+        if (!list_done_blocks(p))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks that are done");
-        put_back(p);
+        restore_worklist(p);
     }
     double merging = tri_seconds();
     enum tri_status collected = par_collect(p, error);

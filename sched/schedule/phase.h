@@ -30,7 +30,7 @@ int64_t par_triangles(const struct par_run *run);
 
 /* Calls the progress callback for the phase that begins. phase: as in struct par_place. Called on the calling
  * thread. */
-void par_tell(const struct par_run *run, int phase);
+void par_report_phase(const struct par_run *run, int phase);
 
 /* Sets the counts of deferred triangles (gated, fenced) in the report's total to 0. Called after a schedule, when each
  * deferred triangle has been refined. */
@@ -99,8 +99,8 @@ struct par_run {
 static inline void par_go(struct par_run *run, enum par_next to)
 {
     const struct par_options *options = run->asked.options;
-    if (options->went)
-        options->went(options->went_user, run->place.next, to);
+    if (options->on_step)
+        options->on_step(options->on_step_user, run->place.next, to);
     run->place.next = to;
 }
 

@@ -193,7 +193,7 @@ int32_t par_room_left(const struct par_room *room, enum par_kind kind)
 
 /* Returns the number of items of a kind that an expected number of triangles needs. on_segments: share of the points
  * that lie on segments. */
-static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segments)
+static int64_t items_for(enum par_kind kind, int64_t triangles, double on_segments)
 {
     switch (kind) {
     case PAR_VERTICES: return triangles / 2 + triangles / 64 + 16;
@@ -215,7 +215,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
     enum tri_status status = TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
         status = extend_kind(room, spare, shared, kind,
-                             (int32_t)wanted_of(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
+                             (int32_t)items_for(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
     return status;
 }
 
@@ -226,7 +226,7 @@ void par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int
     if (shared->bound || shared->storage)
         return;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
-        int64_t need = wanted_of(kind, triangles, PAR_LEAST_ON_SEGMENTS);
+        int64_t need = items_for(kind, triangles, PAR_LEAST_ON_SEGMENTS);
         need -= par_ranges_unused(&spare->ranges[kind]);
         if (need > 0)
             status = reserve_items(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, NULL);

@@ -38,8 +38,8 @@ static enum tri_status prerefine_uniform(struct par_run *run, const struct tri_q
                                          double cell, int level, struct tri_error *error)
 {
     struct tri_quality coarse = par_coarse_bounds(quality, cell);
-    bool is_told = level == 0 && !run->report->partition.x; /* true for the first schedule, as in report_schedule */
-    if (is_told && coarse.min_angle > 0 && quality->max_area > 0) {
+    bool is_reported = level == 0 && !run->report->partition.x; /* true for the first schedule, as in report_schedule */
+    if (is_reported && coarse.min_angle > 0 && quality->max_area > 0) {
         double area = quality->max_area * coarse.area_scale;
         run->report->radius_lemma7 = par_radius_lemma7(area, par_rho(coarse.min_angle));
         run->report->radius_theory = par_radius_tight(area, coarse.min_angle);
@@ -106,7 +106,7 @@ static enum tri_status number_mesh(struct par_run *run, struct tri_error *error)
     const struct timed *timed = run->asked.executor.self; /* use the inner executor: numbering is measured separately */
     struct tri_mesh *mesh = run->mesh;
     const double began = tri_seconds(), bytes = par_number_bytes(mesh->n_triangles, mesh->n_vertices, mesh->n_subs);
-    par_tell(run, PAR_NUMBERING);
+    par_report_phase(run, PAR_NUMBERING);
     enum tri_status status = par_park_expect(run->park, mesh, (size_t)bytes, error);
     status = status ? status : par_number(mesh, &run->cells, run->asked.n_kept, &timed->executor, error);
     assert(status || (mesh->n_vertices >= run->asked.n_kept && tri_mesh_is_sound(mesh)));
@@ -115,7 +115,7 @@ static enum tri_status number_mesh(struct par_run *run, struct tri_error *error)
 }
 
 /* Closes the gaps that blocks left in the arrays, by numbering if it is due now. Ids of triangles change. */
-static enum tri_status leave_no_gaps(struct par_run *run, bool numbering, struct tri_error *error)
+static enum tri_status close_gaps(struct par_run *run, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     double began = tri_seconds();
@@ -145,13 +145,13 @@ static enum tri_status offer_checkpoint(struct par_run *run, bool surely, struct
 }
 
 /* Allows steps to be stopped at any point from now on. Work since the last state is then lost. */
-static void let_stop(struct par_run *run)
+static void allow_stop_in_steps(struct par_run *run)
 {
     if (checkpoint_of(run))
         run->mesh->stop = checkpoint_of(run)->stop;
 }
 
-static void note_size(struct par_run *run)
+static void update_most_live(struct par_run *run)
 {
     struct par_report *report = run->report;
     report->most_live = run->mesh->n_triangles > report->most_live ? run->mesh->n_triangles : report->most_live;
@@ -171,7 +171,7 @@ static enum tri_status run_phase(void *self, struct tri_error *error)
         return TRI_OK;
     }
     enum tri_status status = s->is_whole ? offer_checkpoint(run, false, error) : TRI_OK;
-    par_tell(run, run->place.phase + 1);
+    par_report_phase(run, run->place.phase + 1);
     if (!status)
         status = checkpoint ? par_state_phase(checkpoint, run, turn, NULL, error) : par_phase(run, &turn, error);
     run->place.phase++;
@@ -184,12 +184,12 @@ static enum tri_status end_round(void *self, bool *again, struct tri_error *erro
     (void)error;
     s->left = s->run->worklist.n;
     *again = par_next_round(s);
-    note_size(s->run);
+    update_most_live(s->run);
     return TRI_OK;
 }
 
 /* Returns whether a mesh of this many triangles is too large for the memory limit or for 32-bit ids. */
-static bool is_too_much(const struct par_run *run, double triangles)
+static bool exceeds_memory(const struct par_run *run, double triangles)
 {
     const struct par_options *options = run->asked.options;
     return options->sink && !options->carrier &&
@@ -204,7 +204,7 @@ struct before {
     struct par_report report; /* the report so far */
 };
 
-static enum tri_status remember(const struct par_run *run, struct before *before, struct tri_error *error)
+static enum tri_status save_before_sweep(const struct par_run *run, struct before *before, struct tri_error *error)
 {
     *before = (struct before){.report = *run->report};
     if (!par_ids_add_all(&before->worklist, run->worklist.item, run->worklist.n))
@@ -213,7 +213,7 @@ static enum tri_status remember(const struct par_run *run, struct before *before
 }
 
 /* Restores mesh, worklist and report. The sink drops the tiles that it has received when its stream begins again. */
-static void go_back(struct par_run *run, struct before *before)
+static void undo_sweep(struct par_run *run, struct before *before)
 {
     struct par_ids worklist = run->worklist;
     struct par_report *report = run->report;
@@ -235,13 +235,13 @@ static enum tri_status try_to_sweep(struct par_run *run, const struct par_partit
                                     struct tri_error *error)
 {
     struct before before;
-    enum tri_status status = remember(run, &before, error);
+    enum tri_status status = save_before_sweep(run, &before, error);
     run->n_schedules++;
     run->place.round = 0;
     status = status ? status : par_sweep(run, partition, done, error);
-    note_size(run);
+    update_most_live(run);
     if (!status && !*done) {
-        go_back(run, &before);
+        undo_sweep(run, &before);
         run->n_schedules--;
     }
     free(before.worklist.item);
@@ -259,7 +259,7 @@ static enum tri_status fail_without_scratch(const struct par_run *run, double tr
 
 /* Called if the whole mesh does not fit in memory. Sweeps it if no step follows this schedule and the sink can begin
  * again. If the sweep is impossible, or leaves work, the mesh is moved to files as it grows. */
-static enum tri_status leave_memory(struct par_run *run, const struct par_partition *partition,
+static enum tri_status sweep_or_park(struct par_run *run, const struct par_partition *partition,
                                     struct tri_error *error)
 {
     const struct par_options *options = run->asked.options;
@@ -279,7 +279,7 @@ static enum tri_status leave_memory(struct par_run *run, const struct par_partit
 }
 
 /* Refines the rest of a mesh in memory by one call, in the order of the worklist, which does not depend on ids. */
-static enum tri_status refine_left(struct par_run *run, struct tri_error *error)
+static enum tri_status refine_worklist_rest(struct par_run *run, struct tri_error *error)
 {
     struct tri_refine_hooks hooks = par_hooks(run);
     hooks.worklist = run->worklist.item;
@@ -291,7 +291,7 @@ static enum tri_status refine_left(struct par_run *run, struct tri_error *error)
 }
 
 /* Ends a schedule by a sequential call for the triangles that no block could refine. */
-static enum tri_status finish_rounds(struct par_schedule *s, struct tri_error *error)
+static enum tri_status refine_left_over(struct par_schedule *s, struct tri_error *error)
 {
     struct par_run *run = s->run;
     const double began = tri_seconds();
@@ -301,7 +301,7 @@ static enum tri_status finish_rounds(struct par_schedule *s, struct tri_error *e
     if (s->is_whole)
         status = offer_checkpoint(run, false, error);
     if (!status)
-        status = run->ranks ? par_refine_rest_on_ranks(run, error) : refine_left(run, error);
+        status = run->ranks ? par_refine_rest_on_ranks(run, error) : refine_worklist_rest(run, error);
     run->report->seconds_last += tri_seconds() - began;
     return status;
 }
@@ -315,7 +315,7 @@ static enum tri_status close_schedule(struct par_schedule *s, enum tri_status st
     if (run->ranks)
         return status;
     const bool is_last = s->is_whole && !par_is_of_sizes(run->place.next) && !run->asked.options->by_block;
-    enum tri_status closed = leave_no_gaps(run, !status && is_last, error);
+    enum tri_status closed = close_gaps(run, !status && is_last, error);
     par_forget_deferred(run->report);
     return status ? status : closed;
 }
@@ -352,7 +352,7 @@ static enum tri_status run_schedule(struct par_run *run, const struct tri_qualit
             run->report->deferred += run->report->total.fenced; /* close_schedule clears it in the total */
     }
     if (!status && s.left > 0)
-        status = finish_rounds(&s, error);
+        status = refine_left_over(&s, error);
     return close_schedule(&s, status, error);
 }
 
@@ -375,8 +375,8 @@ static enum tri_status begin_schedule(struct par_run *run, const struct tri_qual
         par_partition_free(&run->cells);
         status = par_partition_copy(&run->cells, partition, error);
     }
-    if (!status && run->place.next != PAR_BOUNDS_WHOLE && is_too_much(run, partition->estimate))
-        status = leave_memory(run, partition, error);
+    if (!status && run->place.next != PAR_BOUNDS_WHOLE && exceeds_memory(run, partition->estimate))
+        status = sweep_or_park(run, partition, error);
     if (status || run->place.next == PAR_END)
         return status;
     par_go(run, is_of_sizes ? PAR_SIZES_PHASE : PAR_BOUNDS_PHASE);
@@ -417,7 +417,7 @@ static enum tri_status schedule_level(struct par_run *run, const struct tri_qual
         return status;
     run->report->levels = level + 1 > run->report->levels ? level + 1 : run->report->levels;
     run->place.level = level;
-    par_tell(run, 0);
+    par_report_phase(run, 0);
     if (par_areas_decide(run, quality, estimate, cell)) {
         status = prerefine_uniform(run, quality, cell, level, error);
         began = tri_seconds();
@@ -445,7 +445,7 @@ static double estimate_of(struct par_run *run, const struct tri_quality *quality
 }
 
 /* Runs a sequential call, limited to the points of about this many triangles. *done: no work is left. */
-static enum tri_status refine_a_little(struct par_run *run, const struct tri_quality *quality,
+static enum tri_status refine_first_points(struct par_run *run, const struct tri_quality *quality,
                                        double triangles, bool *done, struct tri_error *error)
 {
     struct tri_quality options = *quality;
@@ -474,7 +474,7 @@ static enum tri_status refine_level(struct par_run *run, const struct tri_qualit
     double large = cell * (level == 0 ? PAR_FEWEST_CELLS : PAR_FEWEST_COARSE_CELLS);
     if (estimate >= large && sure < large) {
         bool done;
-        enum tri_status status = refine_a_little(run, quality, large * PAR_A_LITTLE, &done, error);
+        enum tri_status status = refine_first_points(run, quality, large * PAR_A_LITTLE, &done, error);
         if (status || done)
             return status;
         estimate = estimate_of(run, quality, &sure);
@@ -507,12 +507,12 @@ static enum tri_status order_work(struct par_run *run, const struct tri_quality 
 
 /* Runs the schedule for all bounds after the one for sizes, on the same cells. On ranks, no process holds the whole
  * mesh now, so cells cannot be cut again. Triangles are small against the cells, so no coarse mesh is needed. */
-static enum tri_status refine_again(struct par_run *run, const struct tri_quality *quality, struct tri_error *error)
+static enum tri_status refine_angles(struct par_run *run, const struct tri_quality *quality, struct tri_error *error)
 {
     double began = tri_seconds(), sure;
     if (!run->ranks && !run->asked.options->scratch && run->asked.options->memory > 0) {
         double estimate = estimate_of(run, quality, &sure);
-        if (is_too_much(run, estimate))
+        if (exceeds_memory(run, estimate))
             return fail_without_scratch(run, estimate, error);
     }
     enum tri_status status = order_work(run, quality, error);
@@ -525,7 +525,7 @@ static enum tri_status refine_to(struct par_run *run, const struct tri_quality *
 {
     if (par_is_phase(run->place.next) || par_is_rest(run->place.next))
         return run_schedule(run, quality, &run->cells, true, error);
-    return run->cells.x ? refine_again(run, quality, error) : refine_level(run, quality, 0, error);
+    return run->cells.x ? refine_angles(run, quality, error) : refine_level(run, quality, 0, error);
 }
 
 /* Refines for sizes alone, with an easy bound on angles; the angles follow on a mesh of nearly uniform size. In a mesh
@@ -584,7 +584,7 @@ static enum tri_status hand_out(struct par_run *run, struct tri_error *error)
 }
 
 /* Hands out the mesh, unless a sweep has done so. status: of the previous steps; ranks exchange their statuses. */
-static enum tri_status deliver(struct par_run *run, enum tri_status status, struct tri_error *error)
+static enum tri_status hand_out_rest(struct par_run *run, enum tri_status status, struct tri_error *error)
 {
     if (!status && run->place.next < PAR_HAND_OUT)
         par_go(run, PAR_HAND_OUT);
@@ -592,7 +592,7 @@ static enum tri_status deliver(struct par_run *run, enum tri_status status, stru
         status = par_ranks_hand_out(run, status, error);
     } else if (!status && run->place.next != PAR_END) {
         status = offer_checkpoint(run, tri_wants_smoothing(run->asked.quality), error);
-        let_stop(run);
+        allow_stop_in_steps(run);
         status = status ? status : par_smooth(run, error); /* the state holds the mesh before smoothing */
         status = !status && run->asked.options->sink ? hand_out(run, error) : status;
     }
@@ -610,7 +610,7 @@ static void clean_up(struct par_run *run)
     report->parked = run->park ? par_park_bytes(run->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
-    let_stop(run);
+    allow_stop_in_steps(run);
     if (options->checkpoint)
         options->checkpoint->stop = NULL; /* it may belong to the park, which is closed here */
     if (options->park)
@@ -639,7 +639,7 @@ static enum tri_status refine_and_deliver(struct par_run *run, bool sequential, 
     if (sequential)
         run->report->seconds_last += tri_seconds() - began;
     run->bounds = *run->asked.quality;
-    return deliver(run, status, error);
+    return hand_out_rest(run, status, error);
 }
 
 /* Checks that all ranks begin with the same mesh and settings; otherwise they would wait for each other forever. */
@@ -668,11 +668,11 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_quality *qual
     struct par_run run = {.asked = {quality, options, {run_timed, &timed}, mesh->n_vertices}, .mesh = mesh,
                           .report = report, .bounds = *quality};
     bool sequential = must_be_sequential(quality, options);
-    bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE &&
+    bool may_be_swept = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE &&
                      !tri_wants_smoothing(quality);
     enum tri_status status = tri_refine_prepare(mesh, &run.asked.executor, error);
     status = status ? status : tri_ask_lengths(mesh, quality->lengths, &run.asked.executor, error);
-    status = status || can_sweep ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);
+    status = status || may_be_swept ? status : tri_refine_check(mesh, quality, &run.asked.executor, error);
     status = check_ranks(&run, status, error);
     if (!status && options->memory > 0 && (options->scratch || !options->sink)) /* otherwise a sweep limits memory */
         status = par_park_open(&run.park, mesh, options->sink || options->park ? options->scratch : NULL,

@@ -78,9 +78,9 @@ struct par_options {
                                     the whole mesh and rank 0 hands out all tiles. The caller must call par_agree
                                     afterwards. NULL: one process */
     unsigned shuffle;        /* for tests: not 0: blocks start in an order drawn from this seed */
-    void (*went)(void *user, int from, int to); /* for tests: called at each step from one enum par_next to another;
+    void (*on_step)(void *user, int from, int to); /* for tests: called at each step from one enum par_next to another;
                                                    NULL: not called */
-    void *went_user;         /* passed to went */
+    void *on_step_user;         /* passed to on_step */
     int32_t tight_room;      /* for tests: not 0: blocks get room for this many triangles at a time, and therefore pause
                                 often */
     void (*progress)(void *user, const struct par_place *place); /* called on the calling thread only; NULL: not

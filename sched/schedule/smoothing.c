@@ -66,7 +66,7 @@ static void smooth_block(void *context, size_t block)
 
 /* Called after a phase. Gathers the counts, and the vertices that the blocks left, as the list of the next phase.
  * Returns the first error. */
-static enum tri_status gather(struct smoothing *s, struct tri_error *error)
+static enum tri_status gather_left_vertices(struct smoothing *s, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     s->n = 0;
@@ -93,7 +93,7 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
         par_deal_add_up(&s->deal);
         tri_execute(executor, s->deal.shares, deal_share, s);
         tri_execute(executor, (size_t)s->deal.n_tiles, smooth_block, s);
-        status = gather(s, error);
+        status = gather_left_vertices(s, error);
     }
     par_deal_free(&s->deal);
     return status;
@@ -153,7 +153,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
 }
 
 /* Numbers the mesh by its tiles. If the memory limit does not allow this, the mesh first moves to files. */
-static enum tri_status number(struct par_run *run, struct tri_error *error)
+static enum tri_status number_smoothed(struct par_run *run, struct tri_error *error)
 {
     struct tri_mesh *mesh = run->mesh;
     const double bytes = par_number_bytes(mesh->n_triangles, mesh->n_vertices, mesh->n_subs);
@@ -169,7 +169,7 @@ enum tri_status par_smooth(struct par_run *run, struct tri_error *error)
         return tri_smooth_all(run->mesh, run->asked.quality, error);
     /* With by_block, the mesh has not been numbered yet, but the order of smoothing depends on its numbers. Afterwards
      * it is numbered by the new positions. */
-    enum tri_status status = run->asked.options->by_block ? number(run, error) : TRI_OK;
+    enum tri_status status = run->asked.options->by_block ? number_smoothed(run, error) : TRI_OK;
     status = status ? status : smooth_by_blocks(run, error);
-    return status ? status : number(run, error);
+    return status ? status : number_smoothed(run, error);
 }

@@ -41,26 +41,26 @@ struct par_crew {
     struct tri_thread *thread[]; /* [n_started] the threads */
 };
 
-static _Thread_local bool works; /* this thread is running tasks of some team */
+static _Thread_local bool is_working; /* this thread is running tasks of some team */
 
-bool par_team_works(void) { return works; }
+bool par_team_works(void) { return is_working; }
 
 /* Runs tasks of the job until none is left to begin. Called by the caller and by all threads that have joined. Calls
  * may be nested, so the old value of the flag is restored. */
-static void work(struct job *job)
+static void work_on_job(struct job *job)
 {
-    const bool before = works;
-    works = true;
+    const bool before = is_working;
+    is_working = true;
     for (size_t i; (i = atomic_fetch_add_explicit(&job->next, 1, memory_order_relaxed)) < job->n;)
         job->task(job->context, i);
-    works = before;
+    is_working = before;
 }
 
 /* --- threads of the crew */
 
 /* Waits for a job other than the last one that this thread has joined, and joins it. Returns NULL at the end of the
  * team. *last: the number of that job. */
-static struct job *join(struct par_crew *crew, uint64_t *last)
+static struct job *join_job(struct par_crew *crew, uint64_t *last)
 {
     tri_monitor_enter(crew->gate);
     while (!crew->is_over && (!crew->job || crew->opened == *last))
@@ -73,7 +73,7 @@ static struct job *join(struct par_crew *crew, uint64_t *last)
 }
 
 /* Leaves the job. The thread does not access the job afterwards; the last one wakes the caller. */
-static void leave(struct par_crew *crew)
+static void leave_job(struct par_crew *crew)
 {
     tri_monitor_enter(crew->door);
     if (++crew->left == crew->expected)
@@ -82,13 +82,13 @@ static void leave(struct par_crew *crew)
 }
 
 /* The main function of a helper thread: joins one job after the other until the end. */
-static void *serve(void *user)
+static void *run_helper(void *user)
 {
     struct par_crew *crew = user;
     uint64_t last = 0;
-    for (struct job *job; (job = join(crew, &last));) {
-        work(job);
-        leave(crew);
+    for (struct job *job; (job = join_job(crew, &last));) {
+        work_on_job(job);
+        leave_job(crew);
     }
     return NULL;
 }
@@ -101,7 +101,7 @@ static void *open_region(void *user)
     struct par_crew *crew = user;
 #pragma omp parallel num_threads(crew->size + 1)
     if (omp_get_thread_num() > 0) {
-        serve(crew);
+        run_helper(crew);
     } else {
         tri_monitor_enter(crew->end);
         while (!crew->is_over)
@@ -139,7 +139,7 @@ static struct par_crew *start_crew(int size)
     if (ready && (crew->thread[0] = tri_thread_start(open_region, crew)))
         crew->n_started = 1;
 #else
-    while (ready && crew->n_started < size && (crew->thread[crew->n_started] = tri_thread_start(serve, crew)))
+    while (ready && crew->n_started < size && (crew->thread[crew->n_started] = tri_thread_start(run_helper, crew)))
         crew->n_started++;
 #endif
     if (crew->n_started > 0)
@@ -187,7 +187,7 @@ static void run_on_team(void *self, size_t n_tasks, void (*task)(void *context, 
         team->crew = start_crew(team->threads - 1);
     if (team->crew)
         open_job(team->crew, &job);
-    work(&job);
+    work_on_job(&job);
     if (team->crew)
         close_job(team->crew);
 }
@@ -208,7 +208,7 @@ void par_team_end(struct par_team *team)
     tri_monitor_leave(crew->end);
     tri_monitor_wake(crew->gate);
     tri_monitor_leave(crew->gate);
-    /* Threads leave their loops when they see is_over. */
+    /* Threads leave_job their loops when they see is_over. */
     for (int i = 0; i < crew->n_started; i++)
         tri_thread_join(crew->thread[i]);
     free_crew(crew);

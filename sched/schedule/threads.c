@@ -27,8 +27,8 @@ static int default_threads(void)
         return omp_in_parallel() ? 1 : omp_get_max_threads();
 #endif
     const char *text = getenv("OMP_NUM_THREADS");
-    const long told = text ? strtol(text, NULL, 10) : 0;
-    return told <= 0 ? tri_processors() : told < PAR_MOST_THREADS ? (int)told : PAR_MOST_THREADS;
+    const long requested = text ? strtol(text, NULL, 10) : 0;
+    return requested <= 0 ? tri_processors() : requested < PAR_MOST_THREADS ? (int)requested : PAR_MOST_THREADS;
 }
 
 /* A team works with fewer threads if the system refuses some, so a test is needed only by callers that plan memory for

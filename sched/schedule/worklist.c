@@ -84,7 +84,7 @@ struct finding {
 
 /* Closes the gaps between the bad triangles of the shares. n: number of triangles of the mesh. Returns the number of
  * bad triangles. */
-static int32_t gather(const struct finding *f, int32_t n)
+static int32_t close_gaps(const struct finding *f, int32_t n)
 {
     int32_t filled = 0;
     for (size_t share = 0; share < tri_shares(n); share++) {
@@ -99,17 +99,17 @@ static int32_t gather(const struct finding *f, int32_t n)
 /* Merges the old worklist entries of the range into found, which holds n new bad triangles. An entry is dropped if its
  * triangle has been replaced since, which its generation number shows. Both lists are ascending, and so is the result.
  * Merging runs from the end, so that it works in place. Returns the new number. */
-static int32_t add_old(const struct finding *f, struct tri_range range, tri_triangle_id *found, int32_t n)
+static int32_t merge_old(const struct finding *f, struct tri_range range, tri_triangle_id *found, int32_t n)
 {
     const struct tri_triangle *tri = f->mesh->tri;
     int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
     for (int32_t i = begin; i < end; i++)
-        all += tri[f->worklist->item[i]].life == 0;
+        all += tri[f->worklist->item[i]].generation == 0;
     /* Merge from the end, so that no entry is overwritten before it has been moved. */
     for (int32_t i = end - 1, at = all; i >= begin; i--) {
         tri_triangle_id old = f->worklist->item[i];
         assert(i == begin || f->worklist->item[i - 1] < old); /* ascending, without duplicates */
-        if (tri[old].life != 0)
+        if (tri[old].generation != 0)
             continue;
         while (n > 0 && found[n - 1] > old)
             found[--at] = found[--n];
@@ -120,14 +120,14 @@ static int32_t add_old(const struct finding *f, struct tri_range range, tri_tria
 
 /* Finds the bad triangles of a range if the old worklist is known. The previous call set the generation number of every
  * triangle to 0, so only triangles with another number are new and must be judged. */
-static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
+static int32_t find_new_bad(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
     int32_t n = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++)
-        if (f->mesh->tri[t].life != 0)
+        if (f->mesh->tri[t].generation != 0)
             found[n++] = t;
     n = tri_find_work_among(f->mesh, f->bounds, found, n, found);
-    return add_old(f, range, found, n);
+    return merge_old(f, range, found, n);
 }
 
 /* Returns the square of the largest circumradius of n triangles. */
@@ -148,11 +148,11 @@ static void fill_share(void *context, size_t share)
     struct finding *f = context;
     struct tri_range range = tri_share(share, f->mesh->n_triangles);
     tri_triangle_id *found = f->found + range.first;
-    f->n[share] = f->worklist ? find_newborn(f, range, found)
+    f->n[share] = f->worklist ? find_new_bad(f, range, found)
                           : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
     f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
     for (tri_triangle_id t = range.first; t < range.last; t++)
-        f->mesh->tri[t].life = 0;
+        f->mesh->tri[t].generation = 0;
 }
 
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
@@ -169,7 +169,7 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
     for (size_t share = 0; share < tri_shares(n); share++)
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(worklist->item);
-    *worklist = (struct par_ids){f.found, gather(&f, n), n + 1};
+    *worklist = (struct par_ids){f.found, close_gaps(&f, n), n + 1};
     assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;

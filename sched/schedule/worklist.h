@@ -49,9 +49,9 @@ static inline bool par_is_in(const struct par_triangle_set *set, tri_triangle_id
 
 /* Fills the worklist with all triangles that violate the bounds, in ascending order of their ids. *radius: the largest
  * circumradius among them. known: the worklist already holds the bad triangles of the mesh as it was after the previous
- * call, so that only triangles created since need to be judged. Resets the generation number of every triangle (struct
- * tri_triangle.life) to 0, by which the next call recognises new triangles. TRI_NO_MEMORY: the worklist is unchanged.
- * O(triangles). */
+ * call, so that only triangles created since need to be judged. Resets the generation of every triangle
+ * (tri_triangle.generation) to 0, by which the next call recognises new triangles. TRI_NO_MEMORY: the worklist is
+ * unchanged. O(triangles). */
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
                                   const struct tri_quality *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error);

@@ -34,7 +34,7 @@ struct par_park {
     struct tri_stop stop;       /* the stop function of the mesh while it may be parked: checks memory, asks `outer` */
     struct tri_executor inner;  /* runs the tasks of par_park_executor */
     struct tri_thread *watch;   /* thread that checks memory periodically; NULL: not started */
-    atomic_bool away, over;     /* the arrays are in files; the thread `watch` must end */
+    atomic_bool is_moved, over;     /* the arrays are in files; the thread `watch` must end */
 };
 
 /* --- memory use */
@@ -47,7 +47,7 @@ static double resident(double *of_files)
 }
 
 /* Updates park->others. */
-static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
+static void update_others(struct par_park *park, const struct tri_mesh *mesh)
 {
     const double others = resident(NULL) - (mesh->storage ? 0 : (double)tri_mesh_bytes_used(mesh));
     park->others = others > park->others ? others : park->others;
@@ -57,7 +57,7 @@ static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
 static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
-    look_at_others(park, mesh);
+    update_others(park, mesh);
     return (double)bytes + park->others + fmax(PAR_TO_COME * park->memory, PAR_TO_COME_BYTES) <= park->memory;
 }
 
@@ -164,9 +164,9 @@ static void unmap_pages(struct par_park *park)
 }
 
 /* Evicts all pages of the files if they fill too large a share of the memory that is left for them. */
-static void look(struct par_park *park)
+static void evict_if_needed(struct par_park *park)
 {
-    if (!atomic_load_explicit(&park->away, memory_order_relaxed))
+    if (!atomic_load_explicit(&park->is_moved, memory_order_relaxed))
         return;
     double files;
     const double all = resident(&files), ours = files - park->files, left = park->memory - (all - ours);
@@ -178,37 +178,37 @@ static void look(struct par_park *park)
 static bool is_asked(void *user)
 {
     struct par_park *park = user;
-    look(park);
+    evict_if_needed(park);
     return tri_stop_is_asked(park->outer);
 }
 
 /* Tasks of an executor that checks memory before each task. */
-struct looking {
+struct evicting_tasks {
     struct par_park *park;                     /* whose memory is checked */
     void (*task)(void *context, size_t index); /* the task to run */
     void *context;                             /* passed to `task` */
 };
 
 /* A task of the executor: checks memory, then runs the caller's task. */
-static void look_and_do(void *context, size_t index)
+static void evict_and_run(void *context, size_t index)
 {
-    const struct looking *l = context;
-    look(l->park);
+    const struct evicting_tasks *l = context;
+    evict_if_needed(l->park);
     l->task(l->context, index);
 }
 
 /* The run function of the executor. */
-static void run_looking(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+static void run_evicting(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     struct par_park *park = self;
-    struct looking l = {park, task, context};
-    tri_execute(&park->inner, n_tasks, look_and_do, &l);
+    struct evicting_tasks l = {park, task, context};
+    tri_execute(&park->inner, n_tasks, evict_and_run, &l);
 }
 
 struct tri_executor par_park_executor(struct par_park *park, struct tri_executor inner)
 {
     park->inner = inner;
-    return (struct tri_executor){run_looking, park};
+    return (struct tri_executor){run_evicting, park};
 }
 
 /* A thread that checks memory periodically, for loops that do not poll the stop function. */
@@ -216,7 +216,7 @@ static void *watch(void *user)
 {
     struct par_park *park = user;
     while (!atomic_load(&park->over)) {
-        look(park);
+        evict_if_needed(park);
         (void)tri_pause(1e-9 * PAR_LOOK_NANOSECONDS);
     }
     return NULL;
@@ -225,7 +225,7 @@ static void *watch(void *user)
 /* --- moving arrays to files */
 
 /* Called if the arrays exceed the limit. Moves them to files, or fails if there is no folder. */
-static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status move_to_files(void *user, struct tri_mesh *mesh, struct tri_error *error)
 {
     struct par_park *park = user;
     assert(!mesh->storage);
@@ -241,7 +241,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
         drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
     tri_memory_trim();
-    atomic_store(&park->away, true);
+    atomic_store(&park->is_moved, true);
     if (!status && !park->watch)
         park->watch = tri_thread_start(watch, park);
     if (!status && !park->watch)
@@ -256,7 +256,7 @@ enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, si
         return TRI_OK;
     tri_memory_trim(); /* memory that was freed since must not count as in use */
     park->others = 0;
-    return allows(park, mesh, all) ? TRI_OK : leave(park, mesh, error);
+    return allows(park, mesh, all) ? TRI_OK : move_to_files(park, mesh, error);
 }
 
 /* --- opening and closing */
@@ -277,7 +277,7 @@ enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, con
     (void)tri_memory_used(&p->files);
     p->storage = (struct tri_storage){
         .reserve = reserve, .fill = fill, .extra = extra, .extra_free = extra_free, .user = p};
-    p->bound = (struct tri_bound){allows, leave, p};
+    p->bound = (struct tri_bound){allows, move_to_files, p};
     for (int k = 0; k < SHEETS; k++)
         p->sheet[k].file = TRI_NO_FILE;
     p->outer = mesh->stop;

@@ -17,7 +17,7 @@
 static _Thread_local char this_thread; /* its address identifies a thread */
 
 /* A running pipeline. */
-struct works {
+struct pipeline_state {
     const struct par_pipeline *p; /* the pipeline */
     const void *caller;          /* address of the caller's this_thread */
     struct tri_monitor *monitor; /* protects the fields below */
@@ -30,7 +30,7 @@ struct works {
 typedef enum tri_status (*step_call)(void *context, int32_t i, int32_t slot, struct tri_error *error);
 
 /* Calls `make` or `take` for item i. Releases the lock during the call. */
-static void step(struct works *w, step_call call, int32_t i)
+static void step(struct pipeline_state *w, step_call call, int32_t i)
 {
     struct tri_error error = {0};
     tri_monitor_leave(w->monitor);
@@ -44,25 +44,25 @@ static void step(struct works *w, step_call call, int32_t i)
 }
 
 /* Returns whether this thread can start an item: a slot is free. */
-static bool may_begin(const struct works *w)
+static bool may_begin(const struct pipeline_state *w)
 {
     return w->begun < w->p->n && w->begun < w->taken + w->p->n_slots;
 }
 
 /* Returns whether this thread can consume the next item: it is ready, and this is the caller's thread. */
-static bool may_take(const struct works *w)
+static bool may_consume(const struct pipeline_state *w)
 {
     return w->taken < w->begun && w->made[w->taken % w->p->n_slots] && w->caller == &this_thread;
 }
 
-static void make_next(struct works *w)
+static void make_next(struct pipeline_state *w)
 {
     int32_t i = w->begun++;
     step(w, w->p->make, i);
     w->made[i % w->p->n_slots] = true;
 }
 
-static void take_next(struct works *w)
+static void consume_next(struct pipeline_state *w)
 {
     int32_t i = w->taken;
     step(w, w->p->take, i);
@@ -73,12 +73,12 @@ static void take_next(struct works *w)
 /* A worker: consumes or makes items until all have been consumed or a call has failed. */
 static void work(void *context, size_t worker)
 {
-    struct works *w = context;
+    struct pipeline_state *w = context;
     (void)worker;
     tri_monitor_enter(w->monitor);
     while (!w->status && w->taken < w->p->n) {
-        if (may_take(w))
-            take_next(w);
+        if (may_consume(w))
+            consume_next(w);
         else if (may_begin(w))
             make_next(w);
         else {
@@ -93,7 +93,7 @@ static void work(void *context, size_t worker)
 enum tri_status par_pipeline_run(const struct par_pipeline *pipeline, const struct tri_executor *executor,
                                  struct tri_error *error)
 {
-    struct works w = {.p = pipeline, .caller = &this_thread, .error = error};
+    struct pipeline_state w = {.p = pipeline, .caller = &this_thread, .error = error};
     assert(pipeline->n_slots > 0 && pipeline->n_threads > 0);
     w.made = calloc((size_t)pipeline->n_slots, sizeof *w.made);
     w.monitor = tri_monitor_new();

@@ -45,7 +45,7 @@ static struct par_queued *next_of(struct par_queue *q)
 }
 
 /* The thread: passes tiles to the target sink. */
-static void *hand_on(void *user)
+static void *pass_tiles_on(void *user)
 {
     struct par_queue *q = user;
     struct tri_error error = {0};
@@ -70,7 +70,7 @@ static void *hand_on(void *user)
 }
 
 /* Ends the thread after all queued tiles have been passed on. drop: after the current tile; the others are dropped. */
-static void finish(struct par_queue *q, bool drop)
+static void end_thread(struct par_queue *q, bool drop)
 {
     if (!q->thread)
         return;
@@ -89,7 +89,7 @@ static void finish(struct par_queue *q, bool drop)
 /* --- the sink */
 
 /* Returns the status of the target sink so far. */
-static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
+static enum tri_status status_so_far(const struct par_queue *q, struct tri_error *error)
 {
     if (q->status && error)
         *error = q->error;
@@ -100,12 +100,12 @@ static enum tri_status tell(const struct par_queue *q, struct tri_error *error)
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct par_queue *q = user;
-    finish(q, true);
+    end_thread(q, true);
     q->status = TRI_OK;
     q->n_attributes = stream->n_attributes;
     enum tri_status status = q->to->begin ? q->to->begin(q->to->user, stream, error) : TRI_OK;
     if (!status)
-        q->thread = tri_thread_start(hand_on, q);
+        q->thread = tri_thread_start(pass_tiles_on, q);
     return status;
 }
 
@@ -115,7 +115,7 @@ static enum tri_status add(struct par_queue *q, struct par_queued *copy, struct 
     tri_monitor_enter(q->monitor);
     while (!q->status && q->bytes > 0 && q->bytes + copy->bytes > q->most_bytes)
         tri_monitor_wait(q->monitor);
-    const enum tri_status status = tell(q, error);
+    const enum tri_status status = status_so_far(q, error);
     if (!status) {
         *(q->last ? &q->last->next : &q->first) = copy;
         q->last = copy;
@@ -144,8 +144,8 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 static enum tri_status end(void *user, struct tri_error *error)
 {
     struct par_queue *q = user;
-    finish(q, false);
-    enum tri_status status = tell(q, error);
+    end_thread(q, false);
+    enum tri_status status = status_so_far(q, error);
     return status || !q->to->end ? status : q->to->end(q->to->user, error);
 }
 
@@ -161,6 +161,6 @@ struct tri_sink par_queue_sink(struct par_queue *queue) { return (struct tri_sin
 
 void par_queue_free(struct par_queue *queue)
 {
-    finish(queue, true);
+    end_thread(queue, true);
     tri_monitor_free(queue->monitor);
 }

@@ -89,7 +89,7 @@ static void free_ahead(struct ahead *ahead)
 }
 
 /* Merges the triangles that wait for an odd column into the worklist. False: no memory. */
-static bool give_ahead(const struct ahead *ahead, struct par_run *run, int32_t odd)
+static bool merge_ahead(const struct ahead *ahead, struct par_run *run, int32_t odd)
 {
     int32_t i = odd / 2;
     if (i >= ahead->n_odd)
@@ -155,7 +155,7 @@ static void count_remain(struct par_run *run, double x)
 }
 
 /* Writes the counts to the report. */
-static void settle_remain(struct par_run *run)
+static void report_remain(struct par_run *run)
 {
     const struct tri_refine_report report = report_of(run);
     tri_settle_counts(&report, run->remain.counted, run->report->remain);
@@ -181,7 +181,7 @@ struct par_tiles par_tiles_of(const struct par_run *run, const struct par_partit
 
 /* Returns whether the worklist has a bad triangle left of x, where all blocks have run. Entries of the worklist are
  * judged again, because the id of a triangle may meanwhile belong to a good one. */
-static bool is_left_behind(const struct par_run *run, double x)
+static bool is_work_left(const struct par_run *run, double x)
 {
     const struct tri_mesh *mesh = run->mesh;
     const struct tri_criterion criterion = tri_criterion_for(mesh, &run->bounds);
@@ -202,7 +202,7 @@ static enum tri_status finish_column(struct par_run *run, struct par_tiles *tile
                                      struct tri_error *error)
 {
     double began = tri_seconds(), end = par_fence(tiles->partition, column, 0).x_max;
-    *left = is_left_behind(run, end);
+    *left = is_work_left(run, end);
     enum tri_status status = *left ? TRI_OK : par_park_expect(run->park, run->mesh, par_tiles_bytes(tiles), error);
     if (!status && !*left && run->remain.is_on)
         count_remain(run, end);
@@ -234,11 +234,11 @@ static enum tri_status refine_column(void *self, struct tri_error *error)
     const struct par_turn turn = {.partition = s->tiles.partition, .only = run->place.phase < 2 ? odd : odd - 1};
     enum tri_status status = TRI_OK;
     if (run->place.next == PAR_COLUMN) {
-        if (!give_ahead(&s->ahead, run, odd))
+        if (!merge_ahead(&s->ahead, run, odd))
             return no_memory(error);
         par_go(run, PAR_COLUMN_PHASE);
     }
-    par_tell(run, run->place.phase + 1);
+    par_report_phase(run, run->place.phase + 1);
     if (turn.only < turn.partition->n_columns)
         status = checkpoint ? par_state_phase(checkpoint, run, turn, &s->tiles, error) : par_phase(run, &turn, error);
     run->place.phase += !status;
@@ -306,7 +306,7 @@ enum tri_status par_sweep(struct par_run *run, const struct par_partition *parti
     if (!status && !s.left)
         status = end_tiles(run, &s.tiles, error);
     if (!status && run->remain.is_on)
-        settle_remain(run);
+        report_remain(run);
     run->remain.is_on = false;
     run->place.column = 0;
     free_ahead(&s.ahead);

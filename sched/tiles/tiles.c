@@ -29,9 +29,9 @@ struct par_column {
     int64_t first_vertex;           /* number of the first vertex in the column */
     double begin, end;              /* x range of the column; all triangles left of `end` are final */
     struct par_finds vertices, triangles, subs; /* the ids that belong to the column */
-    struct par_ids straddling[PAR_FIND_SHARES]; /* triangles of later columns that have a numbered corner */
+    struct par_ids later_triangles[PAR_FIND_SHARES]; /* triangles of later columns that have a numbered corner */
     bool no_memory[PAR_FIND_SHARES]; /* an allocation failed in this share */
-    bool is_short; /* the list of vertices has been freed; only the number of vertices in each row is known */
+    bool is_list_freed; /* the list of vertices has been freed; only the number of vertices in each row is known */
 };
 
 /* --- finding the items of the column */
@@ -163,7 +163,7 @@ static void find_triangles(void *context, size_t share)
             const int64_t first = c->first_vertex + c->vertices.start[row];
             par_find_noted(&finder, t, row, par_final_make(&mesh->tri[t], number, first, mesh->n_input));
         } else if (row == LATER && has_number(c, v, number)) {
-            memory = par_ids_add(&c->straddling[share], t) && memory;
+            memory = par_ids_add(&c->later_triangles[share], t) && memory;
         }
     }
     c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
@@ -215,7 +215,7 @@ static void place_kept(void *context, size_t share)
 }
 
 /* Locates the kept vertices, once. False: no memory. */
-static bool know_kept(struct par_tiles *tiles)
+static bool locate_kept(struct par_tiles *tiles)
 {
     if (tiles->kept_tile)
         return true;
@@ -255,7 +255,7 @@ bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     assert(tiles->n_kept <= tiles->mesh->n_vertices && tiles->mesh->n_vertices <= now);
-    if (!know_kept(tiles))
+    if (!locate_kept(tiles))
         return false;
     if (now <= before)
         return true;
@@ -346,9 +346,9 @@ static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
     bool memory = true;
     *stay = (struct par_ids){0};
     for (int s = 0; s < PAR_FIND_SHARES; s++)
-        for (int32_t i = 0; i < c->straddling[s].n; i++)
+        for (int32_t i = 0; i < c->later_triangles[s].n; i++)
             for (int k = 0; k < 3; k++) {
-                tri_vertex_id v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
+                tri_vertex_id v = tiles->mesh->tri[c->later_triangles[s].item[i]].v[k];
                 if (v >= tiles->n_kept && tiles->number[v] >= 0)
                     memory = memory && par_ids_add(stay, v);
             }
@@ -358,7 +358,7 @@ static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
 
 /* Removes the vertices of an ascending list from the mesh, except those in `stay`. Afterwards the list has only the
  * removed ones. */
-static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay, struct par_ids *list)
+static void remove_listed_vertices(struct par_tiles *tiles, const struct par_ids *stay, struct par_ids *list)
 {
     int32_t left = 0, k = list->n > 0 ? par_ids_find(stay, list->item[0]) : 0;
     for (int32_t i = 0; i < list->n; i++) {
@@ -375,19 +375,19 @@ static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay,
 }
 
 /* The removal of a column. */
-struct leaving {
+struct column_removal {
     struct par_column *column;  /* the column to remove */
     const struct par_ids *stay; /* vertices that stay in the mesh, ascending */
 };
 
 /* Removes the vertices and subsegments of one share from the mesh, and converts all its lists to runs of free ids.
  * Triangles were removed when their tiles were filled. */
-static void leave(void *context, size_t share)
+static void remove_share(void *context, size_t share)
 {
-    const struct leaving *l = context;
+    const struct column_removal *l = context;
     struct par_column *c = l->column;
     struct par_ids *subs = &c->subs.found[share];
-    let_vertices_go(c->tiles, l->stay, &c->vertices.found[share]);
+    remove_listed_vertices(c->tiles, l->stay, &c->vertices.found[share]);
     for (int32_t i = 0; i < subs->n; i++)
         par_room_mark_sub(c->tiles->mesh, subs->item[i]);
     par_finds_to_runs(&c->vertices.found[share]);
@@ -396,16 +396,16 @@ static void leave(void *context, size_t share)
 }
 
 /* Removes the column from the mesh and adds its ids to *spare. False: no memory. */
-static bool let_go(struct par_column *c, struct par_room *spare)
+static bool remove_column(struct par_column *c, struct par_room *spare)
 {
     struct par_ids stay, *held = &c->tiles->held;
     if (!corners_that_stay(c, &stay)) {
         free(stay.item);
         return false;
     }
-    struct leaving leaving = {c, &stay};
-    tri_execute(c->tiles->executor, PAR_FIND_SHARES, leave, &leaving);
-    let_vertices_go(c->tiles, &stay, held);
+    struct column_removal column_removal = {c, &stay};
+    tri_execute(c->tiles->executor, PAR_FIND_SHARES, remove_share, &column_removal);
+    remove_listed_vertices(c->tiles, &stay, held);
     par_finds_to_runs(held);
     bool memory = par_finds_add_runs(held, &spare->ranges[PAR_VERTICES]) &&
                   par_finds_give(&c->vertices, &spare->ranges[PAR_VERTICES]) &&
@@ -445,19 +445,19 @@ static enum tri_status number_column(struct par_column *c, struct tri_error *err
 
 /* Frees the column's lists of vertices until it is handed out. If all columns are numbered first, their lists would
  * otherwise contain all vertices of the mesh. */
-static void shorten(struct par_column *c)
+static void free_vertex_lists(struct par_column *c)
 {
     par_finds_forget(&c->vertices);
-    c->is_short = true;
+    c->is_list_freed = true;
 }
 
-/* Restores the lists that `shorten` freed. False: no memory. */
-static bool lengthen(struct par_column *c)
+/* Restores the lists that `free_vertex_lists` freed. False: no memory. */
+static bool restore_vertex_lists(struct par_column *c)
 {
     c->vertices.item = malloc(((size_t)c->vertices.n + 1) * sizeof *c->vertices.item);
     if (c->vertices.item)
         tri_execute(c->tiles->executor, PAR_FIND_SHARES, find_numbered, c);
-    c->is_short = false;
+    c->is_list_freed = false;
     return c->vertices.item && memory_has_lasted(c);
 }
 
@@ -465,7 +465,7 @@ static bool lengthen(struct par_column *c)
 static enum tri_status hand_out_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
-    if (c->is_short && !lengthen(c))
+    if (c->is_list_freed && !restore_vertex_lists(c))
         return no_memory(error);
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
@@ -485,7 +485,7 @@ void par_column_free(struct par_column *c)
     par_finds_free(&c->triangles);
     par_finds_free(&c->subs);
     for (int s = 0; s < PAR_FIND_SHARES; s++)
-        free(c->straddling[s].item);
+        free(c->later_triangles[s].item);
     free(c);
 }
 
@@ -506,7 +506,7 @@ enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct
 {
     enum tri_status status = number_next(tiles, column, numbered, error);
     if (!status)
-        shorten(*numbered);
+        free_vertex_lists(*numbered);
     return status;
 }
 
@@ -514,7 +514,7 @@ enum tri_status par_tiles_hand_out(struct par_column *c, struct par_room *spare,
 {
     struct par_tiles *tiles = c->tiles;
     enum tri_status status = hand_out_column(c, error);
-    if (!status && !let_go(c, spare))
+    if (!status && !remove_column(c, spare))
         status = no_memory(error);
     tiles->n_triangles += c->triangles.n;
     tiles->n_segments += c->subs.n;

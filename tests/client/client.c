@@ -8,7 +8,7 @@
 #include "ptriangle/check.h"
 #include "ptriangle/files.h"
 
-static int passes(const struct tri_figure *mesh, const struct tri_figure *input, double max_area)
+static int is_valid(const struct tri_figure *mesh, const struct tri_figure *input, double max_area)
 {
     struct tri_demands demands = tri_no_demands();
     struct tri_verdict verdict;
@@ -17,15 +17,15 @@ static int passes(const struct tri_figure *mesh, const struct tri_figure *input,
     return tri_check_figure(mesh, input, &demands, &verdict, NULL) == TRI_OK && verdict.n_faults == 0;
 }
 
-static int judges(const struct tri_figure *square)
+static int check_two_triangles(const struct tri_figure *square)
 {
     static const int32_t good[6] = {0, 1, 2, 0, 2, 3}, folded[6] = {0, 1, 2, 0, 1, 3};
     struct tri_figure mesh = tri_no_figure();
     mesh.points = square->points;
     mesh.triangles = tri_ints_of(good, 2, 3);
-    int right = passes(&mesh, square, 0.5);
+    int right = is_valid(&mesh, square, 0.5);
     mesh.triangles = tri_ints_of(folded, 2, 3);
-    return right && !passes(&mesh, square, 0.5);
+    return right && !is_valid(&mesh, square, 0.5);
 }
 
 static int meshes(const struct tri_figure *square)
@@ -40,7 +40,7 @@ static int meshes(const struct tri_figure *square)
     tri_mesh_figure(mesh, &made);
     int right = tri_file_write("client_mesh", &made, 1, NULL) == TRI_OK &&
                 tri_file_read("client_mesh.ele", &read, NULL) == TRI_OK && read.triangles.n == made.triangles.n &&
-                read.segments.n == made.segments.n && passes(&read, square, 0.01) && !passes(&read, square, 0.001);
+                read.segments.n == made.segments.n && is_valid(&read, square, 0.01) && !is_valid(&read, square, 0.001);
     tri_file_free(&read);
     tri_mesh_delete(mesh);
     return right;
@@ -54,7 +54,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "client: %s\n", argc == 2 ? error.text : "one argument is needed, a .poly file");
         return EXIT_FAILURE;
     }
-    int right = square.points.n == 4 && judges(&square) && meshes(&square);
+    int right = square.points.n == 4 && check_two_triangles(&square) && meshes(&square);
     printf("client: %d points, %d segments: %s\n", (int)square.points.n, (int)square.segments.n,
            right ? "ok" : "wrong");
     tri_file_free(&square);

@@ -32,7 +32,7 @@ static int file_of(const uint8_t *data, size_t size, char name[32])
     return file;
 }
 
-static void heed(void *user, const char *file, int64_t line, const char *text)
+static void record_warning(void *user, const char *file, int64_t line, const char *text)
 {
     *(size_t *)user += strlen(file) + strlen(text) + (size_t)line;
 }
@@ -116,7 +116,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int files[2] = {file_of(b.at, first_size, first),
                     file_of(cut ? cut + 1 : b.end, cut ? (size_t)(b.end - cut - 1) : 0, second)};
     struct tri_read_options options = {.default_base = choice >> 3 & 1, .want_regions = choice >> 4 & 1,
-                                       .refining = choice >> 5 & 1, .warn = heed, .warn_user = &heard};
+                                       .refining = choice >> 5 & 1, .warn = record_warning, .warn_user = &heard};
     enum format format = (enum format)((choice & 7) % FORMATS);
     struct reading whole = read_as(format, first, second, &options);
     options.chunk_bytes = chunk + 1u;

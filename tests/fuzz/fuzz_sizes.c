@@ -42,7 +42,7 @@ static const struct tri_mesh *mesh(void)
     return &made;
 }
 
-static void ask(const struct tri_size_field *field)
+static void query_lengths(const struct tri_size_field *field)
 {
     const struct tri_sizes sizes = {.fields = field, .n = 1};
     struct tri_lengths *lengths;
@@ -75,7 +75,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             require(f->triangles.at[i] >= 0 && f->triangles.at[i] < f->points.n, "a corner is no point");
         for (int64_t i = 0; i < 2 * f->points.n; i++)
             require(isfinite(f->points.at[i]), "a coordinate is not finite");
-        ask(f);
+        query_lengths(f);
     }
     tri_size_file_free(&file);
     (void)unlink(name);

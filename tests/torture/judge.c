@@ -275,7 +275,7 @@ static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
 }
 
 /* Is this many points enough for a sequential call? */
-static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t points, double *asked,
+static bool is_enough_points(struct outcome *first, const struct tri_pslg *pslg, int64_t points, double *asked,
                      struct verdict *verdict)
 {
     struct tri_error error = {0};
@@ -302,9 +302,9 @@ static void judge_end(struct outcome *first, const struct tri_pslg *pslg, struct
     enum { AFFORDABLE = 300000 };
     double asked;
     enter(verdict, "seeing whether it ends");
-    if (suffices(first, pslg, AFFORDABLE, &asked, verdict))
+    if (is_enough_points(first, pslg, AFFORDABLE, &asked, verdict))
         return;
-    if (asked <= AFFORDABLE || !suffices(first, pslg, (int64_t)asked, &asked, verdict))
+    if (asked <= AFFORDABLE || !is_enough_points(first, pslg, (int64_t)asked, &asked, verdict))
         judge_fault(verdict, "endless", "more than %.0f points", fmax(asked, AFFORDABLE));
     first->options.quality.max_steiner = AFFORDABLE;
 }
@@ -335,7 +335,7 @@ static enum tri_status rebuild(const struct outcome *first, struct outcome *o, s
 }
 
 /* Refines a mesh once more with the same bounds. */
-static bool refine_for_nothing(const struct outcome *before, struct outcome *after, struct verdict *verdict)
+static bool refine_with_same_bounds(const struct outcome *before, struct outcome *after, struct verdict *verdict)
 {
     struct tri_error error = {0};
     struct support_copy copy;
@@ -355,7 +355,7 @@ static void judge_amount_again(const struct outcome *first, struct verdict *verd
 {
     struct outcome second = {0};
     enter(verdict, "refining for nothing");
-    if (refine_for_nothing(first, &second, verdict) &&
+    if (refine_with_same_bounds(first, &second, verdict) &&
         second.mesh.n_triangles > (double)TIMES * first->mesh.n_triangles)
         judge_fault(verdict, "again", "%d triangles, and %d when they are refined once more",
                     (int)first->mesh.n_triangles, (int)second.mesh.n_triangles);

@@ -177,7 +177,7 @@ static void add_to_tally(struct torture *t, const struct torture_case *c)
     memcpy(new->fault, t->verdict->fault, sizeof new->fault);
 }
 
-static void tell(struct torture *t, struct torture_case *c)
+static void report_failure(struct torture *t, struct torture_case *c)
 {
     char path[1024] = "", command[1400];
     add_to_tally(t, c);
@@ -322,7 +322,7 @@ static void run_all(struct torture *t)
         run_case(t, &c);
         t->triangles += t->verdict->triangles;
         if (t->verdict->fault[0] && !judge_names(t->ignored, t->verdict->fault))
-            tell(t, &c);
+            report_failure(t, &c);
         case_free(&c);
     }
 }

@@ -17,7 +17,7 @@ static char *command_of(char *line)
     return line;
 }
 
-static BOOL WINAPI go_on(DWORD event) { return event == CTRL_C_EVENT; }
+static BOOL WINAPI ignore_ctrl_c(DWORD event) { return event == CTRL_C_EVENT; }
 
 int main(int argc, char **argv)
 {
@@ -28,7 +28,7 @@ int main(int argc, char **argv)
     start.hStdOutput = GetStdHandle(STD_OUTPUT_HANDLE);
     start.hStdError = GetStdHandle(STD_ERROR_HANDLE);
     FreeConsole();
-    if (argc < 4 || !AllocConsole() || !SetConsoleCtrlHandler(go_on, TRUE) ||
+    if (argc < 4 || !AllocConsole() || !SetConsoleCtrlHandler(ignore_ctrl_c, TRUE) ||
         !CreateProcessA(NULL, command_of(GetCommandLineA()), NULL, NULL, TRUE, 0, NULL, NULL, &start, &made))
         return 3;
     while (GetFileSize(start.hStdOutput, NULL) == 0 && WaitForSingleObject(made.hProcess, 10) == WAIT_TIMEOUT) {

@@ -73,7 +73,7 @@ static int32_t *take_ints(struct taking *t, struct tri_ints a, const char *what,
     return pack(t, (struct rows){a.at, a.n, a.width, a.stride, sizeof *a.at}, what, n, width);
 }
 
-static void take_pslg(struct taking *t, const struct tri_figure *f)
+static void convert_pslg(struct taking *t, const struct tri_figure *f)
 {
     struct tri_pslg *pslg = &t->taken->pslg;
     const int64_t n = f->points.n, m = f->segments.n;
@@ -91,7 +91,7 @@ static void take_pslg(struct taking *t, const struct tri_figure *f)
     pslg->n_regions = (int32_t)f->regions.n;
 }
 
-static void take_elements(struct taking *t, const struct tri_figure *f)
+static void convert_elements(struct taking *t, const struct tri_figure *f)
 {
     struct tri_elements *elements = &t->taken->elements;
     const int64_t n = f->triangles.n;
@@ -112,8 +112,8 @@ enum tri_status tri_api_figure_take(struct tri_api_figure *taken, const struct t
     if (!figure)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "there is no figure");
     t.status = tri_api_struct_take(&own, sizeof own, figure, "tri_figure", error);
-    take_pslg(&t, &own);
-    take_elements(&t, &own);
+    convert_pslg(&t, &own);
+    convert_elements(&t, &own);
     return t.status;
 }
 

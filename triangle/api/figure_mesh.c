@@ -120,7 +120,7 @@ static struct tri_refine_hooks hooks_of(const struct tri_api_mesh *m, const stru
 
 /* --- arrays derived from the mesh */
 
-static void forget(struct tri_api_mesh *m)
+static void free_derived(struct tri_api_mesh *m)
 {
     free(m->places);
     free(m->attributes);
@@ -182,9 +182,9 @@ static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
 }
 
 /* Restores the invariant. */
-static enum tri_status settle(struct tri_api_mesh *m, const struct tri_settings *s, struct tri_error *error)
+static enum tri_status update_derived(struct tri_api_mesh *m, const struct tri_settings *s, struct tri_error *error)
 {
-    forget(m);
+    free_derived(m);
     make_notes(m, s);
     m->mesh.stop = NULL;
     enum tri_status status = make_places(m, error);
@@ -215,7 +215,7 @@ struct following {
     double first, estimate, done; /* triangles at the start and at the end (estimated); reported fraction */
 };
 
-static void tell_progress(void *user, int64_t triangles)
+static void report_fraction(void *user, int64_t triangles)
 {
     struct following *f = user;
     const double most = 0.99; /* completion is reported separately */
@@ -234,7 +234,7 @@ static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mes
         return status;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
     struct tri_refine_hooks told = *hooks;
-    told.told = tell_progress;
+    told.told = report_fraction;
     told.told_user = &f;
     status = way->refine(way, mesh, how, &told, s, report, error);
     if (!status)
@@ -249,7 +249,7 @@ struct refiner {
     const struct tri_api_way *way;       /* the refinement to call */
 };
 
-static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)
+static void note_odd_length(struct tri_api_mesh *m, const struct sizes *sizes)
 {
     snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g): it must be above 0,"
              " and is ignored there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0],
@@ -282,7 +282,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
                              : refiner->way->refine(refiner->way, mesh, &how, &hooks, s, report, error);
     tri_lengths_free(lengths);
     if (atomic_flag_test_and_set(&sizes.is_odd))
-        tell_odd(refiner->m, &sizes);
+        note_odd_length(refiner->m, &sizes);
     if (!status)
         refiner->m->refined = *s;
     return status;
@@ -317,7 +317,7 @@ static enum tri_status make(struct tri_api_mesh *m, const struct tri_api_figure 
     enum tri_status status = generate(m, figure, s, way, error);
     if (!m->mesh.regions) /* the mesh is empty */
         return status;
-    enum tri_status settled = settle(m, s, status ? NULL : error);
+    enum tri_status settled = update_derived(m, s, status ? NULL : error);
     if (settled)
         tri_mesh_free(&m->mesh);
     return status ? status : settled;
@@ -376,7 +376,7 @@ enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_sett
     struct refiner refiner = {m, settings, way};
     mesh->stop = settings->stop ? &stop : NULL;
     enum tri_status status = refine(&refiner, mesh, NULL, &m->report.quality, error);
-    enum tri_status settled = settle(m, settings, status ? NULL : error);
+    enum tri_status settled = update_derived(m, settings, status ? NULL : error);
     return status ? status : settled;
 }
 
@@ -413,7 +413,7 @@ void tri_mesh_delete(struct tri_mesh *mesh)
     struct tri_api_mesh *m = (struct tri_api_mesh *)mesh;
     if (!m)
         return;
-    forget(m);
+    free_derived(m);
     tri_mesh_free(&m->mesh);
     free(m);
 }

@@ -42,7 +42,7 @@ static enum tri_status read_by_ending(const char *ending, const struct tri_names
 }
 
 /* Moves the arrays into the figure. */
-static void hand_over(struct tri_figure *figure, struct tri_pslg *pslg, struct tri_elements *elements)
+static void move_arrays(struct tri_figure *figure, struct tri_pslg *pslg, struct tri_elements *elements)
 {
     struct tri_figure own = tri_no_figure();
     int32_t n = pslg->n_points, m = pslg->n_segments;
@@ -90,7 +90,7 @@ enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struc
         tri_elements_free(&elements);
         return status;
     }
-    hand_over(figure, &pslg, &elements);
+    move_arrays(figure, &pslg, &elements);
     return TRI_OK;
 }
 
@@ -256,7 +256,7 @@ static enum tri_status write_all(const struct writing *w)
 }
 
 /* Separates second-order triangles into corners and *middles. */
-static enum tri_status part_nodes(struct tri_figure *own, const struct tri_figure *figure, struct tri_ints *middles,
+static enum tri_status split_middles(struct tri_figure *own, const struct tri_figure *figure, struct tri_ints *middles,
                                   struct tri_error *error)
 {
     enum tri_status status = tri_api_struct_take(own, sizeof *own, figure, "tri_figure", error);
@@ -279,7 +279,7 @@ enum tri_status tri_file_write(const char *name, const struct tri_figure *figure
     enum tri_status status = check_name(name, error);
     if (status)
         return status;
-    status = part_nodes(&own, figure, &middles, error);
+    status = split_middles(&own, figure, &middles, error);
     if (status)
         return status;
     status = tri_api_figure_take(&taken, &own, error);

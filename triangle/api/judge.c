@@ -33,7 +33,7 @@ static struct tri_check_options options_of(const struct tri_demands *demands, co
                                                                    : TRI_CHECK_BORDER_SEGMENTS};
 }
 
-static void pronounce(struct tri_verdict *verdict, const struct tri_check_report *report)
+static void fill_verdict(struct tri_verdict *verdict, const struct tri_check_report *report)
 {
     *verdict = (struct tri_verdict){.n_points = report->n_used_points, .n_edges = report->n_edges,
                                     .n_boundary_edges = report->n_boundary_edges,
@@ -67,7 +67,7 @@ enum tri_status tri_check_figure(const struct tri_figure *mesh, const struct tri
         status = tri_check(&on_trial, input ? &given.pslg : NULL, &options, &report, error);
     }
     if (!status)
-        pronounce(verdict, &report);
+        fill_verdict(verdict, &report);
     tri_api_figure_free(&judged);
     tri_api_figure_free(&given);
     return status;

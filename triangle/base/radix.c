@@ -21,10 +21,10 @@ struct run {
     uint64_t *from, *to; /* items, and the array for the next pass */
     int32_t n;
     int low, high; /* the bits to sort by, low .. high - 1; all items agree in higher bits */
-    bool home;     /* from is the array for the result */
+    bool in_result;     /* from is the array for the result */
 };
 
-static void insert_all(const struct run *run)
+static void insertion_sort(const struct run *run)
 {
     for (int32_t i = 1; i < run->n; i++) {
         uint64_t item = run->from[i];
@@ -51,7 +51,7 @@ static void stable_pass(struct run *run, int shift, int digit)
         other[at[run->from[i] >> shift & mask]++] = run->from[i];
     run->to = run->from;
     run->from = other;
-    run->home = !run->home;
+    run->in_result = !run->in_result;
 }
 
 /* Sorts items that fit the cache. */
@@ -59,12 +59,12 @@ static void sort_run(struct run run)
 {
     int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
     if (run.n <= FEW)
-        insert_all(&run);
+        insertion_sort(&run);
     for (int pass = 0; run.n > FEW && pass < passes; pass++) {
         int first = bits * pass / passes, end = bits * (pass + 1) / passes;
         stable_pass(&run, run.low + first, end - first);
     }
-    if (!run.home)
+    if (!run.in_result)
         memcpy(run.to, run.from, (size_t)run.n * sizeof *run.from);
 }
 
@@ -124,7 +124,7 @@ static struct run bucket_run(const struct bucketed *b, size_t bucket)
 {
     int32_t first = bucket ? b->end[bucket - 1] : 0;
     return (struct run){b->run->to + first, b->run->from + first, b->end[bucket] - first,
-                        b->run->low, b->shift, !b->run->home};
+                        b->run->low, b->shift, !b->run->in_result};
 }
 
 static bool is_large(const struct bucketed *b, const struct run *bucket)
@@ -132,17 +132,17 @@ static bool is_large(const struct bucketed *b, const struct run *bucket)
     return bucket->n > MANY && bucket->n > b->run->n / LARGE_SHARE;
 }
 
-static void sort_any(struct run run, const struct tri_executor *executor);
+static void sort_recursively(struct run run, const struct tri_executor *executor);
 
 static void sort_bucket(void *context, size_t bucket)
 {
     struct run run = bucket_run(context, bucket);
     if (!is_large(context, &run))
-        sort_any(run, NULL);
+        sort_recursively(run, NULL);
 }
 
 /* Sorts small buckets in parallel, then the large buckets one after another, each with all threads. */
-static void sort_any(struct run run, const struct tri_executor *executor)
+static void sort_recursively(struct run run, const struct tri_executor *executor)
 {
     if (run.n <= MANY || run.high == run.low) {
         sort_run(run);
@@ -155,7 +155,7 @@ static void sort_any(struct run run, const struct tri_executor *executor)
     for (size_t bucket = 0; bucket < BUCKETS; bucket++) {
         struct run part = bucket_run(&b, bucket);
         if (is_large(&b, &part))
-            sort_any(part, executor);
+            sort_recursively(part, executor);
     }
 }
 
@@ -163,5 +163,5 @@ void tri_radix_sort(uint64_t *items, uint64_t *scratch, int32_t n, int low, int 
                     const struct tri_executor *executor)
 {
     assert(0 <= low && low < high && high <= 64);
-    sort_any((struct run){items, scratch, n, low, high, true}, executor);
+    sort_recursively((struct run){items, scratch, n, low, high, true}, executor);
 }

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* Values beyond the last unit become "over 1000" of it, because bounds of the user may ask for any number. */
-static struct tri_size_text in_units(double value, const char *const *unit, int n)
+static struct tri_size_text text_in_units(double value, const char *const *unit, int n)
 {
     struct tri_size_text text;
     int k = 0;
@@ -20,7 +20,7 @@ static struct tri_size_text in_units(double value, const char *const *unit, int 
 struct tri_size_text tri_size_text(double bytes)
 {
     static const char *const units[] = {" B", " kB", " MB", " GB", " TB", " PB", " EB"};
-    return in_units(bytes, units, sizeof units / sizeof *units);
+    return text_in_units(bytes, units, sizeof units / sizeof *units);
 }
 
 struct tri_size_text tri_count_text(double n)
@@ -28,7 +28,7 @@ struct tri_size_text tri_count_text(double n)
     static const char *const units[] = {"", " thousand", " million", " billion", " trillion"};
     struct tri_size_text count;
     if (n >= 9999.5)
-        return in_units(n, units, sizeof units / sizeof *units);
+        return text_in_units(n, units, sizeof units / sizeof *units);
     snprintf(count.text, sizeof count.text, "%.0f", n);
     return count;
 }

@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <stdio.h>
 
-bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place)
+bool tri_read_back(tri_file file, void *at, size_t n, uint64_t place)
 {
     const int64_t got = tri_read_at(file, at, n, place);
     if (got >= 0 && (uint64_t)got < n)
@@ -17,7 +17,7 @@ void tri_path_folder(const char *path, char folder[TRI_PATH])
 {
     struct tri_file_facts facts;
     const size_t length = tri_path_folder_length(path);
-    if (tri_path_look(path, &facts) && facts.kind == TRI_FOLDER)
+    if (tri_path_get_facts(path, &facts) && facts.kind == TRI_FOLDER)
         snprintf(folder, TRI_PATH, "%s", path);
     else
         snprintf(folder, TRI_PATH, "%.*s", length > 0 ? (int)length : 1, length > 0 ? path : ".");
@@ -25,7 +25,7 @@ void tri_path_folder(const char *path, char folder[TRI_PATH])
 
 /* --- mapped files */
 
-static bool has_file(struct tri_mapped_file *f, const char *folder)
+static bool ensure_file(struct tri_mapped_file *f, const char *folder)
 {
     if (f->file == TRI_NO_FILE)
         f->file = tri_scratch_file(folder);
@@ -35,7 +35,7 @@ static bool has_file(struct tri_mapped_file *f, const char *folder)
 int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t size)
 {
     assert(size > f->size);
-    if (!has_file(f, folder))
+    if (!ensure_file(f, folder))
         return errno;
     const int fault = tri_file_reserve(f->file, f->size, size);
     if (fault)
@@ -53,7 +53,7 @@ int tri_mapped_file_extend(struct tri_mapped_file *f, const char *folder, size_t
 bool tri_mapped_file_append(struct tri_mapped_file *f, const char *folder, const void *bytes, size_t n)
 {
     assert(!f->at);
-    if (!has_file(f, folder) || !tri_write_at(f->file, bytes, n, f->size))
+    if (!ensure_file(f, folder) || !tri_write_at(f->file, bytes, n, f->size))
         return false;
     f->size += n;
     return true;

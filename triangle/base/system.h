@@ -26,9 +26,9 @@ typedef intptr_t tri_file; /* an open file or folder, not inherited by other pro
 
 enum tri_opening {
     TRI_OPEN_READ,   /* to read; for a pipe, waits until a writer opens it; EINTR */
-    TRI_OPEN_LOOK,   /* to read, without waiting */
+    TRI_OPEN_NO_WAIT,   /* to read, without waiting */
     TRI_OPEN_DEVICE, /* to write to a device or pipe, which has no offsets; waits until a reader opens it; EINTR */
-    TRI_OPEN_JOIN,   /* to write a file that other processes write as well; does not follow links */
+    TRI_OPEN_WRITE_SHARED,   /* to write a file that other processes write as well; does not follow links */
     TRI_OPEN_NEW     /* to read and write a new file; EEXIST if a file or link has this name */
 };
 tri_file tri_file_open(const char *path, enum tri_opening opening);
@@ -48,22 +48,22 @@ struct tri_file_facts {
     uint64_t size;         /* in bytes */
     uint64_t device, node; /* two files are the same if both are equal */
     unsigned names;        /* number of names (hard links) */
-    unsigned permissions;  /* passed to tri_file_permit */
+    unsigned permissions;  /* passed to tri_file_set_permissions */
 };
 
-/* Return the facts of a file. tri_path_look follows all links. */
-bool tri_path_look(const char *path, struct tri_file_facts *facts);
-bool tri_file_look(tri_file file, struct tri_file_facts *facts);
+/* Return the facts of a file. tri_path_get_facts follows all links. */
+bool tri_path_get_facts(const char *path, struct tri_file_facts *facts);
+bool tri_file_get_facts(tri_file file, struct tri_file_facts *facts);
 
 /* Gives `file` the permissions of the file described by `as`. */
-bool tri_file_permit(tri_file file, const struct tri_file_facts *as);
+bool tri_file_set_permissions(tri_file file, const struct tri_file_facts *as);
 
 /* Reads n bytes at offset `place` and returns the number of bytes read. It is less than n only at the end of the
  * file. */
 int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place);
 
 /* Reads n bytes that are known to be in the file; EIO if the file is shorter. tri_write_at writes n bytes. */
-bool tri_read_again(tri_file file, void *at, size_t n, uint64_t place);
+bool tri_read_back(tri_file file, void *at, size_t n, uint64_t place);
 bool tri_write_at(tri_file file, const void *at, size_t n, uint64_t place);
 
 /* Reads up to n bytes that follow, from a pipe or device, or from a file that is read from its start. Returns their
@@ -76,15 +76,15 @@ int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place);
 int64_t tri_write_next(tri_file file, const void *at, size_t n);
 
 /* Truncates or extends the file to `size` bytes. New bytes are zero. */
-bool tri_file_cut(tri_file file, uint64_t size);
+bool tri_file_set_size(tri_file file, uint64_t size);
 
 /* Returns after the written data, or for a folder its list of names, is on the disk. Returns true if the system has no
  * such operation. */
 bool tri_file_sync(tri_file file);
 
 /* Hints: the first function makes the system start writing n bytes (0: all) to the disk, the second waits for it. */
-void tri_file_send_off(tri_file file, uint64_t place, uint64_t n);
-void tri_file_await(tri_file file, uint64_t place, uint64_t n);
+void tri_file_start_sync(tri_file file, uint64_t place, uint64_t n);
+void tri_file_finish_sync(tri_file file, uint64_t place, uint64_t n);
 
 /* Opens the same file again, to be written without the system's cache. Then sizes, offsets and addresses must be
  * multiples of TRI_PAGE_BYTES. Returns TRI_NO_FILE if the system does not support this. Closing either file releases
@@ -95,10 +95,10 @@ tri_file tri_file_direct(tri_file file);
 /* Allocates a buffer for such a file; call free() afterwards. NULL: no memory. */
 void *tri_page_alloc(size_t bytes);
 
-/* Asynchronous writing. tri_behind_start returns NULL if the system cannot do it; otherwise the bytes must stay
- * unchanged until tri_behind_wait. tri_behind_wait frees the handle and returns the number of bytes written. */
-struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place);
-size_t tri_behind_wait(struct tri_behind *behind);
+/* Asynchronous writing. tri_async_start returns NULL if the system cannot do it; otherwise the bytes must stay
+ * unchanged until tri_async_wait. tri_async_wait frees the handle and returns the number of bytes written. */
+struct tri_async *tri_async_start(tri_file file, const void *at, size_t n, uint64_t place);
+size_t tri_async_wait(struct tri_async *behind);
 
 /* Locks the whole file against other processes. The lock ends when this process closes the file, through any handle, or
  * dies. */
@@ -107,11 +107,11 @@ enum tri_lock tri_file_lock(tri_file file);
 
 /* Returns true if two processes may write different bytes of one page of this file, when the other process opened the
  * file on `host`. Network file systems may lose such bytes. */
-bool tri_file_keeps_apart(tri_file file, const char *host);
+bool tri_file_allows_shared_pages(tri_file file, const char *host);
 
 /* --- names of files */
 
-enum tri_access { TRI_THERE, TRI_READABLE, TRI_WRITABLE, TRI_TAKES_FILES };
+enum tri_access { TRI_THERE, TRI_READABLE, TRI_WRITABLE, TRI_ACCEPTS_FILES };
 bool tri_path_allows(const char *path, enum tri_access access);
 
 /* May be called by interrupt handlers. */
@@ -155,14 +155,14 @@ enum tri_folder_opening {
 };
 tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_opening opening);
 
-/* Creates an empty file to write, after removing any file of that name from the folder. tri_folder_end gives the new
+/* Creates an empty file to write, after removing any file of that name from the folder. tri_folder_commit gives the new
  * file its name once it is complete and on the disk. If the process dies before, no file is left. File systems without
  * nameless files (NFS) give it the name at once. */
 tri_file tri_folder_create(tri_file folder, const char *name);
-bool tri_folder_end(tri_file folder, const char *name, tri_file file);
+bool tri_folder_commit(tri_file folder, const char *name, tri_file file);
 
 bool tri_folder_has(tri_file folder, const char *name);
-bool tri_folder_drop(tri_file folder, const char *name);
+bool tri_folder_unlink(tri_file folder, const char *name);
 bool tri_folder_rename(tri_file folder, const char *from, const char *to);
 
 /* Calls each(user, name) for every name in the folder until one call returns false. Returns false if the folder cannot
@@ -213,8 +213,8 @@ double tri_memory_total(void);
 
 /* Which of these limits would be reached first. Beyond the limits of a process, memory allocation fails at once. Mapped
  * files count as address space. */
-enum tri_memory_end { TRI_ENDS_SYSTEM, TRI_ENDS_DATA, TRI_ENDS_ADDRESS_SPACE };
-enum tri_memory_end tri_memory_end(void);
+enum tri_memory_nearest_limit { TRI_LIMIT_SYSTEM, TRI_LIMIT_DATA, TRI_LIMIT_ADDRESS_SPACE };
+enum tri_memory_nearest_limit tri_memory_nearest_limit(void);
 
 /* Memory that the process uses now; 0: unknown. *of_files (unless NULL): the part of it that holds pages of files,
  * including libraries. */
@@ -284,21 +284,21 @@ char **tri_arguments(int argc, char **argv);
 const char *tri_word_quote(void);
 
 /* Stores the path of the program's executable, with links resolved. */
-bool tri_own_path(char path[TRI_PATH]);
+bool tri_program_path(char path[TRI_PATH]);
 
 /* --- the terminal */
 
 /* Opens an empty device for each standard stream that is closed, so that no file gets its number. */
 void tri_standard_open(void);
-bool tri_standard_is_one(void);          /* true if output and error lead to the same file or terminal */
+bool tri_standard_is_same_file(void);          /* true if output and error lead to the same file or terminal */
 bool tri_standard_is_terminal(void);     /* of standard error */
 bool tri_standard_reader_is_gone(void);  /* true if the reader of the pipe at standard output has closed it */
-tri_file tri_standard_error_again(void); /* opens standard error a second time; TRI_NO_FILE if it is closed */
+tri_file tri_standard_error_reopen(void); /* opens standard error a second time; TRI_NO_FILE if it is closed */
 
 /* --- interrupts: requests to end the program, and crashes */
 
 /* Handlers may be called at any time and on any thread. Of the functions here they may call only tri_path_remove,
- * tri_say and tri_alarm. */
+ * tri_print_unbuffered and tri_alarm. */
 struct tri_interrupts {
     void (*asked)(int number); /* the program should end; number > 0: the signal that requests it, below 128 */
     void (*time_is_up)(void);  /* the time set by tri_alarm is over */
@@ -311,6 +311,6 @@ struct tri_interrupts {
 bool tri_interrupts_catch(const struct tri_interrupts *handlers);
 const char *tri_interrupt_name(int number); /* such as "SIGTERM"; NULL: unknown number */
 void tri_alarm(double seconds); /* calls time_is_up after this time; a later call replaces an earlier one */
-void tri_say(const char *text); /* writes to standard error without buffers */
+void tri_print_unbuffered(const char *text); /* writes to standard error without buffers */
 
 #endif

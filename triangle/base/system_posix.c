@@ -27,7 +27,7 @@
 #include <dlfcn.h>
 #include <mach/mach.h>
 
-/* Darwin reserves space behind the end of a file. Returns 0, or an errno, as POSIX does. */
+/* Darwin reserves space request the end of a file. Returns 0, or an errno, as POSIX does. */
 static int posix_fallocate(int file, off_t place, off_t n)
 {
     fstore_t space = {.fst_flags = F_ALLOCATEALL, .fst_posmode = F_PEOFPOSMODE, .fst_length = n};
@@ -51,8 +51,8 @@ static int posix_fallocate(int file, off_t place, off_t n)
 tri_file tri_file_open(const char *path, enum tri_opening opening)
 {
     static const int flags[] = {
-        [TRI_OPEN_READ] = O_RDONLY, [TRI_OPEN_LOOK] = O_RDONLY | O_NONBLOCK, [TRI_OPEN_DEVICE] = O_WRONLY | O_NOCTTY,
-        [TRI_OPEN_JOIN] = O_WRONLY | O_NOFOLLOW, [TRI_OPEN_NEW] = O_RDWR | O_CREAT | O_EXCL};
+        [TRI_OPEN_READ] = O_RDONLY, [TRI_OPEN_NO_WAIT] = O_RDONLY | O_NONBLOCK, [TRI_OPEN_DEVICE] = O_WRONLY | O_NOCTTY,
+        [TRI_OPEN_WRITE_SHARED] = O_WRONLY | O_NOFOLLOW, [TRI_OPEN_NEW] = O_RDWR | O_CREAT | O_EXCL};
     return open(path, flags[opening] | O_CLOEXEC, 0666); /* the permissions are reduced by the process's umask */
 }
 
@@ -62,7 +62,7 @@ bool tri_file_close(tri_file file)
 }
 
 /* Closes a file that must not be used and sets errno to `why`. */
-static tri_file refuse(int file, int why)
+static tri_file close_with_error(int file, int why)
 {
     close(file);
     errno = why;
@@ -81,19 +81,19 @@ static bool facts_of(bool known, const struct stat *at, struct tri_file_facts *f
     return known;
 }
 
-bool tri_path_look(const char *path, struct tri_file_facts *facts)
+bool tri_path_get_facts(const char *path, struct tri_file_facts *facts)
 {
     struct stat at;
     return facts_of(stat(path, &at) == 0, &at, facts);
 }
 
-bool tri_file_look(tri_file file, struct tri_file_facts *facts)
+bool tri_file_get_facts(tri_file file, struct tri_file_facts *facts)
 {
     struct stat at;
     return facts_of(fstat((int)file, &at) == 0, &at, facts);
 }
 
-bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
+bool tri_file_set_permissions(tri_file file, const struct tri_file_facts *as)
 {
     return fchmod((int)file, (mode_t)as->permissions) == 0;
 }
@@ -134,7 +134,7 @@ int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place)
 
 int64_t tri_write_next(tri_file file, const void *at, size_t n) { return write((int)file, at, n); }
 
-bool tri_file_cut(tri_file file, uint64_t size) { return ftruncate((int)file, (off_t)size) == 0; }
+bool tri_file_set_size(tri_file file, uint64_t size) { return ftruncate((int)file, (off_t)size) == 0; }
 
 bool tri_file_sync(tri_file file)
 {
@@ -149,13 +149,13 @@ bool tri_file_sync(tri_file file)
     return result == 0 || errno == EINVAL || errno == EROFS;
 }
 
-void tri_file_send_off(tri_file file, uint64_t place, uint64_t n)
+void tri_file_start_sync(tri_file file, uint64_t place, uint64_t n)
 {
     (void)file, (void)place, (void)n;
     (void)sync_file_range((int)file, (off_t)place, (off_t)n, SYNC_FILE_RANGE_WRITE);
 }
 
-void tri_file_await(tri_file file, uint64_t place, uint64_t n)
+void tri_file_finish_sync(tri_file file, uint64_t place, uint64_t n)
 {
     (void)file, (void)place, (void)n;
     (void)sync_file_range((int)file, (off_t)place, (off_t)n, SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
@@ -174,34 +174,34 @@ void *tri_page_alloc(size_t bytes)
     return posix_memalign(&pages, TRI_PAGE_BYTES, bytes) == 0 ? pages : NULL;
 }
 
-struct tri_behind {
+struct tri_async {
     struct aiocb control;
 };
 
-struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place)
+struct tri_async *tri_async_start(tri_file file, const void *at, size_t n, uint64_t place)
 {
-    struct tri_behind *behind = calloc(1, sizeof *behind);
-    if (!behind)
+    struct tri_async *request = calloc(1, sizeof *request);
+    if (!request)
         return NULL;
-    behind->control.aio_fildes = (int)file;
-    behind->control.aio_offset = (off_t)place;
-    behind->control.aio_buf = (void *)at; /* is only read */
-    behind->control.aio_nbytes = n;
-    behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
-    if (aio_write(&behind->control) == 0)
-        return behind;
-    free(behind);
+    request->control.aio_fildes = (int)file;
+    request->control.aio_offset = (off_t)place;
+    request->control.aio_buf = (void *)at; /* is only read */
+    request->control.aio_nbytes = n;
+    request->control.aio_sigevent.sigev_notify = SIGEV_NONE;
+    if (aio_write(&request->control) == 0)
+        return request;
+    free(request);
     return NULL;
 }
 
-size_t tri_behind_wait(struct tri_behind *behind)
+size_t tri_async_wait(struct tri_async *request)
 {
-    const struct aiocb *const control = &behind->control;
+    const struct aiocb *const control = &request->control;
     while (aio_error(control) == EINPROGRESS)
         (void)aio_suspend(&control, 1, NULL);
     const int fault = aio_error(control);
-    const ssize_t written = aio_return(&behind->control);
-    free(behind);
+    const ssize_t written = aio_return(&request->control);
+    free(request);
     return fault == 0 && written > 0 ? (size_t)written : 0;
 }
 
@@ -213,7 +213,7 @@ enum tri_lock tri_file_lock(tri_file file)
     return errno == EACCES || errno == EAGAIN ? TRI_LOCKED_BY_ANOTHER : TRI_NO_LOCKS;
 }
 
-bool tri_file_keeps_apart(tri_file file, const char *host)
+bool tri_file_allows_shared_pages(tri_file file, const char *host)
 {
     char here[TRI_PATH];
     if (tri_host_name(here, sizeof here) && strcmp(here, host) == 0)
@@ -250,7 +250,7 @@ static tri_file make_nameless(char *path)
 }
 
 /* Returns the first n bytes of a path, followed by a name; NULL: no memory. */
-static char *joined(const char *path, size_t n, const char *name)
+static char *join_path(const char *path, size_t n, const char *name)
 {
     const size_t length = strlen(name) + 1;
     char *both = malloc(n + length);
@@ -270,7 +270,7 @@ tri_file tri_scratch_file(const char *folder)
     if (file >= 0)
         return file;
 #endif
-    char *path = joined(folder, strlen(folder), "/ptriangle-XXXXXX"); /* works on any file system */
+    char *path = join_path(folder, strlen(folder), "/ptriangle-XXXXXX"); /* works on any file system */
     const tri_file made = path ? make_nameless(path) : TRI_NO_FILE;
     const int fault = errno;
     free(path);
@@ -283,7 +283,7 @@ tri_file tri_scratch_file(const char *folder)
 bool tri_path_allows(const char *path, enum tri_access allowed)
 {
     static const int modes[] = {
-        [TRI_THERE] = F_OK, [TRI_READABLE] = R_OK, [TRI_WRITABLE] = W_OK, [TRI_TAKES_FILES] = W_OK | X_OK};
+        [TRI_THERE] = F_OK, [TRI_READABLE] = R_OK, [TRI_WRITABLE] = W_OK, [TRI_ACCEPTS_FILES] = W_OK | X_OK};
     return access(path, modes[allowed]) == 0;
 }
 
@@ -331,13 +331,13 @@ static char *follow_link(const char *path)
         return NULL;
     }
     target[length] = 0;
-    return joined(path, target[0] == '/' ? 0 : tri_path_folder_length(path), target);
+    return join_path(path, target[0] == '/' ? 0 : tri_path_folder_length(path), target);
 }
 
 char *tri_path_resolve(const char *path)
 {
     enum { MOST_LINKS = 40 };
-    char *resolved = joined(path, 0, path);
+    char *resolved = join_path(path, 0, path);
     for (int i = 0; resolved && i < MOST_LINKS; i++) {
         char *const next = follow_link(resolved);
         if (!next && (errno == EINVAL || errno == ENOENT))
@@ -365,8 +365,8 @@ tri_file tri_folder_open(const char *path, bool own)
     if (file < 0 || !own)
         return file;
     if (fstat(file, &folder) != 0)
-        return refuse(file, errno);
-    return folder.st_uid == geteuid() ? file : refuse(file, EPERM);
+        return close_with_error(file, errno);
+    return folder.st_uid == geteuid() ? file : close_with_error(file, EPERM);
 }
 
 tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_opening opening)
@@ -378,17 +378,17 @@ tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_open
     if (file < 0)
         return TRI_NO_FILE;
     if (fstat(file, &at) != 0)
-        return refuse(file, errno);
+        return close_with_error(file, errno);
     const bool alone = opening != TRI_FOLDER_EXTEND || at.st_nlink <= 1; /* another user may have made a link */
-    return S_ISREG(at.st_mode) && at.st_uid == geteuid() && alone ? file : refuse(file, EPERM);
+    return S_ISREG(at.st_mode) && at.st_uid == geteuid() && alone ? file : close_with_error(file, EPERM);
 }
 
 tri_file tri_folder_create(tri_file folder, const char *name)
 {
-    if (!tri_folder_drop(folder, name) && errno != ENOENT)
+    if (!tri_folder_unlink(folder, name) && errno != ENOENT)
         return TRI_NO_FILE;
 #ifdef O_TMPFILE
-    if (access("/proc/self/fd", X_OK) == 0) { /* tri_folder_end names the file through this path */
+    if (access("/proc/self/fd", X_OK) == 0) { /* tri_folder_commit names the file through this path */
         const int unnamed = openat((int)folder, ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
         if (unnamed >= 0)
             return unnamed;
@@ -397,7 +397,7 @@ tri_file tri_folder_create(tri_file folder, const char *name)
     return openat((int)folder, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-bool tri_folder_end(tri_file folder, const char *name, tri_file file)
+bool tri_folder_commit(tri_file folder, const char *name, tri_file file)
 {
     char path[64];
     struct stat at;
@@ -407,7 +407,7 @@ bool tri_folder_end(tri_file folder, const char *name, tri_file file)
 }
 
 bool tri_folder_has(tri_file folder, const char *name) { return faccessat((int)folder, name, F_OK, 0) == 0; }
-bool tri_folder_drop(tri_file folder, const char *name) { return unlinkat((int)folder, name, 0) == 0; }
+bool tri_folder_unlink(tri_file folder, const char *name) { return unlinkat((int)folder, name, 0) == 0; }
 
 bool tri_folder_rename(tri_file folder, const char *from, const char *to)
 {
@@ -419,7 +419,7 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
     const int again = openat((int)folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); /* closedir() closes this copy */
     DIR *list = again >= 0 ? fdopendir(again) : NULL;
     if (!list && again >= 0)
-        (void)refuse(again, errno);
+        (void)close_with_error(again, errno);
     if (!list)
         return false;
     for (const struct dirent *entry; (entry = readdir(list)) && each(user, entry->d_name);)

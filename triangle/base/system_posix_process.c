@@ -53,7 +53,7 @@ static double find_number(const char *path, const char *word)
 }
 
 #ifdef __APPLE__
-static double of_machine(enum extent extent)
+static double machine_memory(enum extent extent)
 {
     uint64_t total;
     size_t bytes = sizeof total;
@@ -66,7 +66,7 @@ static double of_machine(enum extent extent)
     return ((double)pages.free_count + pages.inactive_count + pages.purgeable_count) * (double)sysconf(_SC_PAGESIZE);
 }
 #else
-static double of_machine(enum extent extent)
+static double machine_memory(enum extent extent)
 {
     static const char file[] = "/proc/meminfo";
     if (extent == ALL) {
@@ -78,7 +78,7 @@ static double of_machine(enum extent extent)
 }
 #endif
 
-static double of_limit(int resource, double used)
+static double limit_left(int resource, double used)
 {
     struct rlimit limit;
     if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -88,12 +88,12 @@ static double of_limit(int resource, double used)
 
 static double of_status(const char *word) { return 1024 * fmax(find_number("/proc/self/status", word), 0); }
 
-static double of_address_space(enum extent extent)
+static double address_space(enum extent extent)
 {
-    return of_limit(RLIMIT_AS, extent == LEFT ? of_status("VmSize:") : 0);
+    return limit_left(RLIMIT_AS, extent == LEFT ? of_status("VmSize:") : 0);
 }
 
-static double of_data(enum extent extent) { return of_limit(RLIMIT_DATA, extent == LEFT ? of_status("VmData:") : 0); }
+static double of_data(enum extent extent) { return limit_left(RLIMIT_DATA, extent == LEFT ? of_status("VmData:") : 0); }
 
 struct files {
     const char *limit, *usage, *cache; /* file names, and the name in memory.stat of the cache that the kernel can
@@ -101,7 +101,7 @@ struct files {
 };
 
 /* Returns the least amount over a group and all groups above it. Shortens path. */
-static double of_group(char *path, size_t root, const struct files *files, enum extent extent)
+static double group_memory(char *path, size_t root, const struct files *files, enum extent extent)
 {
     double least = HUGE_VAL;
     for (;;) {
@@ -123,7 +123,7 @@ static double of_group(char *path, size_t root, const struct files *files, enum 
 
 /* Returns the amount for the group in a line of /proc/self/cgroup. In containers the tree is often mounted at the group
  * itself. Then the path of the group does not exist, and only the root is examined. */
-static double of_group_line(const char *line, enum extent extent)
+static double group_line_memory(const char *line, enum extent extent)
 {
     static const struct files first = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "},
                               second = {"memory.max", "memory.current", "inactive_file "};
@@ -138,54 +138,54 @@ static double of_group_line(const char *line, enum extent extent)
         snprintf(path, sizeof path, "%s", root);
     while (strlen(path) > strlen(root) && path[strlen(path) - 1] == '/')
         path[strlen(path) - 1] = 0;
-    return of_group(path, strlen(root), unified ? &second : &first, extent);
+    return group_memory(path, strlen(root), unified ? &second : &first, extent);
 }
 
-static double of_groups(enum extent extent)
+static double groups_memory(enum extent extent)
 {
     char line[LINE_BYTES];
     double least = HUGE_VAL;
     FILE *file = fopen("/proc/self/cgroup", "r");
     while (file && fgets(line, sizeof line, file))
-        least = fmin(least, of_group_line(line, extent));
+        least = fmin(least, group_line_memory(line, extent));
     if (file)
         fclose(file);
     return least;
 }
 
-static double of_system(enum extent extent) { return fmin(of_machine(extent), of_groups(extent)); }
+static double system_memory(enum extent extent) { return fmin(machine_memory(extent), groups_memory(extent)); }
 
-static double least_of(enum extent extent)
+static double least_memory(enum extent extent)
 {
-    return fmin(of_system(extent), fmin(of_address_space(extent), of_data(extent)));
+    return fmin(system_memory(extent), fmin(address_space(extent), of_data(extent)));
 }
 
-enum tri_memory_end tri_memory_end(void)
+enum tri_memory_nearest_limit tri_memory_nearest_limit(void)
 {
-    const double system = of_system(LEFT), data = of_data(LEFT), space = of_address_space(LEFT);
+    const double system = system_memory(LEFT), data = of_data(LEFT), space = address_space(LEFT);
     if (system <= fmin(data, space))
-        return TRI_ENDS_SYSTEM;
-    return space <= data ? TRI_ENDS_ADDRESS_SPACE : TRI_ENDS_DATA;
+        return TRI_LIMIT_SYSTEM;
+    return space <= data ? TRI_LIMIT_ADDRESS_SPACE : TRI_LIMIT_DATA;
 }
 
-double tri_memory_left(void) { return least_of(LEFT); }
+double tri_memory_left(void) { return least_memory(LEFT); }
 
 void tri_memory_share_heap(void)
 {
 #ifdef __GLIBC__
-    if (fmin(of_address_space(ALL), of_data(ALL)) < HUGE_VAL)
+    if (fmin(address_space(ALL), of_data(ALL)) < HUGE_VAL)
         mallopt(M_ARENA_MAX, 1);
 #endif
 }
 
 double tri_memory_of_stacks(int threads)
 {
-    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* 2 MB is the default of glibc */
+    const double unlimited = 2 << 20, limit = limit_left(RLIMIT_STACK, 0); /* 2 MB is the default of glibc */
     const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
     return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : unlimited);
 }
 
-double tri_memory_total(void) { return least_of(ALL); }
+double tri_memory_total(void) { return least_memory(ALL); }
 
 /* ru_maxrss is in units of 1024 bytes, on Darwin in bytes. */
 int64_t tri_memory_peak(void)
@@ -225,7 +225,7 @@ char **tri_arguments(int argc, char **argv)
 const char *tri_word_quote(void) { return "'"; }
 
 #ifdef __APPLE__
-bool tri_own_path(char path[TRI_PATH])
+bool tri_program_path(char path[TRI_PATH])
 {
     uint32_t room = TRI_PATH;
     const bool whole = _NSGetExecutablePath(path, &room) == 0;
@@ -234,7 +234,7 @@ bool tri_own_path(char path[TRI_PATH])
     return whole;
 }
 #else
-bool tri_own_path(char path[TRI_PATH])
+bool tri_program_path(char path[TRI_PATH])
 {
     const ssize_t n = readlink("/proc/self/exe", path, TRI_PATH);
     const bool whole = n > 0 && n < TRI_PATH;
@@ -252,10 +252,10 @@ void tri_standard_open(void)
             (void)!open("/dev/null", O_RDWR); /* uses the lowest free number */
 }
 
-bool tri_standard_is_one(void)
+bool tri_standard_is_same_file(void)
 {
     struct tri_file_facts output, error;
-    return tri_file_look(STDOUT_FILENO, &output) && tri_file_look(STDERR_FILENO, &error) &&
+    return tri_file_get_facts(STDOUT_FILENO, &output) && tri_file_get_facts(STDERR_FILENO, &error) &&
            output.device == error.device && output.node == error.node;
 }
 
@@ -267,9 +267,9 @@ bool tri_standard_reader_is_gone(void)
     return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
 }
 
-tri_file tri_standard_error_again(void) { return fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); }
+tri_file tri_standard_error_reopen(void) { return fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); }
 
-void tri_say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text)); }
+void tri_print_unbuffered(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text)); }
 
 /* --- interrupts */
 

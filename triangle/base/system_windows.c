@@ -23,7 +23,7 @@ enum {
 
 /* --- errors and names */
 
-static int fault_of(DWORD code)
+static int errno_of(DWORD code)
 {
     static const struct {
         DWORD code;
@@ -48,7 +48,7 @@ static int fault_of(DWORD code)
 /* Sets errno from the last Windows error and returns false. */
 static bool fail(void)
 {
-    errno = fault_of(GetLastError());
+    errno = errno_of(GetLastError());
     return false;
 }
 
@@ -89,7 +89,7 @@ static tri_file open_path(const char *path, DWORD access, DWORD way, DWORD flags
 }
 
 /* Closes a file that must not be used and sets errno to `why`. */
-static tri_file refuse(tri_file file, int why)
+static tri_file close_with_error(tri_file file, int why)
 {
     (void)tri_file_close(file);
     errno = why;
@@ -101,7 +101,7 @@ static tri_file refuse(tri_file file, int why)
 static const DWORD given[] = {STD_INPUT_HANDLE, STD_OUTPUT_HANDLE, STD_ERROR_HANDLE};
 
 /* Returns stdin, stdout or stderr if this is its name on Linux, otherwise TRI_NO_FILE. */
-static tri_file standard(const char *path)
+static tri_file std_handle(const char *path)
 {
     static const char *const names[] = {"in", "out", "err"};
     for (int i = 0; i < 3; i++)
@@ -119,12 +119,12 @@ static bool is_standard(tri_file file)
 tri_file tri_file_open(const char *path, enum tri_opening opening)
 {
     static const DWORD access[] = {
-        [TRI_OPEN_READ] = GENERIC_READ, [TRI_OPEN_LOOK] = GENERIC_READ, [TRI_OPEN_DEVICE] = GENERIC_WRITE,
-        [TRI_OPEN_JOIN] = GENERIC_WRITE, [TRI_OPEN_NEW] = GENERIC_READ | GENERIC_WRITE};
-    const tri_file here = standard(path);
+        [TRI_OPEN_READ] = GENERIC_READ, [TRI_OPEN_NO_WAIT] = GENERIC_READ, [TRI_OPEN_DEVICE] = GENERIC_WRITE,
+        [TRI_OPEN_WRITE_SHARED] = GENERIC_WRITE, [TRI_OPEN_NEW] = GENERIC_READ | GENERIC_WRITE};
+    const tri_file here = std_handle(path);
     return here != TRI_NO_FILE ? here
                                : open_path(path, access[opening], opening == TRI_OPEN_NEW ? CREATE_NEW : OPEN_EXISTING,
-                                           opening == TRI_OPEN_JOIN ? FILE_FLAG_OPEN_REPARSE_POINT : 0);
+                                           opening == TRI_OPEN_WRITE_SHARED ? FILE_FLAG_OPEN_REPARSE_POINT : 0);
 }
 
 bool tri_file_close(tri_file file)
@@ -133,7 +133,7 @@ bool tri_file_close(tri_file file)
 }
 
 /* Standard streams count as having no offsets, regardless of their target. */
-bool tri_file_look(tri_file file, struct tri_file_facts *facts)
+bool tri_file_get_facts(tri_file file, struct tri_file_facts *facts)
 {
     const DWORD type = GetFileType(handle_of(file));
     BY_HANDLE_FILE_INFORMATION at;
@@ -155,10 +155,10 @@ bool tri_file_look(tri_file file, struct tri_file_facts *facts)
     return true;
 }
 
-bool tri_path_look(const char *path, struct tri_file_facts *facts)
+bool tri_path_get_facts(const char *path, struct tri_file_facts *facts)
 {
-    const tri_file here = standard(path), file = here != TRI_NO_FILE ? here : open_path(path, LOOK, OPEN_EXISTING, 0);
-    const bool known = file != TRI_NO_FILE && tri_file_look(file, facts);
+    const tri_file here = std_handle(path), file = here != TRI_NO_FILE ? here : open_path(path, LOOK, OPEN_EXISTING, 0);
+    const bool known = file != TRI_NO_FILE && tri_file_get_facts(file, facts);
     const int fault = errno;
     (void)tri_file_close(file);
     errno = fault;
@@ -166,7 +166,7 @@ bool tri_path_look(const char *path, struct tri_file_facts *facts)
 }
 
 /* A new file inherits its permissions from its folder. */
-bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
+bool tri_file_set_permissions(tri_file file, const struct tri_file_facts *as)
 {
     (void)file, (void)as;
     return true;
@@ -174,7 +174,7 @@ bool tri_file_permit(tri_file file, const struct tri_file_facts *as)
 
 /* --- reading and writing */
 
-static OVERLAPPED at_place(uint64_t place)
+static OVERLAPPED overlapped_at(uint64_t place)
 {
     return (OVERLAPPED){.Offset = (DWORD)place, .OffsetHigh = (DWORD)(place >> 32)};
 }
@@ -204,7 +204,7 @@ int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
 {
     size_t done = 0;
     while (done < n) {
-        OVERLAPPED there = at_place(place + done);
+        OVERLAPPED there = overlapped_at(place + done);
         const int64_t got = read_some(file, (char *)at + done, n - done, &there);
         if (got < 0)
             return -1;
@@ -230,13 +230,13 @@ int64_t tri_read_next(tri_file file, void *at, size_t n) { return read_some(file
 
 int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place)
 {
-    OVERLAPPED there = at_place(place);
+    OVERLAPPED there = overlapped_at(place);
     return write_some(file, at, n, &there);
 }
 
 int64_t tri_write_next(tri_file file, const void *at, size_t n) { return write_some(file, at, n, NULL); }
 
-bool tri_file_cut(tri_file file, uint64_t size)
+bool tri_file_set_size(tri_file file, uint64_t size)
 {
     FILE_END_OF_FILE_INFO end = {.EndOfFile.QuadPart = (LONGLONG)size};
     return SetFileInformationByHandle(handle_of(file), FileEndOfFileInfo, &end, sizeof end) || fail();
@@ -251,8 +251,8 @@ bool tri_file_sync(tri_file file)
     return code == ERROR_ACCESS_DENIED || code == ERROR_INVALID_HANDLE || code == ERROR_INVALID_FUNCTION || fail();
 }
 
-void tri_file_send_off(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
-void tri_file_await(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
+void tri_file_start_sync(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
+void tri_file_finish_sync(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
 
 tri_file tri_file_direct(tri_file file)
 {
@@ -262,13 +262,13 @@ tri_file tri_file_direct(tri_file file)
 
 void *tri_page_alloc(size_t bytes) { return malloc(bytes); } /* free() cannot release aligned blocks */
 
-struct tri_behind *tri_behind_start(tri_file file, const void *at, size_t n, uint64_t place)
+struct tri_async *tri_async_start(tri_file file, const void *at, size_t n, uint64_t place)
 {
     (void)file, (void)at, (void)n, (void)place;
     return NULL;
 }
 
-size_t tri_behind_wait(struct tri_behind *behind)
+size_t tri_async_wait(struct tri_async *behind)
 {
     (void)behind;
     return 0;
@@ -277,14 +277,14 @@ size_t tri_behind_wait(struct tri_behind *behind)
 /* No other process can read or write locked bytes, so the lock covers one byte beyond the largest possible file. */
 enum tri_lock tri_file_lock(tri_file file)
 {
-    OVERLAPPED last = at_place(INT64_MAX - 1);
+    OVERLAPPED last = overlapped_at(INT64_MAX - 1);
     if (LockFileEx(handle_of(file), LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &last))
         return TRI_LOCKED;
     const DWORD code = GetLastError();
     return code == ERROR_LOCK_VIOLATION || code == ERROR_IO_PENDING ? TRI_LOCKED_BY_ANOTHER : TRI_NO_LOCKS;
 }
 
-bool tri_file_keeps_apart(tri_file file, const char *host)
+bool tri_file_allows_shared_pages(tri_file file, const char *host)
 {
     char here[TRI_PATH];
     (void)file;
@@ -315,7 +315,7 @@ tri_file tri_scratch_file(const char *folder)
 bool tri_path_allows(const char *path, enum tri_access allowed)
 {
     static const DWORD access[] = {[TRI_THERE] = LOOK, [TRI_READABLE] = GENERIC_READ, [TRI_WRITABLE] = GENERIC_WRITE,
-                                   [TRI_TAKES_FILES] = FILE_ADD_FILE};
+                                   [TRI_ACCEPTS_FILES] = FILE_ADD_FILE};
     const tri_file file = open_path(path, access[allowed], OPEN_EXISTING, 0);
     return file != TRI_NO_FILE && tri_file_close(file);
 }
@@ -382,7 +382,7 @@ static bool final_path(tri_file file, wchar_t wide[WIDE])
 }
 
 /* Returns the path in the usual form: "C:\...", "\\server\..." */
-static wchar_t *plain(wchar_t *path)
+static wchar_t *plain_path(wchar_t *path)
 {
     if (wcsncmp(path, L"\\\\?\\UNC\\", 8) == 0) {
         path[6] = L'\\';
@@ -395,7 +395,7 @@ char *tri_path_from_root(const char *path)
 {
     wchar_t wide[WIDE];
     const tri_file file = open_path(path, LOOK, OPEN_EXISTING, 0);
-    char *found = file != TRI_NO_FILE && final_path(file, wide) ? copy_of(plain(wide)) : NULL;
+    char *found = file != TRI_NO_FILE && final_path(file, wide) ? copy_of(plain_path(wide)) : NULL;
     const int fault = errno;
     (void)tri_file_close(file);
     errno = fault;
@@ -441,9 +441,9 @@ tri_file tri_folder_open(const char *path, bool own)
     struct tri_file_facts facts;
     const tri_file folder = open_path(path, FILE_LIST_DIRECTORY | LOOK, OPEN_EXISTING, 0);
     (void)own;
-    if (folder == TRI_NO_FILE || (tri_file_look(folder, &facts) && facts.kind == TRI_FOLDER))
+    if (folder == TRI_NO_FILE || (tri_file_get_facts(folder, &facts) && facts.kind == TRI_FOLDER))
         return folder;
-    return refuse(folder, ENOTDIR);
+    return close_with_error(folder, ENOTDIR);
 }
 
 /* Stores the path of a file in the folder, at the folder's current place. */
@@ -474,22 +474,22 @@ tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_open
     FILE_ATTRIBUTE_TAG_INFO tag;
     if (file == TRI_NO_FILE)
         return TRI_NO_FILE;
-    if (!tri_file_look(file, &facts) ||
+    if (!tri_file_get_facts(file, &facts) ||
         !GetFileInformationByHandleEx(handle_of(file), FileAttributeTagInfo, &tag, sizeof tag))
-        return refuse(file, EIO);
+        return close_with_error(file, EIO);
     const bool is_link = tag.FileAttributes & FILE_ATTRIBUTE_REPARSE_POINT;
     const bool alone = opening != TRI_FOLDER_EXTEND || facts.names <= 1;
-    return facts.kind == TRI_REGULAR && !is_link && alone ? file : refuse(file, EPERM);
+    return facts.kind == TRI_REGULAR && !is_link && alone ? file : close_with_error(file, EPERM);
 }
 
 tri_file tri_folder_create(tri_file folder, const char *name)
 {
-    if (!tri_folder_drop(folder, name) && errno != ENOENT)
+    if (!tri_folder_unlink(folder, name) && errno != ENOENT)
         return TRI_NO_FILE;
     return open_in(folder, name, GENERIC_WRITE, CREATE_NEW);
 }
 
-bool tri_folder_end(tri_file folder, const char *name, tri_file file)
+bool tri_folder_commit(tri_file folder, const char *name, tri_file file)
 {
     (void)folder, (void)name;
     return tri_file_sync(file);
@@ -501,7 +501,7 @@ bool tri_folder_has(tri_file folder, const char *name)
     return path_in(folder, name, path) && (GetFileAttributesW(path) != INVALID_FILE_ATTRIBUTES || fail());
 }
 
-bool tri_folder_drop(tri_file folder, const char *name)
+bool tri_folder_unlink(tri_file folder, const char *name)
 {
     wchar_t path[WIDE];
     return path_in(folder, name, path) && remove_wide(path);
@@ -533,7 +533,7 @@ bool tri_folder_list(tri_file folder, bool (*each)(void *user, const char *name)
 int tri_file_reserve(tri_file file, uint64_t from, uint64_t size)
 {
     (void)from;
-    return tri_file_cut(file, size) ? 0 : errno;
+    return tri_file_set_size(file, size) ? 0 : errno;
 }
 
 void *tri_file_map(tri_file file, size_t size)

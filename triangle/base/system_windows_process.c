@@ -25,7 +25,7 @@ static bool to_utf8(const wchar_t *wide, char path[TRI_PATH])
 /* --- memory and disk */
 
 /* Returns the memory limit of the job that contains this process; HUGE_VAL: no limit. */
-static double of_job(void)
+static double job_limit(void)
 {
     JOBOBJECT_EXTENDED_LIMIT_INFORMATION job;
     if (!QueryInformationJobObject(NULL, JobObjectExtendedLimitInformation, &job, sizeof job, NULL))
@@ -40,16 +40,16 @@ double tri_memory_left(void)
 {
     MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
     const double machine = GlobalMemoryStatusEx(&memory) ? (double)memory.ullAvailPageFile : HUGE_VAL;
-    return fmin(machine, fmax(of_job() - tri_memory_used(NULL), 0));
+    return fmin(machine, fmax(job_limit() - tri_memory_used(NULL), 0));
 }
 
 double tri_memory_total(void)
 {
     MEMORYSTATUSEX memory = {.dwLength = sizeof memory};
-    return fmin(GlobalMemoryStatusEx(&memory) ? (double)memory.ullTotalPhys : HUGE_VAL, of_job());
+    return fmin(GlobalMemoryStatusEx(&memory) ? (double)memory.ullTotalPhys : HUGE_VAL, job_limit());
 }
 
-enum tri_memory_end tri_memory_end(void) { return TRI_ENDS_SYSTEM; }
+enum tri_memory_nearest_limit tri_memory_nearest_limit(void) { return TRI_LIMIT_SYSTEM; }
 
 int64_t tri_memory_peak(void)
 {
@@ -110,7 +110,7 @@ char **tri_arguments(int argc, char **argv)
 
 const char *tri_word_quote(void) { return "\""; } /* the quotation mark of both shells; file names cannot contain it */
 
-bool tri_own_path(char path[TRI_PATH])
+bool tri_program_path(char path[TRI_PATH])
 {
     wchar_t wide[TRI_PATH];
     const DWORD n = GetModuleFileNameW(NULL, wide, TRI_PATH);
@@ -140,13 +140,13 @@ void tri_standard_open(void)
         (void)atexit(restore_page);
 }
 
-bool tri_standard_is_one(void)
+bool tri_standard_is_same_file(void)
 {
     const HANDLE output = GetStdHandle(STD_OUTPUT_HANDLE), error = GetStdHandle(STD_ERROR_HANDLE);
     const DWORD type = GetFileType(output);
     struct tri_file_facts of_output, of_error;
-    if (type != GetFileType(error) || !tri_file_look((tri_file)output, &of_output) ||
-        !tri_file_look((tri_file)error, &of_error))
+    if (type != GetFileType(error) || !tri_file_get_facts((tri_file)output, &of_output) ||
+        !tri_file_get_facts((tri_file)error, &of_error))
         return false;
     if (type == FILE_TYPE_DISK)
         return of_output.device == of_error.device && of_output.node == of_error.node;
@@ -170,7 +170,7 @@ bool tri_standard_reader_is_gone(void)
            (GetLastError() == ERROR_NO_DATA || GetLastError() == ERROR_BROKEN_PIPE);
 }
 
-tri_file tri_standard_error_again(void)
+tri_file tri_standard_error_reopen(void)
 {
     HANDLE again;
     const HANDLE self = GetCurrentProcess();
@@ -179,7 +179,7 @@ tri_file tri_standard_error_again(void)
                : TRI_NO_FILE;
 }
 
-void tri_say(const char *text)
+void tri_print_unbuffered(const char *text)
 {
     DWORD n;
     (void)WriteFile(GetStdHandle(STD_ERROR_HANDLE), text, (DWORD)strlen(text), &n, NULL);

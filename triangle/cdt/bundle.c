@@ -102,7 +102,7 @@ static void walk_along(struct bundles *b, tri_triangle_id t, tri_vertex_id from,
     for (int k = 0; k < 3; k++)
         try_stop(b, v[k]);
     if (tri_orient2d(p, q, mesh->xy[v[tri_prev[e]]]) <= 0)
-        return; /* the line leaves along the hull */
+        return; /* the line runs along the hull, or leaves the mesh at once */
     for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
         tri_halfedge code = tri_across(mesh, tri_code(t, e));
         if (code == TRI_NONE)
@@ -143,7 +143,7 @@ static void sort_stops(struct bundles *b)
     b->n_stops = kept;
 }
 
-static void forget_stops(struct bundles *b)
+static void clear_stops(struct bundles *b)
 {
     for (int32_t k = 0; k < b->n_stops; k++)
         b->place[b->stop[k]] = TRI_NONE;
@@ -181,7 +181,7 @@ static int64_t find_members(struct bundles *b)
 }
 
 /* Replaces the members by the pieces that they have been merged into. */
-static bool keep_shared(struct bundles *b, const struct tri_piece *shared, int32_t n)
+static bool store_shared(struct bundles *b, const struct tri_piece *shared, int32_t n)
 {
     if (!tri_grow(&b->result, &b->result_capacity, b->n_results + n, sizeof *b->result))
         return false;
@@ -192,7 +192,7 @@ static bool keep_shared(struct bundles *b, const struct tri_piece *shared, int32
     return true;
 }
 
-static bool share_members(struct bundles *b)
+static bool merge_members(struct bundles *b)
 {
     int64_t sum = find_members(b);
     int32_t n = b->n_members;
@@ -203,7 +203,7 @@ static bool share_members(struct bundles *b)
         shared[m] = b->piece[b->member[m]];
     bool room = shared && tri_share_stops(b->stop, b->n_stops, b->reach, &shared, &n);
     if (room && n < sum) /* otherwise they do not overlap */
-        room = keep_shared(b, shared, n);
+        room = store_shared(b, shared, n);
     free(shared);
     return room;
 }
@@ -221,7 +221,7 @@ static bool is_longer(const void *context, int32_t i, int32_t k)
 
 /* Finds the triangle through which the piece leaves its start. Returns false if there is none, or if the piece is
  * already an edge. */
-static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t,
+static bool can_carry(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t,
                        tri_vertex_id *from, tri_vertex_id *to)
 {
     *t = find_exit(context, from, to);
@@ -231,36 +231,36 @@ static bool leaves_end(const struct bundles *b, tri_exit *find_exit, void *conte
 
 /* Walks from both ends. The second walk continues beyond `from`, and takes the other side if the line runs through
  * vertices. If find_exit exchanges the ends, only one walk is possible. */
-static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
+static bool process_carrier(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
 {
     tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
     const int32_t n_results = b->n_results;
     const int64_t looked_at = b->looked_at;
     tri_triangle_id t;
-    if (from == to || !leaves_end(b, find_exit, context, &t, &from, &to))
+    if (from == to || !can_carry(b, find_exit, context, &t, &from, &to))
         return true;
     b->a = b->mesh->xy[from];
     b->b = b->mesh->xy[to];
     walk_along(b, t, from, to);
     tri_vertex_id back_from = to, back_to = from;
-    if (leaves_end(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
+    if (can_carry(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
         walk_along(b, t, back_from, back_to);
     sort_stops(b);
-    bool room = share_members(b);
-    forget_stops(b);
+    bool room = merge_members(b);
+    clear_stops(b);
     if (b->n_results == n_results)
         b->in_vain += b->looked_at - looked_at;
     return room;
 }
 
-static bool carry_all(struct bundles *b, tri_exit *find_exit, void *context)
+static bool process_carriers(struct bundles *b, tri_exit *find_exit, void *context)
 {
     const int64_t most = MOST_IN_VAIN * ((int64_t)b->n + b->n_vertices);
     bool room = true;
     for (int32_t i = 0; room && i < b->n_carriers && b->in_vain < most; i++) {
         if (tri_stop_is_due(b->mesh->stop, &b->step))
             break;
-        room = carry(b, b->carrier[i], find_exit, context);
+        room = process_carrier(b, b->carrier[i], find_exit, context);
     }
     return room;
 }
@@ -271,7 +271,7 @@ static bool list_carriers(struct bundles *b, tri_exit *find_exit, void *context)
     for (int32_t i = 0; b->carrier && i < b->n; i++) {
         tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
         tri_triangle_id t;
-        if (leaves_end(b, find_exit, context, &t, &from, &to))
+        if (can_carry(b, find_exit, context, &t, &from, &to))
             b->carrier[b->n_carriers++] = i;
     }
     if (b->carrier)
@@ -325,7 +325,7 @@ bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct t
     struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
     bool room = *n < 2 || list_carriers(&b, find_exit, context);
     if (room && b.n_carriers > 0)
-        room = make_room(&b) && carry_all(&b, find_exit, context) && add_others(&b);
+        room = make_room(&b) && process_carriers(&b, find_exit, context) && add_others(&b);
     if (room && b.n_carriers > 0) {
         *piece = b.result;
         *n = b.n_results;
@@ -353,7 +353,7 @@ struct sharing {
     int32_t n_results;
 };
 
-static void take_back(struct sharing *s)
+static void free_all(struct sharing *s)
 {
     for (int32_t k = 0; k < s->n_stops; k++)
         s->next[k] = k;
@@ -367,7 +367,7 @@ static int32_t find_free(const struct sharing *s, int32_t k)
     return k;
 }
 
-static void take_marked(struct sharing *s, int32_t i)
+static void paint_marked(struct sharing *s, int32_t i)
 {
     if (s->piece[i].course.marked == TRI_NONE)
         return;
@@ -375,7 +375,7 @@ static void take_marked(struct sharing *s, int32_t i)
         s->marked[k] = s->piece[i].course.marked;
 }
 
-static void take_free(struct sharing *s, int32_t i)
+static void paint_free(struct sharing *s, int32_t i)
 {
     for (int32_t k = s->reach[i][0]; (k = find_free(s, k)) < s->reach[i][1]; s->next[k] = k + 1)
         s->result[s->n_results++] =
@@ -407,13 +407,13 @@ static void paint(struct sharing *s)
     tri_heap_sort(s->by_mark, s->n, is_marked_before, s->piece);
     for (int32_t k = 0; k < s->n_stops; k++)
         s->marked[k] = TRI_NONE;
-    take_back(s);
+    free_all(s);
     for (int32_t i = 0; i < s->n; i++)
-        take_marked(s, s->by_mark[i]);
+        paint_marked(s, s->by_mark[i]);
     find_odd(s);
-    take_back(s);
+    free_all(s);
     for (int32_t i = 0; i < s->n; i++)
-        take_free(s, i);
+        paint_free(s, i);
 }
 
 bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,

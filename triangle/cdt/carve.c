@@ -67,14 +67,14 @@ enum { UNSEEN, WAITING, SEEN };
 
 /* State of a breadth-first traversal by depth: `stack` holds triangles of the current depth, `next` those across its
  * barriers. */
-struct dive {
+struct depth_flood {
     const struct tri_mesh *mesh;
     uint8_t *state;         /* [n_triangles] UNSEEN, WAITING or SEEN */
     int32_t *stack, *next;  /* [n_triangles] */
     int32_t n, n_next;
 };
 
-static void visit_triangle(struct dive *d, tri_triangle_id t)
+static void visit_triangle(struct depth_flood *d, tri_triangle_id t)
 {
     if (d->state[t] == SEEN)
         return;
@@ -83,7 +83,7 @@ static void visit_triangle(struct dive *d, tri_triangle_id t)
     d->stack[d->n++] = t;
 }
 
-static void put_off(struct dive *d, tri_triangle_id t)
+static void defer_triangle(struct depth_flood *d, tri_triangle_id t)
 {
     if (d->state[t] != UNSEEN)
         return;
@@ -92,21 +92,21 @@ static void put_off(struct dive *d, tri_triangle_id t)
     d->next[d->n_next++] = t;
 }
 
-static void cross_edge(struct dive *d, tri_halfedge code)
+static void cross_edge(struct depth_flood *d, tri_halfedge code)
 {
     tri_link link = *tri_link_at(d->mesh, code);
     tri_halfedge other = tri_across(d->mesh, code);
     if (other == TRI_NONE)
         return;
     if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
-        put_off(d, tri_of(other));
+        defer_triangle(d, tri_of(other));
     else
         visit_triangle(d, tri_of(other));
 }
 
 /* Starts at the triangles along the hull: at depth 0, or at depth 1 if the hull edge is a barrier. Pushes those at
  * depth 0 first. */
-static void enter_hull(struct dive *d, bool keep_hull)
+static void enter_hull(struct depth_flood *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
     for (int pass = 0; pass < 2; pass++)
@@ -120,13 +120,13 @@ static void enter_hull(struct dive *d, bool keep_hull)
                 if (pass == 0 && !barrier)
                     visit_triangle(d, t);
                 if (pass == 1 && barrier)
-                    put_off(d, t);
+                    defer_triangle(d, t);
             }
 }
 
 /* INVARIANT: each depth is flooded completely before the next one, so a triangle is first seen at its least depth. A
  * triangle waits at most once, and visit_triangle() may visit it while it waits. */
-static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
+static void kill_depths(struct flood *f, struct depth_flood *d, bool keep_hull)
 {
     enter_hull(d, keep_hull);
     for (bool even = true; d->n + d->n_next > 0; even = !even) {
@@ -148,7 +148,7 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
 static enum tri_status kill_even(struct flood *f, bool keep_hull, struct tri_error *error)
 {
     size_t n = (size_t)f->mesh->n_triangles + 1;
-    struct dive d = {f->mesh, calloc(n, 1), f->stack, malloc(n * sizeof *d.next), 0, 0};
+    struct depth_flood d = {f->mesh, calloc(n, 1), f->stack, malloc(n * sizeof *d.next), 0, 0};
     enum tri_status status = TRI_OK;
     if (d.state && d.next)
         kill_depths(f, &d, keep_hull);
@@ -338,7 +338,7 @@ static int32_t sort_subs(const struct tri_mesh *mesh, struct sorting *to, int32_
     return kept;
 }
 
-static void adopt_subs(struct tri_mesh *mesh, const struct sorting *from, int32_t kept)
+static void store_subs(struct tri_mesh *mesh, const struct sorting *from, int32_t kept)
 {
     for (tri_sub_id s = 0; s < kept; s++) {
         mesh->sub[s] = from->sub[s];
@@ -359,7 +359,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
     enum tri_status status = TRI_OK;
     assert(mesh->n_subs <= mesh->n_parents);
     if (s.start && s.sub && s.parent)
-        adopt_subs(mesh, &s, sort_subs(mesh, &s, n_segments));
+        store_subs(mesh, &s, sort_subs(mesh, &s, n_segments));
     else
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
     free(s.start);
@@ -369,7 +369,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
 }
 
 /* Marks the triangles to be removed. */
-static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const struct tri_carve_options *options,
+static enum tri_status mark_dead(struct flood *f, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                             struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -398,7 +398,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
     tri_mark_vertices(mesh);
     if (!status && mesh->n_triangles > 0) {
-        status = kill(&f, pslg, options, error);
+        status = mark_dead(&f, pslg, options, error);
         if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);
         if (!status)

@@ -82,14 +82,14 @@ static bool is_joint(const struct chains *c, tri_vertex_id v)
 }
 
 /* Returns the other subsegment at joint v. */
-static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
+static tri_sub_id other_sub(const struct chains *c, tri_vertex_id v, tri_sub_id s)
 {
     const tri_sub_id *at = &c->at[2 * (size_t)v];
     assert((at[0] == s) != (at[1] == s));
     return at[at[0] == s];
 }
 
-static void append(struct chains *c, tri_sub_id s)
+static void append_sub(struct chains *c, tri_sub_id s)
 {
     assert(c->n < c->mesh->n_subs && !c->seen[s]);
     c->seen[s] = true;
@@ -114,19 +114,19 @@ static void turn_chain(struct chains *c)
 
 /* Stores the chain that begins at vertex `from` with subsegment s as the current chain, in the direction of s. A closed
  * chain ends at its start. */
-static void follow(struct chains *c, tri_sub_id s, tri_vertex_id from)
+static void follow_chain(struct chains *c, tri_sub_id s, tri_vertex_id from)
 {
     c->n = 0;
     c->vertex[0] = from;
-    append(c, s);
+    append_sub(c, s);
     for (tri_vertex_id v = c->vertex[1]; v != from && is_joint(c, v); v = c->vertex[c->n])
-        append(c, beyond(c, v, c->sub[c->n - 1]));
+        append_sub(c, other_sub(c, v, c->sub[c->n - 1]));
     if (c->mesh->sub[s].v[0] != from)
         turn_chain(c);
 }
 
 /* Returns the index at which the chain from vertex i to vertex k must be cut; 0: it is straight. */
-static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
+static int32_t find_cut(const struct chains *c, int32_t i, int32_t k)
 {
     const struct tri_mesh *mesh = c->mesh;
     const tri_vertex_id *v = c->vertex;
@@ -170,7 +170,7 @@ static void unite_straight(const struct chains *c, int32_t i, int32_t k, int dep
 {
     if (k - i == 1)
         return;
-    int32_t cut = farthest(c, i, k);
+    int32_t cut = find_cut(c, i, k);
     if (cut == 0) {
         unite(c, i, k);
         return;
@@ -210,12 +210,12 @@ static void unite_all(struct chains *c)
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (!c->seen[s] && !is_joint(c, mesh->sub[s].v[k])) {
-                follow(c, s, mesh->sub[s].v[k]);
+                follow_chain(c, s, mesh->sub[s].v[k]);
                 unite_straight(c, 0, c->n, 0);
             }
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (!c->seen[s]) { /* closed chain */
-            follow(c, s, mesh->sub[s].v[0]);
+            follow_chain(c, s, mesh->sub[s].v[0]);
             unite_straight(c, 0, c->n, 0);
         }
 }

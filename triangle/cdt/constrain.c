@@ -32,9 +32,9 @@
 
 enum { WINDOW = 64 }; /* number of further triangles searched for a nearer vertex after one beside the piece is found */
 
-static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
+static const struct tri_course NO_SEGMENT = {TRI_NONE, TRI_NONE, false};
 
-struct layer {
+struct builder {
     struct tri_mesh *mesh;
     const struct tri_pslg *pslg;
     struct tri_cavity cavity;
@@ -54,12 +54,12 @@ struct layer {
     struct tri_error *error;
 };
 
-static enum tri_status no_memory(struct layer *l)
+static enum tri_status no_memory(struct builder *l)
 {
     return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
 }
 
-static bool push_piece(struct layer *l, tri_vertex_id from, tri_vertex_id to, struct tri_course course)
+static bool push_piece(struct builder *l, tri_vertex_id from, tri_vertex_id to, struct tri_course course)
 {
     assert(from >= 0 && from < l->mesh->n_vertices && to >= 0 && to < l->mesh->n_vertices);
     if (from == to)
@@ -70,12 +70,12 @@ static bool push_piece(struct layer *l, tri_vertex_id from, tri_vertex_id to, st
     return room;
 }
 
-static int32_t marker_of(const struct layer *l, struct tri_course course)
+static int32_t marker_of(const struct builder *l, struct tri_course course)
 {
     return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
 }
 
-static bool set_course(struct layer *l, tri_sub_id s, struct tri_course course)
+static bool set_course(struct builder *l, tri_sub_id s, struct tri_course course)
 {
     bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
     if (room)
@@ -83,7 +83,7 @@ static bool set_course(struct layer *l, tri_sub_id s, struct tri_course course)
     return room;
 }
 
-static bool mark_edge(struct layer *l, tri_triangle_id t, int e, struct tri_course course)
+static bool mark_edge(struct builder *l, tri_triangle_id t, int e, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
     tri_link link = mesh->tri[t].n[e];
@@ -103,14 +103,14 @@ static bool mark_edge(struct layer *l, tri_triangle_id t, int e, struct tri_cour
     return set_course(l, s, course);
 }
 
-static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
+static struct tri_point end_of(const struct builder *l, int32_t segment, int k)
 {
     assert(segment >= 0 && segment < l->pslg->n_segments);
     return l->mesh->xy[l->pslg->segments[2 * segment + k]];
 }
 
 /* Is v within `resolutions` resolutions of the line of an input segment, measured at the segment's larger end? */
-static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, double resolutions)
+static bool is_near_line(const struct builder *l, int32_t segment, tri_vertex_id v, double resolutions)
 {
     const int32_t *ends = &l->pslg->segments[2 * segment];
     if (v == ends[0] || v == ends[1])
@@ -121,9 +121,9 @@ static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, do
 }
 
 /* Returns a value > 0 if q comes after p in the order along an input segment, and 0 if they are at the same place.
- * Points equally far along it are ordered across it. The sign is exact, since tri_turn is; the first call rotates both
- * points by 90 degrees. */
-static double advance(const struct layer *l, int32_t segment, struct tri_point p, struct tri_point q)
+ * Points at the same distance along the segment are ordered by their position perpendicular to it. The sign is exact,
+ * since tri_turn is; the first call rotates both points by 90 degrees. */
+static double compare_along(const struct builder *l, int32_t segment, struct tri_point p, struct tri_point q)
 {
     struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1), from = {-p.y, p.x}, to = {-q.y, q.x};
     double along = tri_turn(a, b, from, to);
@@ -131,15 +131,15 @@ static double advance(const struct layer *l, int32_t segment, struct tri_point p
 }
 
 /* Does q lie between the ends of the piece, in the order along its segment? See THEOREM (end). */
-static bool comes_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+static bool comes_between(const struct builder *l, struct tri_point q, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
-    double first = advance(l, piece->course.first, a, q), second = advance(l, piece->course.first, q, b);
+    double first = compare_along(l, piece->course.first, a, q), second = compare_along(l, piece->course.first, q, b);
     return (first > 0 && second > 0) || (first < 0 && second < 0);
 }
 
 /* Does q lie between the ends of the piece, along the line of the piece itself? */
-static bool lies_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+static bool lies_between(const struct builder *l, struct tri_point q, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
     double x = b.x - a.x, y = b.y - a.y; /* relative to each end, since q may be close to one */
@@ -147,7 +147,7 @@ static bool lies_between(const struct layer *l, struct tri_point q, const struct
 }
 
 /* Reports a segment by its ends, because files may number from 0 or from 1. */
-static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
+static enum tri_status fail_for_segment(const struct builder *l, int32_t segment)
 {
     const double unit = l->mesh->unit; /* a power of two */
     struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
@@ -156,17 +156,17 @@ static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
                     "too much lies within rounding of it", unit * a.x, unit * a.y, unit * b.x, unit * b.y);
 }
 
-static enum tri_status check_distance(const struct layer *l, struct tri_course course, tri_vertex_id v)
+static enum tri_status check_distance(const struct builder *l, struct tri_course course, tri_vertex_id v)
 {
     int32_t segment[2] = {course.first, course.marked};
     for (int k = 0; k < 2; k++)
-        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ASTRAY))
-            return cannot_keep(l, segment[k]);
+        if (segment[k] != TRI_NONE && !is_near_line(l, segment[k], v, TRI_SEGMENT_ASTRAY))
+            return fail_for_segment(l, segment[k]);
     return TRI_OK;
 }
 
 /* Makes ab a subsegment. The edges between a and b that it crosses begin in triangle t. */
-static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
+static enum tri_status insert_edge(struct builder *l, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
                                 struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -189,7 +189,7 @@ static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_i
     return mark_edge(l, tri_of(code), tri_edge(code), course) ? TRI_OK : no_memory(l);
 }
 
-static bool keep_corners(struct layer *l, tri_vertex_id v)
+static bool update_corners(struct builder *l, tri_vertex_id v)
 {
     bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
     if (!room)
@@ -204,7 +204,7 @@ static bool keep_corners(struct layer *l, tri_vertex_id v)
 }
 
 /* Removes subsegment s, which has triangles on both sides, from the mesh. The last subsegment gets its number. */
-static bool take_up(struct layer *l, tri_sub_id s)
+static bool remove_sub(struct builder *l, tri_sub_id s)
 {
     struct tri_mesh *mesh = l->mesh;
     tri_halfedge left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
@@ -224,7 +224,7 @@ static bool take_up(struct layer *l, tri_sub_id s)
 
 /* Returns the triangle that holds *p, not on the hull. If rounding has put *p on or beyond the hull, moves it by one
  * step. Returns TRI_NONE if no such place is found. */
-static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
+static tri_triangle_id find_place(const struct builder *l, tri_vertex_id near, struct tri_point *p)
 {
     const struct tri_point step = {tri_resolution(*p), tri_resolution(*p)};
     for (int i = 0; i < TRI_PLACES; i++) {
@@ -239,19 +239,19 @@ static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, str
     return TRI_NONE;
 }
 
-/* Removes subsegment s and pushes it on the stack, to be cut at a vertex that is determined later (see finish_parts). A
+/* Removes subsegment s and pushes it on the stack, to be cut at a vertex that is determined later (see cut_pieces). A
  * hull edge stays, but no segment runs along it any more. */
-static bool take_apart(struct layer *l, tri_sub_id s)
+static bool remove_for_rerouting(struct builder *l, tri_sub_id s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
     struct tri_course course = l->course[s];
-    l->course[s] = NOBODY;
-    return (tri_is_boundary(&old) || take_up(l, s)) && push_piece(l, old.v[0], old.v[1], course);
+    l->course[s] = NO_SEGMENT;
+    return (tri_is_boundary(&old) || remove_sub(l, s)) && push_piece(l, old.v[0], old.v[1], course);
 }
 
 /* Cuts the pieces on the stack from number `first` on at vertex v. The first two, which cross at v, are always cut, the
  * others only if v lies between their ends. */
-static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
+static bool cut_pieces(struct builder *l, int32_t first, tri_vertex_id v)
 {
     assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
     for (int32_t i = l->n_pieces - 1; i >= first; i--) {
@@ -268,28 +268,28 @@ static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
 /* A candidate vertex that two crossing pieces can share instead of a new one. */
 struct choice {
     tri_vertex_id vertex; /* TRI_NONE: none found */
-    int astray;           /* for how many of the two pieces it does not lie between the ends */
+    int n_outside;           /* for how many of the two pieces it does not lie between the ends */
     double distance;      /* squared distance from the crossing */
 };
 
 /* Replaces *best if v is a better choice. The crossing pieces are the first two from number `first` on. */
-static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
+static void try_vertex(const struct builder *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
                        struct choice *best)
 {
     struct choice now = {v, 0, tri_distance2(l->mesh->xy[v], p)};
     if (now.distance > within * within)
         return;
     for (int32_t i = first; i < first + 2; i++)
-        now.astray += l->piece[i].from != v && l->piece[i].to != v && !lies_between(l, l->mesh->xy[v], &l->piece[i]);
-    if (best->vertex == TRI_NONE || now.astray < best->astray ||
-        (now.astray == best->astray && now.distance < best->distance))
+        now.n_outside += l->piece[i].from != v && l->piece[i].to != v && !lies_between(l, l->mesh->xy[v], &l->piece[i]);
+    if (best->vertex == TRI_NONE || now.n_outside < best->n_outside ||
+        (now.n_outside == best->n_outside && now.distance < best->distance))
         *best = now;
 }
 
 /* Chooses a vertex within a distance of p, from the ends of the pieces from number `first` on, the corners of triangle
  * t (if any) and the vertices around the cavity of p. Prefers one that lies between the ends of both crossing pieces,
  * then the nearest. */
-static struct choice choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
+static struct choice choose_vertex(const struct builder *l, int32_t first, tri_triangle_id t, struct tri_point p,
                                    double within)
 {
     struct choice best = {TRI_NONE, 0, 0};
@@ -306,7 +306,7 @@ static struct choice choose_vertex(const struct layer *l, int32_t first, tri_tri
 }
 
 /* Inserts a vertex at p, whose cavity has been found, with the marker and attributes of the piece `along`. */
-static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along,
+static enum tri_status add_crossing(struct builder *l, struct tri_point p, const struct tri_piece *along,
                                     tri_vertex_id *vertex)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -323,12 +323,12 @@ static enum tri_status add_crossing(struct layer *l, struct tri_point p, const s
                              mesh->attributes + (size_t)v * (size_t)mesh->n_attributes);
     tri_cavity_fill(&l->cavity, mesh, v);
     l->report->crossings++;
-    return keep_corners(l, v) ? TRI_OK : no_memory(l);
+    return update_corners(l, v) ? TRI_OK : no_memory(l);
 }
 
 /* Returns the point where the pieces cross: the crossing of their input segments, unless earlier bends have moved
  * it. */
-static struct tri_point crossing_of(const struct layer *l, const struct tri_piece *a, const struct tri_piece *b)
+static struct tri_point crossing_of(const struct builder *l, const struct tri_piece *a, const struct tri_piece *b)
 {
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point here = xy[a->from], there;
@@ -343,21 +343,21 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
-/* Is v so near to the segment that it is also near enough to other segments along the same piece? These lie within
- * TRI_BESIDE of it. */
-static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
+/* Returns whether v is near enough to this segment to be near enough to all segments of the same piece. Those segments
+ * lie within TRI_BESIDE of this one. */
+static bool is_near_common_line(const struct builder *l, int32_t segment, tri_vertex_id v)
 {
-    return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ASTRAY - TRI_BESIDE);
+    return segment == TRI_NONE || is_near_line(l, segment, v, TRI_SEGMENT_ASTRAY - TRI_BESIDE);
 }
 
 /* Sets *nearest and *least if the piece can be cut at `end`, an end of another piece, and that is nearer to it than
  * *least. The point must lie between the ends of the piece, near its segment, and also near the piece itself, because
  * other segments along it may have finer coordinates. */
-static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
+static void try_end(const struct builder *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
                     double *least)
 {
-    if (!lies_between(l, l->mesh->xy[end], piece) || !keeps_near(l, piece->course.first, end) ||
-        !keeps_near(l, piece->course.marked, end))
+    if (!lies_between(l, l->mesh->xy[end], piece) || !is_near_common_line(l, piece->course.first, end) ||
+        !is_near_common_line(l, piece->course.marked, end))
         return;
     double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
     if (distance < *least && distance <= (TRI_SEGMENT_ASTRAY - TRI_BESIDE) * tri_resolution(l->mesh->xy[end]))
@@ -367,7 +367,7 @@ static void try_end(const struct layer *l, const struct tri_piece *piece, tri_ve
 /* Piece number `first` crosses the pieces after it on the stack. Returns the nearest of their ends at which `first` can
  * be cut, so that they stay unchanged; otherwise an end of `first` at which one of them can be cut; otherwise
  * TRI_NONE. */
-static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
+static tri_vertex_id nearest_end(const struct builder *l, int32_t first)
 {
     tri_vertex_id nearest = TRI_NONE;
     double least = HUGE_VAL;
@@ -384,16 +384,16 @@ static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
 }
 
 /* Rule 3: the piece crosses subsegment s, and both are cut at a common vertex. */
-static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
+static enum tri_status cut_at_crossing(struct builder *l, const struct tri_piece *piece, tri_sub_id s)
 {
     assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* pieces do not leave the hull */
     if (l->crossings_left-- == 0)
-        return cannot_keep(l, l->segment);
+        return fail_for_segment(l, l->segment);
     const int32_t first = l->n_pieces;
     const tri_vertex_id near = l->mesh->sub[s].v[0];
     tri_sub_id on;
     tri_triangle_id t;
-    if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
+    if (!push_piece(l, piece->from, piece->to, piece->course) || !remove_for_rerouting(l, s))
         return no_memory(l);
     struct tri_point p = crossing_of(l, &l->piece[first], &l->piece[first + 1]);
     for (;;) {
@@ -401,7 +401,7 @@ static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece,
         on = t == TRI_NONE ? TRI_NONE : tri_sub_under(l->mesh, t, p);
         if (on == TRI_NONE)
             break;
-        if (!take_apart(l, on))
+        if (!remove_for_rerouting(l, on))
             return no_memory(l);
     }
     l->cavity.n_edges = 0;
@@ -413,12 +413,12 @@ static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece,
                 lies_between(l, p, &l->piece[first + 1]);
     struct choice shared = choose_vertex(l, first, t, p, TRI_VERTICES_APART * tri_resolution(p));
     tri_vertex_id v = late ? nearest_end(l, first) : TRI_NONE;
-    if (v == TRI_NONE && shared.astray == 0)
+    if (v == TRI_NONE && shared.n_outside == 0)
         v = shared.vertex;
     if (v == TRI_NONE && !room) {
         v = shared.vertex == TRI_NONE && !late ? nearest_end(l, first) : shared.vertex;
         if (v == TRI_NONE)
-            return cannot_keep(l, l->segment);
+            return fail_for_segment(l, l->segment);
     }
     if (v != TRI_NONE) {
         l->report->bent++;
@@ -428,11 +428,11 @@ static enum tri_status cross_sub(struct layer *l, const struct tri_piece *piece,
         if (status)
             return status;
     }
-    return finish_parts(l, first, v) ? TRI_OK : no_memory(l);
+    return cut_pieces(l, first, v) ? TRI_OK : no_memory(l);
 }
 
 /* The first obstacle on the way of a piece. */
-struct meeting {
+struct hit {
     tri_vertex_id end; /* the first vertex on the piece, perhaps its own end; TRI_NONE: a subsegment comes first */
     tri_sub_id across; /* that subsegment, otherwise TRI_NONE */
     tri_vertex_id beside; /* the nearest vertex passed within rounding of the piece, or TRI_NONE */
@@ -440,8 +440,8 @@ struct meeting {
 };
 
 /* Rule 2: sets met->beside to v if v is within rounding of the piece and nearer than the previous one. */
-static void consider(const struct layer *l, const struct tri_piece *piece, tri_vertex_id v, double det,
-                     struct meeting *met)
+static void consider_beside(const struct builder *l, const struct tri_piece *piece, tri_vertex_id v, double det,
+                     struct hit *met)
 {
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
@@ -452,7 +452,7 @@ static void consider(const struct layer *l, const struct tri_piece *piece, tri_v
         return;
     double distance = tri_line_distance(a, b, q), near = TRI_ON_SEGMENT * tri_resolution(q);
     if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
-        !keeps_to(l, piece->course.first, v, TRI_BESIDE) || !comes_between(l, q, piece) ||
+        !is_near_line(l, piece->course.first, v, TRI_BESIDE) || !comes_between(l, q, piece) ||
         (met->beside != TRI_NONE && met->distance <= distance))
         return;
     met->beside = v;
@@ -460,11 +460,11 @@ static void consider(const struct layer *l, const struct tri_piece *piece, tri_v
 }
 
 /* Finds the first obstacle of the piece. t: the triangle through which the piece leaves its start. */
-static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, tri_triangle_id t)
+static struct hit find_hit(const struct builder *l, const struct tri_piece *piece, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
-    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
+    struct hit met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
     if (t == TRI_NONE)
         return met;
     int e = tri_corner_of(&mesh->tri[t], piece->from);
@@ -474,8 +474,8 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
         met.end = at_right == 0 ? right : left;
         return met;
     }
-    consider(l, piece, right, at_right, &met);
-    consider(l, piece, left, at_left, &met);
+    consider_beside(l, piece, right, at_right, &met);
+    consider_beside(l, piece, left, at_left, &met);
     for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
         l->report->looked_at++;
         tri_link link = mesh->tri[t].n[e];
@@ -491,7 +491,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
             met.end = o;
             return met;
         }
-        consider(l, piece, o, side, &met);
+        consider_beside(l, piece, o, side, &met);
         if (met.beside != TRI_NONE && end == INT64_MAX)
             end = 2 * step + WINDOW;
         e = side > 0 ? tri_next[e] : tri_prev[e];
@@ -500,7 +500,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
 }
 
 /* Cuts the piece at vertex v, and pushes both parts on the stack. */
-static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, tri_vertex_id v)
+static enum tri_status cut_at(struct builder *l, const struct tri_piece *piece, tri_vertex_id v)
 {
     assert(comes_between(l, l->mesh->xy[v], piece));
     bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
@@ -508,60 +508,60 @@ static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, t
 }
 
 /* Inserts the first part of a piece, or cuts the piece, and pushes the rest on the stack. May exchange its ends. */
-static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
+static enum tri_status insert_piece(struct builder *l, struct tri_piece piece)
 {
     tri_triangle_id t = tri_find_exit(l->mesh, l->corner, &piece.from, &piece.to);
-    struct meeting met = look_ahead(l, &piece, t);
+    struct hit met = find_hit(l, &piece, t);
     assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
     l->runs_along |= met.beside != TRI_NONE || (met.end != TRI_NONE && met.end != piece.to);
     if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece.to)) {
         l->report->bent++;
-        return stop_at(l, &piece, met.beside);
+        return cut_at(l, &piece, met.beside);
     }
     if (met.beside != TRI_NONE)
-        return stop_at(l, &piece, met.end);
+        return cut_at(l, &piece, met.end);
     if (met.across != TRI_NONE)
-        return cross_sub(l, &piece, met.across);
+        return cut_at_crossing(l, &piece, met.across);
     assert(met.end != TRI_NONE); /* because the hull is convex */
     assert(met.end == piece.to || comes_between(l, l->mesh->xy[met.end], &piece));
-    enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
+    enum tri_status status = insert_edge(l, t, piece.from, met.end, piece.course);
     if (status)
         return status;
     return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
-static void allow_crossings(struct layer *l)
+static void allow_crossings(struct builder *l)
 {
     /* Limits rule 3. Usually, each subsegment crossed takes one application. */
     l->crossings = l->crossings_left = 200 + 10 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
 }
 
-static enum tri_status lay_pieces(struct layer *l)
+static enum tri_status insert_pieces(struct builder *l)
 {
     while (l->n_pieces > 0) {
         if (tri_stop_is_due(l->mesh->stop, &l->step))
             return tri_fail_stopped(l->error);
-        enum tri_status status = lay_piece(l, l->piece[--l->n_pieces]);
+        enum tri_status status = insert_piece(l, l->piece[--l->n_pieces]);
         if (status)
             return status;
     }
     return TRI_OK;
 }
 
-static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
+static enum tri_status insert_segment(struct builder *l, const struct tri_piece *segment)
 {
     l->n_pieces = 0;
     l->segment = segment->course.first;
     allow_crossings(l);
-    return push_piece(l, segment->from, segment->to, segment->course) ? lay_pieces(l) : no_memory(l);
+    return push_piece(l, segment->from, segment->to, segment->course) ? insert_pieces(l) : no_memory(l);
 }
 
 /* Rule 4: returns the nearer apex that is beside subsegment s within rounding; TRI_NONE: there is none. */
-static tri_vertex_id find_beside(const struct layer *l, tri_sub_id s)
+static tri_vertex_id find_beside(const struct builder *l, tri_sub_id s)
 {
     const struct tri_mesh *mesh = l->mesh;
     const struct tri_subsegment *sub = &mesh->sub[s];
-    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
+    struct hit met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
     struct tri_piece piece = {sub->v[0], sub->v[1], l->course[s]};
     for (int side = 0; side < 2 && piece.course.first != TRI_NONE; side++) {
         if (sub->side[side] == TRI_NONE)
@@ -569,27 +569,27 @@ static tri_vertex_id find_beside(const struct layer *l, tri_sub_id s)
         tri_vertex_id v = tri_apex(mesh, sub->side[side]);
         struct tri_relative a = tri_relative(&mesh->xy[piece.from], mesh->xy[v]);
         struct tri_relative b = tri_relative(&mesh->xy[piece.to], mesh->xy[v]);
-        consider(l, &piece, v, tri_cross(a, b), &met);
+        consider_beside(l, &piece, v, tri_cross(a, b), &met);
     }
     return met.beside;
 }
 
-static enum tri_status lead_through(struct layer *l, tri_sub_id s, tri_vertex_id v)
+static enum tri_status reroute_through(struct builder *l, tri_sub_id s, tri_vertex_id v)
 {
     l->n_pieces = 0;
     l->segment = l->course[s].first;
     l->report->bent++;
-    return take_apart(l, s) && finish_parts(l, 0, v) ? lay_pieces(l) : no_memory(l);
+    return remove_for_rerouting(l, s) && cut_pieces(l, 0, v) ? insert_pieces(l) : no_memory(l);
 }
 
-static enum tri_status close_slits(struct layer *l)
+static enum tri_status reroute_subs(struct builder *l)
 {
     allow_crossings(l);
     for (bool again = true; again;) {
         again = false;
         for (tri_sub_id s = 0; s < l->mesh->n_subs;) {
             tri_vertex_id v = find_beside(l, s);
-            enum tri_status status = v == TRI_NONE ? TRI_OK : lead_through(l, s, v);
+            enum tri_status status = v == TRI_NONE ? TRI_OK : reroute_through(l, s, v);
             if (status)
                 return status;
             again = again || v != TRI_NONE;
@@ -599,40 +599,40 @@ static enum tri_status close_slits(struct layer *l)
     return TRI_OK;
 }
 
-static tri_triangle_id exit_of(void *context, tri_vertex_id *from, tri_vertex_id *to)
+static tri_triangle_id find_exit(void *context, tri_vertex_id *from, tri_vertex_id *to)
 {
-    const struct layer *l = context;
+    const struct builder *l = context;
     return tri_find_exit(l->mesh, l->corner, from, to);
 }
 
 /* After a piece has met a vertex before its end, others may run along the same vertices, so the remaining pieces are
  * merged first (bundle.h). */
-static enum tri_status lay_from(struct layer *l, struct tri_piece **piece, int32_t *n)
+static enum tri_status insert_list(struct builder *l, struct tri_piece **piece, int32_t *n)
 {
     int32_t k = 0;
     enum tri_status status = TRI_OK;
     for (; !status && k < *n && !l->runs_along; k++)
-        status = lay_segment(l, &(*piece)[k]);
+        status = insert_segment(l, &(*piece)[k]);
     *n -= k;
     memmove(*piece, *piece + k, (size_t)*n * sizeof **piece);
-    if (!status && !tri_share_bundles(l->mesh, l->pslg->n_points, piece, n, exit_of, l, &l->report->looked_at))
+    if (!status && !tri_share_bundles(l->mesh, l->pslg->n_points, piece, n, find_exit, l, &l->report->looked_at))
         status = no_memory(l);
     for (k = 0; !status && k < *n; k++)
-        status = lay_segment(l, &(*piece)[k]);
+        status = insert_segment(l, &(*piece)[k]);
     return status;
 }
 
-static enum tri_status lay_all(struct layer *l)
+static enum tri_status insert_all(struct builder *l)
 {
     struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
     int32_t n = piece ? tri_list_pieces(l->mesh, l->pslg, l->corner, piece, &l->report->skipped) : 0;
     enum tri_status status = piece && tri_put_in_rounds(&piece, n) ? TRI_OK : no_memory(l);
-    status = status ? status : lay_from(l, &piece, &n);
+    status = status ? status : insert_list(l, &piece, &n);
     free(piece);
-    return status ? status : close_slits(l);
+    return status ? status : reroute_subs(l);
 }
 
-static enum tri_status find_corners(struct layer *l)
+static enum tri_status find_corners(struct builder *l)
 {
     struct tri_mesh *mesh = l->mesh;
     l->corner_capacity = mesh->n_vertices + 64;
@@ -647,7 +647,7 @@ static enum tri_status find_corners(struct layer *l)
     return TRI_OK;
 }
 
-static void free_layer(struct layer *l)
+static void free_builder(struct builder *l)
 {
     tri_cavity_free(&l->cavity);
     tri_recovery_free(&l->recovery);
@@ -658,17 +658,17 @@ static void free_layer(struct layer *l)
 }
 
 /* Initialises the hull edges: no segment runs along them yet. */
-static enum tri_status list_courses(struct layer *l)
+static enum tri_status init_courses(struct builder *l)
 {
     for (tri_sub_id s = 0; s < l->mesh->n_subs; s++)
-        if (!set_course(l, s, NOBODY))
+        if (!set_course(l, s, NO_SEGMENT))
             return no_memory(l);
     return TRI_OK;
 }
 
 /* Sets the marker of each subsegment and gives it its own parent. There are enough parents: each subsegment came with
  * one. */
-static void settle_subs(struct layer *l)
+static void finish_subs(struct builder *l)
 {
     struct tri_mesh *mesh = l->mesh;
     assert(mesh->n_subs <= mesh->n_parents && mesh->n_subs <= l->course_capacity);
@@ -679,7 +679,7 @@ static void settle_subs(struct layer *l)
         sub->parent = mesh->n_parents++;
         const int32_t segment = l->course[s].first;
         const bool reversed = segment != TRI_NONE &&
-                              advance(l, segment, mesh->xy[sub->v[0]], mesh->xy[sub->v[1]]) < 0;
+                              compare_along(l, segment, mesh->xy[sub->v[0]], mesh->xy[sub->v[1]]) < 0;
         mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, segment, l->course[s].odd, reversed,
                                                          {NAN, NAN}};
     }
@@ -688,13 +688,13 @@ static void settle_subs(struct layer *l)
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error)
 {
-    struct layer l = {.mesh = mesh, .flips.mesh = mesh, .pslg = pslg, .report = report, .error = error};
+    struct builder l = {.mesh = mesh, .flips.mesh = mesh, .pslg = pslg, .report = report, .error = error};
     *report = (struct tri_constrain_report){0};
     enum tri_status status = find_corners(&l);
-    status = status ? status : list_courses(&l);
-    status = status ? status : lay_all(&l);
+    status = status ? status : init_courses(&l);
+    status = status ? status : insert_all(&l);
     if (!status)
-        settle_subs(&l);
-    free_layer(&l);
+        finish_subs(&l);
+    free_builder(&l);
     return status;
 }

@@ -31,7 +31,7 @@ static struct tri_pair quotient(struct tri_pair p, struct tri_pair q)
 }
 
 /* Returns from + fraction * way, rounded to a coordinate. */
-static double go(double from, struct tri_pair way, struct tri_pair fraction)
+static double move_along(double from, struct tri_pair way, struct tri_pair fraction)
 {
     struct tri_pair step = product(way, fraction), h = tri_two_sum(from, step.head);
     return tri_round_coordinate(h.head + (h.tail + step.tail));
@@ -55,8 +55,8 @@ static struct tri_point cut(struct tri_point a, struct tri_point b, struct tri_p
 {
     struct tri_pair from = tri_orient2d_pair(a, b, c), to = tri_orient2d_pair(a, b, d);
     struct tri_pair fraction = quotient(from, sum(from, negative(to)));
-    return (struct tri_point){go(c.x, tri_two_difference(d.x, c.x), fraction),
-                              go(c.y, tri_two_difference(d.y, c.y), fraction)};
+    return (struct tri_point){move_along(c.x, tri_two_difference(d.x, c.x), fraction),
+                              move_along(c.y, tri_two_difference(d.y, c.y), fraction)};
 }
 
 /* Computes the point along the segment with the finer coordinates. */
@@ -73,5 +73,5 @@ struct tri_point tri_onto_line(struct tri_point a, struct tri_point b, struct tr
 {
     struct tri_pair x = tri_two_difference(b.x, a.x), y = tri_two_difference(b.y, a.y);
     struct tri_pair fraction = quotient(tri_orient2d_pair(a, b, q), sum(product(x, x), product(y, y)));
-    return (struct tri_point){go(q.x, y, fraction), go(q.y, negative(x), fraction)};
+    return (struct tri_point){move_along(q.x, y, fraction), move_along(q.y, negative(x), fraction)};
 }

@@ -108,7 +108,7 @@ static int round_of(const struct builder *b, tri_vertex_id v)
     return round;
 }
 
-static bool is_to_insert(const struct builder *b, tri_vertex_id v)
+static bool needs_insertion(const struct builder *b, tri_vertex_id v)
 {
     return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
 }
@@ -122,7 +122,7 @@ static void arrange_leaf(void *context, size_t index)
     int32_t at[MOST_ROUNDS + 1] = {0};
     leaf->range = tri_share_of(index, (size_t)b->n_leaves, b->mesh->n_vertices);
     for (tri_vertex_id v = leaf->range.first; v < leaf->range.last; v++)
-        if (is_to_insert(b, v))
+        if (needs_insertion(b, v))
             at[round_of(b, v) + 1]++;
     at[0] = leaf->range.first;
     for (int r = 0; r < MOST_ROUNDS; r++)
@@ -131,7 +131,7 @@ static void arrange_leaf(void *context, size_t index)
     for (int r = 0; r <= MOST_ROUNDS; r++)
         leaf->round[r] = at[r];
     for (tri_vertex_id v = leaf->range.first; v < leaf->range.last; v++)
-        if (is_to_insert(b, v))
+        if (needs_insertion(b, v))
             b->waiting[at[round_of(b, v)]++] = v;
     for (tri_triangle_id t = 2 * at[MOST_ROUNDS]; t < 2 * leaf->range.last; t++)
         b->tri[t].v[0] = TRI_NONE;
@@ -148,7 +148,7 @@ static struct tri_range stretch_of(const struct builder *b, int32_t leaf)
 
 /* Finds a triangle at which the stretch can begin with the points of a leaf: that of the first point whose triangle the
  * stretch owns. Runs while nothing is inserted. A stretch that owns everything can begin anywhere. */
-static void seek_entry(void *context, size_t index)
+static void find_entry(void *context, size_t index)
 {
     const struct builder *b = context;
     struct leaf *leaf = &b->leaf[index];
@@ -208,7 +208,7 @@ static void insert_stretch(void *context, size_t index)
 static enum tri_status run_phase(struct builder *b, struct tri_error *error)
 {
     size_t n_stretches = (size_t)((b->n_leaves + b->width - 1) / b->width);
-    tri_execute(b->executor, (size_t)b->n_leaves, seek_entry, b);
+    tri_execute(b->executor, (size_t)b->n_leaves, find_entry, b);
     tri_execute(b->executor, n_stretches, insert_stretch, b);
     for (int32_t i = 0; i < b->n_leaves; i += b->width) {
         if (b->leaf[i].status == TRI_STOPPED)

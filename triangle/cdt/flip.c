@@ -111,22 +111,22 @@ bool tri_flip_legalise(struct tri_flips *f)
 
 /* Triangles with an edge to be flipped, found in parallel over shares of the mesh. Each edge is tested from its
  * triangle with the lower number. */
-struct suspicion {
+struct flip_candidates {
     struct tri_flips *flips;
-    tri_triangle_id *suspect; /* [n_triangles] one list per share, starting at the first triangle of the share */
+    tri_triangle_id *candidate; /* [n_triangles] one list per share, starting at the first triangle of the share */
     int32_t n[TRI_MOST_SHARES];
 };
 
-static void suspect_share(void *context, size_t share)
+static void list_candidates_share(void *context, size_t share)
 {
-    struct suspicion *s = context;
+    struct flip_candidates *s = context;
     const struct tri_mesh *mesh = s->flips->mesh;
     struct tri_range range = tri_share(share, mesh->n_triangles);
     uint32_t step = 0;
     for (tri_triangle_id t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
         for (int e = 0; e < 3; e++)
             if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->flips, t, e)) {
-                s->suspect[range.first + s->n[share]++] = t;
+                s->candidate[range.first + s->n[share]++] = t;
                 break;
             }
     assert(s->n[share] <= range.last - range.first);
@@ -145,17 +145,17 @@ static bool touch_upwards(struct tri_flips *f, tri_triangle_id t)
 
 /* Flips until all edges are Delaunay. An edge not changed by any flip has been tested; all others have been touched and
  * made legal. */
-static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error *error)
+static enum tri_status flip_all(const struct flip_candidates *s, struct tri_error *error)
 {
     struct tri_flips *f = s->flips;
     enum tri_status status = tri_stop_is_asked(f->mesh->stop) ? tri_fail_stopped(error) : TRI_OK;
     uint32_t step = 0;
     for (size_t share = 0; share < tri_shares(f->mesh->n_triangles); share++) {
-        const tri_triangle_id *suspect = s->suspect + tri_share(share, f->mesh->n_triangles).first;
+        const tri_triangle_id *candidate = s->candidate + tri_share(share, f->mesh->n_triangles).first;
         for (int32_t i = 0; !status && i < s->n[share]; i++)
             if (tri_stop_is_due(f->mesh->stop, &step))
                 status = tri_fail_stopped(error);
-            else if (!touch_upwards(f, suspect[i]) || !tri_flip_legalise(f))
+            else if (!touch_upwards(f, candidate[i]) || !tri_flip_legalise(f))
                 status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
     }
     return status;
@@ -166,19 +166,19 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_exe
 {
     struct tri_flip_history history = {0};
     struct tri_flips f = {.mesh = mesh, .ties_stay = true, .history = mesh->n_regions > 1 ? &history : NULL};
-    struct suspicion s = {&f, malloc(((size_t)mesh->n_triangles + 1) * sizeof *s.suspect), {0}};
+    struct flip_candidates s = {&f, malloc(((size_t)mesh->n_triangles + 1) * sizeof *s.candidate), {0}};
     enum tri_status status = TRI_OK;
-    if (!s.suspect || (f.history && !tri_flip_history_begin(f.history, mesh)))
+    if (!s.candidate || (f.history && !tri_flip_history_begin(f.history, mesh)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
     if (!status) {
-        tri_execute(executor, tri_shares(mesh->n_triangles), suspect_share, &s);
-        status = flip_suspects(&s, error);
+        tri_execute(executor, tri_shares(mesh->n_triangles), list_candidates_share, &s);
+        status = flip_all(&s, error);
     }
     if (!status && f.history)
         tri_flip_history_settle(f.history, mesh);
     tri_flip_history_free(&history);
     tri_flips_free(&f);
-    free(s.suspect);
+    free(s.candidate);
     return status;
 }
 
@@ -249,7 +249,8 @@ static tri_region_id region_before(const struct tri_flip_history *h, const struc
 
 void tri_flip_history_settle(struct tri_flip_history *h, struct tri_mesh *mesh)
 {
-    /* Walks read h->last in their first step only, so it can hold the new region until all walks are done. */
+    /* A walk reads only h->last of the triangle at which it starts. So its result can be stored there, and is copied to
+     * the mesh after all walks. */
     for (tri_triangle_id t = 0; h->n > 0 && t < mesh->n_triangles; t++)
         if (h->last[t] != TRI_NONE)
             h->last[t] = region_before(h, mesh, t);

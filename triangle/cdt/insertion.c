@@ -37,14 +37,14 @@ static bool grow(struct tri_inserter *b)
     return tri_grow_together(arrays, 3, &b->capacity, b->capacity + 1, MORE_EDGES);
 }
 
-static inline bool holds(const struct tri_inserter *b, tri_vertex_id v)
+static inline bool is_in_stretch(const struct tri_inserter *b, tri_vertex_id v)
 {
     return (uint32_t)(v - b->stretch.first) < (uint32_t)(b->stretch.last - b->stretch.first) || v == TRI_GHOST;
 }
 
 bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *t)
 {
-    return holds(b, t->v[0]) && holds(b, t->v[1]) && holds(b, t->v[2]);
+    return is_in_stretch(b, t->v[0]) && is_in_stretch(b, t->v[1]) && is_in_stretch(b, t->v[2]);
 }
 
 /* Ghost e + 1 lies across edge e. Its edge from the end of the hull edge to infinity is shared with the ghost of the
@@ -103,7 +103,7 @@ static inline tri_triangle_id locate(struct tri_inserter *b, struct tri_point q)
     for (;;) {
         const struct tri_triangle *at = &b->tri[t];
         int k = 0;
-        if (from >= 0 && !holds(b, at->v[from]))
+        if (from >= 0 && !is_in_stretch(b, at->v[from]))
             return TRI_NONE;
         if ((at->v[0] | at->v[1] | at->v[2]) < 0)
             return t;
@@ -130,7 +130,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
         int e = tri_edge(link);
         assert(link >= 0 && t->v[tri_next[e]] == end && t->v[tri_prev[e]] == a);
         if (in_disk(b, t, q)) {
-            if (!holds(b, t->v[e]))
+            if (!is_in_stretch(b, t->v[e]))
                 return TRI_NOT_OWNED;
             if (b->n_cavity == b->capacity && !grow(b))
                 return TRI_INSERTION_NO_MEMORY;
@@ -182,7 +182,7 @@ enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_trian
     if (t == TRI_NONE)
         return TRI_NOT_OWNED;
     const struct tri_triangle start = b->tri[t];
-    assert(holds(b, v) && tri_inserter_owns(b, &start) && in_disk(b, &start, q));
+    assert(is_in_stretch(b, v) && tri_inserter_owns(b, &start) && in_disk(b, &start, q));
     b->n_cavity = b->n_edges = 0;
     if (b->capacity == 0 && !grow(b))
         return TRI_INSERTION_NO_MEMORY;
@@ -265,7 +265,7 @@ static tri_halfedge lowest_ghost(const struct tri_triangle *tri, int32_t *count)
 }
 
 /* Makes the hull edges subsegments and frees the ghosts. */
-static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri, struct tri_error *error)
+static enum tri_status convert_hull(struct tri_mesh *mesh, struct tri_triangle *tri, struct tri_error *error)
 {
     int32_t count, g = lowest_ghost(tri, &count);
     enum tri_status status = tri_mesh_reserve_subs(mesh, count, error);
@@ -346,7 +346,7 @@ static void sort_group(const struct sorting *s, uint64_t *item, int32_t n)
         assert(key_of(item[i - 1]) < key_of(item[i]));
 }
 
-static void place_share(void *context, size_t share)
+static void sort_groups_share(void *context, size_t share)
 {
     const struct sorting *s = context;
     for (int32_t begin = s->group[share], end; begin < s->group[share + 1]; begin = end) {
@@ -366,7 +366,7 @@ static void find_order(struct sorting *s, const struct tri_executor *executor)
     assert(key_of(s->item[s->n_live - 1]) < s->mesh->n_vertices);
     assert(s->n_live == s->n_triangles || key_of(s->item[s->n_live]) == s->mesh->n_vertices);
     find_groups(s);
-    tri_execute(executor, tri_shares(s->n_live), place_share, s);
+    tri_execute(executor, tri_shares(s->n_live), sort_groups_share, s);
 }
 
 /* --- moving the triangles */
@@ -392,7 +392,7 @@ static void move_share(void *context, size_t share)
             at->n[k] = from->n[old] >= 0 ? new_code(s, from->n[old]) : from->n[old];
         }
         at->region = 0;
-        at->life = 0;
+        at->generation = 0;
     }
 }
 
@@ -429,7 +429,7 @@ enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, 
 {
     struct sorting s = {.mesh = mesh, .tri = tri, .n_triangles = n_triangles, .n_live = n_live,
                         .vertex_bits = tri_bits_of(mesh->n_vertices)};
-    enum tri_status status = take_hull(mesh, tri, error);
+    enum tri_status status = convert_hull(mesh, tri, error);
     s.n_live -= mesh->n_subs; /* ghosts are not live any more */
     return status ? status : sort(&s, executor, error);
 }

@@ -2,8 +2,9 @@
  * attributes into regions.
  *
  * Every triangle contributes three half-edges. They are distributed to ranges of vertices by their lower end, and
- * sorted within a range by lower end, then upper end, so the two sides of an edge become neighbours. Ranges are matched
- * in parallel, since an edge has only one lower end. O(triangles), regardless of vertex degrees.
+ * sorted within a range by lower end, then upper end, so the two sides of an edge become neighbours. Both sides of an
+ * edge are in the same range, since they have the same lower end. So ranges can be matched in parallel. O(triangles),
+ * regardless of vertex degrees.
  *
  * Until the other side of an edge is found, its link is LOOSE, which differs from all codes and subsegments. Of several
  * faults the first is reported: by triangle while triangles are copied; by lower end, then by half-edge, while edges
@@ -105,7 +106,7 @@ static tri_vertex_id low_of(const struct tri_triangle *t, int e)
     return from < to ? from : to;
 }
 
-static void take_share(void *context, size_t share)
+static void copy_share(void *context, size_t share)
 {
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->elements->n);
@@ -121,7 +122,7 @@ static void take_share(void *context, size_t share)
     }
 }
 
-static enum tri_status take_triangles(struct matcher *m)
+static enum tri_status copy_triangles(struct matcher *m)
 {
     int32_t n = m->elements->n;
     enum tri_status status = tri_mesh_reserve_triangles(m->mesh, n, m->error);
@@ -129,7 +130,7 @@ static enum tri_status take_triangles(struct matcher *m)
         return status;
     m->width = m->mesh->n_vertices / (int32_t)n_shares(m) + 1;
     m->width_bits = tri_bits_of(m->width);
-    tri_execute(m->options->executor, n_shares(m), take_share, m);
+    tri_execute(m->options->executor, n_shares(m), copy_share, m);
     status = first_fault(m);
     m->mesh->n_triangles = status ? 0 : n;
     return status;
@@ -152,7 +153,7 @@ static void divide_ranges(struct matcher *m)
     assert(sum == 3 * m->mesh->n_triangles);
 }
 
-static void deal_share(void *context, size_t share)
+static void distribute_share(void *context, size_t share)
 {
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->mesh->n_triangles);
@@ -281,7 +282,7 @@ static enum tri_status match(struct matcher *m)
     if (m->n_segments > 0)
         list_segments(m);
     divide_ranges(m);
-    tri_execute(m->options->executor, n_shares(m), deal_share, m);
+    tri_execute(m->options->executor, n_shares(m), distribute_share, m);
     tri_execute(m->options->executor, n_shares(m), match_range, m);
     return first_fault(m);
 }
@@ -511,7 +512,7 @@ static enum tri_status build(struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
     enum tri_status status = tri_mesh_take_points(mesh, m->pslg, m->options->executor, m->error);
-    status = status ? status : tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(m->error) : take_triangles(m);
+    status = status ? status : tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(m->error) : copy_triangles(m);
     status = status ? status : allocate_and_match(m);
     status = status ? status : add_subsegments(m);
     if (!status && (m->elements->areas || m->elements->attributes))
@@ -526,7 +527,7 @@ static enum tri_status build(struct matcher *m)
     return status ? status : tri_flip_to_delaunay(mesh, m->options->executor, m->error);
 }
 
-static void tell_edges(const struct matcher *m)
+static void report_edges(const struct matcher *m)
 {
     int32_t loose = 0;
     for (int32_t k = 0; k < m->pslg->n_segments; k++) {
@@ -551,7 +552,7 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
     mesh->stop = options->stop;
     status = status ? status : build(&m);
     if (!status)
-        tell_edges(&m);
+        report_edges(&m);
     free(m.edge_of);
     if (status)
         tri_mesh_free(mesh);

@@ -295,7 +295,7 @@ static void merge(struct gap *g, int32_t i, int32_t j, int32_t k)
     }
 }
 
-static void solve(struct gap *g, int32_t i, int32_t k)
+static void triangulate_chain(struct gap *g, int32_t i, int32_t k)
 {
     assert(i < k);
     if (k == i + 1) {
@@ -305,8 +305,8 @@ static void solve(struct gap *g, int32_t i, int32_t k)
         return;
     }
     int32_t j = i + (k - i) / 2;
-    solve(g, i, j);
-    solve(g, j, k);
+    triangulate_chain(g, i, j);
+    triangulate_chain(g, j, k);
     merge(g, i, j, k);
 }
 
@@ -326,7 +326,7 @@ static void link_walls(struct tri_recovery *r, struct tri_mesh *mesh)
     }
 }
 
-static void name_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
+static void restore_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
 {
     for (int32_t i = 0; i < r->n_crossed; i++) {
         tri_vertex_id *v = mesh->tri[tri_of(r->crossed[i])].v;
@@ -345,11 +345,11 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
     struct gap g = {.r = r, .mesh = mesh, .side = {r->gap[0], r->gap[1]}};
     list_places(r, mesh);
     clear_triangles(r, mesh);
-    solve(&g, 0, r->n_left - 1);
-    solve(&g, r->n_left, n_places(r) - 1);
+    triangulate_chain(&g, 0, r->n_left - 1);
+    triangulate_chain(&g, r->n_left, n_places(r) - 1);
     assert(r->n_free == 0);
     link_walls(r, mesh);
-    name_corners(r, mesh);
+    restore_corners(r, mesh);
     int32_t left = r->at[0].above, right = r->at[r->n_left].above;
     *tri_link_at(mesh, left) = right;
     *tri_link_at(mesh, right) = left;
@@ -362,7 +362,7 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
 enum { HUB = 16 }; /* a vertex with more triangles than this may be a hub */
 
 /* Returns the next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
-static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
+static tri_triangle_id next_around(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
 {
     int k = tri_corner_of(&mesh->tri[t], v);
     tri_halfedge code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
@@ -388,7 +388,8 @@ static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, st
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* State of the search around a vertex for the triangle through which the ray to q leaves; one triangle per step. */
+/* State of a search that goes round a vertex, one triangle per step, for the triangle that the ray from the vertex to q
+ * enters first. */
 struct rotation {
     tri_vertex_id vertex;
     tri_triangle_id start, t;
@@ -405,16 +406,16 @@ static struct rotation rotate_from(const tri_triangle_id *corner, tri_vertex_id 
 /* Returns the current triangle if the ray leaves through it (its left edge is tested as well, since there may be no
  * triangle beyond it). Otherwise moves on to the next triangle and returns TRI_NONE. After the last one r->t is
  * TRI_NONE. */
-static tri_triangle_id rotate(const struct tri_mesh *mesh, struct rotation *r)
+static tri_triangle_id rotate_step(const struct tri_mesh *mesh, struct rotation *r)
 {
     tri_triangle_id t = r->t;
     int k = tri_corner_of(&mesh->tri[t], r->vertex);
     if (leaves_through(mesh, t, k, r->q) || along_left(mesh, t, k, r->q))
         return t;
-    r->t = turn(mesh, t, r->vertex, !r->clockwise);
+    r->t = next_around(mesh, t, r->vertex, !r->clockwise);
     if (r->t == TRI_NONE && !r->clockwise) { /* continue clockwise, from the neighbour of the first one */
         r->clockwise = true;
-        r->t = turn(mesh, r->start, r->vertex, false);
+        r->t = next_around(mesh, r->start, r->vertex, false);
     } else if (r->t == r->start) {
         r->t = TRI_NONE;
     }
@@ -427,7 +428,7 @@ tri_triangle_id tri_find_exit(const struct tri_mesh *mesh, tri_triangle_id *corn
     tri_triangle_id found = TRI_NONE;
     struct rotation at[2] = {rotate_from(corner, from, mesh->xy[to]), rotate_from(corner, to, mesh->xy[from])};
     int end = 0;
-    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(mesh, &at[end])) == TRI_NONE;)
+    for (int n = 0; at[end].t != TRI_NONE && (found = rotate_step(mesh, &at[end])) == TRI_NONE;)
         end = n < HUB ? (n++, 0) : 1 - end;
     if (found == TRI_NONE)
         return TRI_NONE;

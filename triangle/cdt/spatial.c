@@ -10,13 +10,13 @@
 #include "triangle/geometry/hilbert.h"
 #include "triangle/mesh/parents.h"
 
-static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
+static void *allocate_array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
 
 /* Allocates scratch memory for sorting points (16 bytes each) and for moving them. */
 static void *scratch_for(const struct tri_mesh *mesh)
 {
     _Static_assert(sizeof(struct tri_point) >= 2 * sizeof(uint64_t), "room to sort and to move");
-    return array(mesh->n_input, tri_vertex_size(mesh));
+    return allocate_array(mesh->n_input, tri_vertex_size(mesh));
 }
 
 static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *error)
@@ -27,7 +27,7 @@ static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *
 /* Returns the inverse of a permutation, from malloc; NULL: out of memory. */
 static int32_t *inverse_of(const int32_t *order, int32_t n)
 {
-    int32_t *place = array(n, sizeof *place);
+    int32_t *place = allocate_array(n, sizeof *place);
     for (tri_vertex_id v = 0; place && v < n; v++)
         place[order[v]] = v;
     return place;
@@ -36,7 +36,7 @@ static int32_t *inverse_of(const int32_t *order, int32_t n)
 enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const struct tri_executor *executor,
                                 struct tri_error *error)
 {
-    int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
+    int32_t n = mesh->n_input, *origin = allocate_array(n, sizeof *origin);
     void *scratch = scratch_for(mesh);
     assert(mesh->n_vertices == n && mesh->n_triangles == 0 && !mesh->origin && !mesh->twin);
     if (origin && scratch) {
@@ -63,7 +63,7 @@ static inline unsigned is_callers(const struct tri_mesh *mesh, tri_vertex_id v)
 }
 
 /* Returns the input number of v. Loads mesh->origin in all cases, so that no branch is needed. */
-static inline tri_vertex_id restored_name(const struct tri_mesh *mesh, tri_vertex_id v)
+static inline tri_vertex_id restored_number(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     tri_vertex_id name = mesh->origin[is_callers(mesh, v) ? v : 0];
     return is_callers(mesh, v) ? name : v;
@@ -80,7 +80,7 @@ static void restore_corners(void *context, size_t share)
         if (!(is_callers(mesh, v[0]) | is_callers(mesh, v[1]) | is_callers(mesh, v[2])))
             continue;
         for (int k = 0; k < 3; k++)
-            v[k] = restored_name(mesh, v[k]);
+            v[k] = restored_number(mesh, v[k]);
     }
 }
 
@@ -88,10 +88,10 @@ static void restore_ends(const struct tri_mesh *mesh)
 {
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
-            mesh->sub[s].v[k] = restored_name(mesh, mesh->sub[s].v[k]);
+            mesh->sub[s].v[k] = restored_number(mesh, mesh->sub[s].v[k]);
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
-            mesh->parents[p].v[k] = restored_name(mesh, mesh->parents[p].v[k]);
+            mesh->parents[p].v[k] = restored_number(mesh, mesh->parents[p].v[k]);
 }
 
 /* Converts twins to input numbers: twin[input index] = input index of the first point at the same place. */
@@ -109,7 +109,7 @@ enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_execu
     int32_t n = mesh->n_input;
     if (!mesh->origin)
         return TRI_OK;
-    int32_t *place = inverse_of(mesh->origin, n), *twin = mesh->twin ? array(n, sizeof *twin) : NULL;
+    int32_t *place = inverse_of(mesh->origin, n), *twin = mesh->twin ? allocate_array(n, sizeof *twin) : NULL;
     void *scratch = scratch_for(mesh);
     if (!place || !scratch || (mesh->twin && !twin)) {
         free(place);

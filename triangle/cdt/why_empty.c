@@ -173,7 +173,7 @@ enum tri_status tri_why_empty(struct tri_empty *why, const struct tri_mesh *mesh
 
 /* --- texts */
 
-static int32_t wrong_end(const struct tri_pslg *pslg, int32_t k)
+static int32_t invalid_end(const struct tri_pslg *pslg, int32_t k)
 {
     for (int end = 0; end < 2; end++) {
         const int32_t v = pslg->segments[2 * (size_t)k + (size_t)end];
@@ -184,7 +184,7 @@ static int32_t wrong_end(const struct tri_pslg *pslg, int32_t k)
 }
 
 /* Are both ends of the segment at the same place? Its point numbers must be valid. */
-static bool is_a_point(const struct tri_pslg *pslg, int32_t k)
+static bool has_equal_ends(const struct tri_pslg *pslg, int32_t k)
 {
     const int32_t *v = &pslg->segments[2 * (size_t)k];
     const double *a = &pslg->points[2 * (size_t)v[0]], *b = &pslg->points[2 * (size_t)v[1]];
@@ -193,19 +193,19 @@ static bool is_a_point(const struct tri_pslg *pslg, int32_t k)
 
 /* Describes the first skipped segment, preferring one with an invalid point number. Returns whether there is such a
  * one. */
-static bool tell_skipped(char *text, size_t size, const struct tri_pslg *pslg, int32_t n_skipped, int32_t base)
+static bool put_skipped(char *text, size_t size, const struct tri_pslg *pslg, int32_t n_skipped, int32_t base)
 {
     int32_t wrong = TRI_NONE, empty = TRI_NONE;
     for (int32_t k = 0; n_skipped > 0 && wrong == TRI_NONE && k < pslg->n_segments; k++)
-        if (wrong_end(pslg, k) != TRI_NONE)
+        if (invalid_end(pslg, k) != TRI_NONE)
             wrong = k;
-        else if (empty == TRI_NONE && is_a_point(pslg, k))
+        else if (empty == TRI_NONE && has_equal_ends(pslg, k))
             empty = k;
     int length = 0;
     if (wrong != TRI_NONE)
         length = snprintf(text, size, "segment %" PRId32 " names point %" PRId64 " of %" PRId32
                           ": numbers count from %" PRId32 " here", wrong + base,
-                          (int64_t)pslg->segments[2 * (size_t)wrong + (size_t)wrong_end(pslg, wrong)] + base,
+                          (int64_t)pslg->segments[2 * (size_t)wrong + (size_t)invalid_end(pslg, wrong)] + base,
                           pslg->n_points, base);
     else if (empty != TRI_NONE)
         length = snprintf(text, size, "segment %" PRId32 " begins and ends at the same place, at point %" PRId32,
@@ -218,7 +218,7 @@ static bool tell_skipped(char *text, size_t size, const struct tri_pslg *pslg, i
     return wrong != TRI_NONE;
 }
 
-static void tell_ends(char *text, size_t size, const struct tri_empty *why, int32_t base)
+static void put_ends(char *text, size_t size, const struct tri_empty *why, int32_t base)
 {
     int length = snprintf(text, size, "%s %" PRId32 "%s%" PRId32, "points", why->v[0] + base,
                           why->n > 2 ? ", " : " and ", why->v[1] + base);
@@ -226,10 +226,10 @@ static void tell_ends(char *text, size_t size, const struct tri_empty *why, int3
         snprintf(text + length, size - (size_t)length, " and %" PRId32 " more", why->n - 2);
 }
 
-static void tell_reason(char *text, size_t size, const struct tri_empty *why, const struct tri_pslg *pslg, int32_t base)
+static void put_reason(char *text, size_t size, const struct tri_empty *why, const struct tri_pslg *pslg, int32_t base)
 {
     char ends[80];
-    tell_ends(ends, sizeof ends, why, base);
+    put_ends(ends, sizeof ends, why, base);
     switch (why->reason) {
     case TRI_EMPTY_NOT: break;
     case TRI_EMPTY_LINE: snprintf(text, size, "all points lie on one line"); break;
@@ -253,7 +253,7 @@ void tri_notes_make(struct tri_notes *notes, const struct tri_empty *why, const 
                     int32_t n_skipped, int32_t base)
 {
     *notes = (struct tri_notes){0};
-    const bool is_wrong = tell_skipped(notes->skipped, sizeof notes->skipped, pslg, n_skipped, base);
+    const bool is_wrong = put_skipped(notes->skipped, sizeof notes->skipped, pslg, n_skipped, base);
     const bool is_unclosed = why->reason == TRI_EMPTY_BARE || why->reason == TRI_EMPTY_OPEN ||
                              why->reason == TRI_EMPTY_LOOSE;
     if (why->reason == TRI_EMPTY_NOT)
@@ -263,5 +263,5 @@ void tri_notes_make(struct tri_notes *notes, const struct tri_empty *why, const 
     if (is_wrong && is_unclosed)
         notes->skipped[0] = 0;
     else
-        tell_reason(notes->empty + length, sizeof notes->empty - (size_t)length, why, pslg, base);
+        put_reason(notes->empty + length, sizeof notes->empty - (size_t)length, why, pslg, base);
 }

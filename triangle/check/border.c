@@ -104,7 +104,7 @@ static bool is_along_hull(const struct border *b, int32_t s)
 }
 
 /* Does the edge lie along the hull, so that the user may have forgotten the option that allows it? */
-static bool may_be_meant(struct border *b, int32_t s)
+static bool may_be_hull(struct border *b, int32_t s)
 {
     return (b->hull.chain[0] || find_input_hull(b) == TRI_OK) && is_along_hull(b, s);
 }
@@ -123,7 +123,7 @@ static void check_border(struct border *b, bool hull)
                         check_frame_vertex(c, c->segments[2 * (size_t)s + 1]),
                         check_number(c, (there < 0 ? back : there) / 3),
                         hull ? " and not along the convex hull"
-                        : may_be_meant(b, s) ? ", but along the convex hull: was it made with -c (keep-hull)?" : "");
+                        : may_be_hull(b, s) ? ", but along the convex hull: was it made with -c (keep-hull)?" : "");
     }
 }
 

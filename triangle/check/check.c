@@ -60,7 +60,7 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind)
 }
 
 /* Resets a kind to skipped. */
-static void unask(struct checker *c, enum tri_check_kind kind)
+static void reset_kind(struct checker *c, enum tri_check_kind kind)
 {
     memset(&c->report->item[kind], 0, sizeof c->report->item[kind]);
 }
@@ -85,7 +85,7 @@ struct sharing {
     void *user;       /* passed to work */
 };
 
-static void do_share(void *context, size_t i)
+static void run_check_share(void *context, size_t i)
 {
     const struct sharing *s = context;
     int64_t k = (int64_t)i, of = (int64_t)s->n_shares;
@@ -99,7 +99,7 @@ void tri_check_in_shares(const struct checker *c, int64_t n, check_work *work, v
     int64_t shares = n / WORTH_A_SHARE + 1;
     struct sharing sharing = {n, (size_t)(shares < CHECK_MOST_SHARES ? shares : CHECK_MOST_SHARES), work, user};
     assert(n >= 0);
-    tri_execute(c->options->executor, sharing.n_shares, do_share, &sharing);
+    tri_execute(c->options->executor, sharing.n_shares, run_check_share, &sharing);
 }
 
 /* The result of each share: the number of items, and the first one. */
@@ -222,7 +222,7 @@ void *tri_check_zeros(int64_t n, size_t size)
     return (uint64_t)n >= SIZE_MAX / size ? NULL : calloc((size_t)n + 1, size);
 }
 
-enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
+enum tri_status tri_check_query(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
                               double tolerance)
 {
     at = (struct tri_point){tri_round_coordinate(at.x), tri_round_coordinate(at.y)};
@@ -363,7 +363,7 @@ static enum tri_status choose_part(struct checker *c, double least)
 }
 
 /* Chooses again if there are more boundary edges than estimated. Parts are only read again later, if at all. */
-static enum tri_status reckon_again(struct checker *c)
+static enum tri_status choose_part_again(struct checker *c)
 {
     const struct tri_check_source *source = c->source;
     const double n = (double)c->boundary.n, least = least_bytes(source, c->input, n);
@@ -405,12 +405,12 @@ static bool pairs_are_good(struct checker *c)
 {
     bool edges = check_good(c, TRI_CHECK_EDGES);
     if (!edges)
-        unask(c, TRI_CHECK_NEIGHBORS);
+        reset_kind(c, TRI_CHECK_NEIGHBORS);
     if (edges && check_good(c, TRI_CHECK_ORIENTATION))
         return true;
-    unask(c, TRI_CHECK_LOCAL_DELAUNAY);
-    unask(c, TRI_CHECK_ENCROACHMENT);
-    unask(c, TRI_CHECK_REGIONS);
+    reset_kind(c, TRI_CHECK_LOCAL_DELAUNAY);
+    reset_kind(c, TRI_CHECK_ENCROACHMENT);
+    reset_kind(c, TRI_CHECK_REGIONS);
     return false;
 }
 
@@ -450,7 +450,7 @@ static enum tri_status run(struct checker *c)
         return TRI_OK;
     }
     status = tri_check_match(c);
-    status = status ? status : reckon_again(c);
+    status = status ? status : choose_part_again(c);
     status = status ? status : tri_check_attributes(c);
     status = status ? status : tri_check_nodes(c);
     return status == TRI_OK ? judge_frame(c) : status;

@@ -233,7 +233,7 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind);
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
-/* A range of items that can be processed in parallel with other shares. */
+/* A share: a range of items. Shares are processed in parallel. */
 enum { CHECK_MOST_SHARES = 64 };
 
 struct check_share {
@@ -255,7 +255,7 @@ int64_t tri_check_count(const struct checker *c, int64_t n, bool (*is_so)(const 
 void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, int64_t n,
                     bool (*is_bad)(const struct checker *c, int64_t i), void (*tell)(struct checker *c, int64_t i));
 /* Adds a query: does the point lie inside the mesh? The point may have any coordinates, also infinite ones or NaN. */
-enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
+enum tri_status tri_check_query(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
                               double tolerance);
 
 /* Allocate n * size bytes, the second zeroed. The result is not NULL for n = 0. */

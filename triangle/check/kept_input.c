@@ -111,7 +111,7 @@ static enum tri_status search(struct reference *r)
 }
 
 /* Lists the unused points, if the input is unknown. */
-static void take_unused(void *reference, int64_t first, int64_t n, const void *elements)
+static void list_unused_slice(void *reference, int64_t first, int64_t n, const void *elements)
 {
     struct reference *r = reference;
     const double *points = elements;
@@ -132,7 +132,7 @@ static enum tri_status list_unused(struct checker *c, struct reference *r)
     c->unused_points = tri_check_array(n, 2 * sizeof *c->unused_points);
     if (c->unused == NULL || c->unused_points == NULL)
         return TRI_NO_MEMORY;
-    enum tri_status status = n > 0 ? each_point(r, c->n_points, take_unused) : TRI_OK;
+    enum tri_status status = n > 0 ? each_point(r, c->n_points, list_unused_slice) : TRI_OK;
     c->n_unused = r->n;
     r->points = c->unused_points;
     return status;
@@ -190,7 +190,7 @@ static int64_t number_of(const struct checker *c, int32_t i)
 
 /* Adds queries for points without a twin: they are lost if they lie inside the mesh. If the mesh must fill the hull
  * of all points, they are lost anywhere. */
-static enum tri_status ask_for_lost(struct checker *c)
+static enum tri_status query_lost(struct checker *c)
 {
     if (c->n_triangles == 0 || c->options->ignore_lost)
         return TRI_OK;
@@ -204,30 +204,30 @@ static enum tri_status ask_for_lost(struct checker *c)
             tri_check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, number_of(c, v)));
         }
         struct tri_point p = {points[2 * (size_t)v], points[2 * (size_t)v + 1]};
-        status = tri_check_ask(c, p, TRI_CHECK_LOST_VERTICES, v, 0);
+        status = tri_check_query(c, p, TRI_CHECK_LOST_VERTICES, v, 0);
     }
     return status;
 }
 
-static enum tri_status ask_for_holes(struct checker *c)
+static enum tri_status query_holes(struct checker *c)
 {
     if (c->input == NULL || c->options->ignore_holes)
         return TRI_OK;
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; i < c->input->n_holes && status == TRI_OK; i++) {
         struct tri_point p = {c->input->holes[2 * (size_t)i], c->input->holes[2 * (size_t)i + 1]};
-        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, c->tolerance); /* within the tolerance of a wall, the point
+        status = tri_check_query(c, p, TRI_CHECK_HOLES, i, c->tolerance); /* within the tolerance of a wall, the point
                                                                            may mean either side */
     }
     return status;
 }
 
-static enum tri_status ask_for_regions(struct checker *c)
+static enum tri_status query_regions(struct checker *c)
 {
     enum tri_status status = TRI_OK;
     for (int32_t k = 0; check_wants_regions(c) && k < c->input->n_regions && status == TRI_OK; k++) {
         const double *r = c->input->regions + 4 * (size_t)k;
-        status = tri_check_ask(c, (struct tri_point){r[0], r[1]}, TRI_CHECK_REGIONS, k, c->tolerance);
+        status = tri_check_query(c, (struct tri_point){r[0], r[1]}, TRI_CHECK_REGIONS, k, c->tolerance);
     }
     return status;
 }
@@ -235,9 +235,9 @@ static enum tri_status ask_for_regions(struct checker *c)
 enum tri_status tri_check_input(struct checker *c)
 {
     enum tri_status status = check_vertices(c);
-    status = status ? status : ask_for_lost(c);
-    status = status ? status : ask_for_holes(c);
-    status = status ? status : ask_for_regions(c);
+    status = status ? status : query_lost(c);
+    status = status ? status : query_holes(c);
+    status = status ? status : query_regions(c);
     if (status == TRI_OK && c->input != NULL && check_is_listed(c))
         status = tri_check_chains(c);
     if (status == TRI_OK && c->input != NULL)

@@ -118,7 +118,7 @@ static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
 }
 
 /* Step 1 for piece i and the pieces after it. */
-static enum tri_status meet_others(struct cutting *k, int32_t i)
+static enum tri_status cut_others(struct cutting *k, int32_t i)
 {
     const struct check_piece *s = &k->piece[i];
     enum tri_status status = TRI_OK;
@@ -141,7 +141,7 @@ static enum tri_status find_cuts(struct cutting *k)
     for (int32_t i = 0; i < k->n && status == TRI_OK; i++) {
         status = add_cut(k, i, k->piece[i].from);
         status = status == TRI_OK ? add_cut(k, i, k->piece[i].to) : status;
-        status = status == TRI_OK ? meet_others(k, i) : status;
+        status = status == TRI_OK ? cut_others(k, i) : status;
     }
     return status;
 }
@@ -157,7 +157,7 @@ static void measure(struct cutting *k)
 }
 
 /* Step 2. */
-static enum tri_status take_between(struct cutting *k, struct check_pieces *out)
+static enum tri_status list_parts(struct cutting *k, struct check_pieces *out)
 {
     out->at = tri_check_array(k->n_cuts, sizeof *out->at);
     if (out->at == NULL)
@@ -181,7 +181,7 @@ enum tri_status tri_check_split_missing(const struct checker *c, struct check_pi
     struct cutting k = {.tolerance = c->tolerance, .n = c->n_missing, .piece = c->missing};
     enum tri_status status = find_cuts(&k);
     if (status == TRI_OK && k.n > 0 && !is_too_long(&k))
-        status = take_between(&k, pieces);
+        status = list_parts(&k, pieces);
     free(k.cut);
     return status;
 }

@@ -30,7 +30,7 @@ static bool is_other_neighbor(const struct checker *c, const struct check_open *
     return a->neighbor != triangle_of(b);
 }
 
-static void tell_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b)
+static void report_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b)
 {
     tri_check_fault(c, TRI_CHECK_NEIGHBORS, "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
                     check_number(c, a->half_edge / 3), check_number(c, a->from), check_number(c, a->to),
@@ -46,7 +46,7 @@ static bool differs(const struct checker *c, const struct check_open *a, const s
     return !a->constrained && a->attribute != b->attribute;
 }
 
-static void tell_difference(struct checker *c, const struct check_open *a, const struct check_open *b)
+static void report_difference(struct checker *c, const struct check_open *a, const struct check_open *b)
 {
     tri_check_fault(c, TRI_CHECK_REGIONS, "triangles %ld and %ld have attributes %.17g and %.17g, no segment between",
                     check_number(c, a->half_edge / 3), check_number(c, b->half_edge / 3), a->attribute, b->attribute);
@@ -86,8 +86,8 @@ static void tell_encroached(struct checker *c, const struct check_open *a, const
 /* --- the rules */
 
 static const struct check_rule rules[] = {
-    {TRI_CHECK_NEIGHBORS, false, false, is_other_neighbor, tell_neighbor},
-    {TRI_CHECK_REGIONS, true, false, differs, tell_difference},
+    {TRI_CHECK_NEIGHBORS, false, false, is_other_neighbor, report_neighbor},
+    {TRI_CHECK_REGIONS, true, false, differs, report_difference},
     {TRI_CHECK_LOCAL_DELAUNAY, true, false, is_not_delaunay, tell_circle},
     {TRI_CHECK_ENCROACHMENT, false, true, is_encroached, tell_encroached},
 };
@@ -126,7 +126,7 @@ static bool is_bad_at(const struct checker *c, int64_t i)
     return c->rule->is_bad(c, &a, &b);
 }
 
-static void tell_at(struct checker *c, int64_t h)
+static void report_pair(struct checker *c, int64_t h)
 {
     const struct check_open a = tri_check_open(c, (int32_t)h), b = tri_check_open(c, c->part.link[h]);
     c->rule->tell(c, &a, &b);
@@ -137,7 +137,7 @@ void tri_check_pairs(struct checker *c)
     for (c->rule = rules; c->rule < rules + N_RULES; c->rule++) {
         if (is_asked(c, c->rule))
             tri_check_each(c, c->rule->kind, 3 * c->part.first, c->part.n_half_edges,
-                           c->rule->kind == TRI_CHECK_LOCAL_DELAUNAY ? is_not_delaunay_at : is_bad_at, tell_at);
+                           c->rule->kind == TRI_CHECK_LOCAL_DELAUNAY ? is_not_delaunay_at : is_bad_at, report_pair);
     }
 }
 
@@ -174,7 +174,7 @@ static bool is_turned(const struct checker *c, int64_t t)
     return !(twice_area(c, t) > 0);
 }
 
-static void tell_turned(struct checker *c, int64_t t)
+static void report_orientation(struct checker *c, int64_t t)
 {
     const int32_t *v = c->part.triangles + 3 * t;
     tri_check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_part_triangle(c, (int32_t)t),
@@ -184,5 +184,5 @@ static void tell_turned(struct checker *c, int64_t t)
 
 void tri_check_orientation(struct checker *c)
 {
-    tri_check_each(c, TRI_CHECK_ORIENTATION, c->part.first, c->part.n_triangles, is_turned, tell_turned);
+    tri_check_each(c, TRI_CHECK_ORIENTATION, c->part.first, c->part.n_triangles, is_turned, report_orientation);
 }

@@ -256,7 +256,7 @@ static enum tri_status note_missing(struct checker *c, struct tri_point from, st
 
 /* Step 3: adds queries for an uncovered part. Parts not much longer than the tolerance are ignored. Parts whose ends
  * are not certainly on the segment do not bound a face (winding.c). */
-static enum tri_status ask_about(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
+static enum tri_status query_gap(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
 {
     double from = along(l, begin), to = along(l, end);
     bool sure = check_surely_meets(l->a, l->b, begin) && check_surely_meets(l->a, l->b, end);
@@ -266,7 +266,7 @@ static enum tri_status ask_about(struct chains *k, const struct line *l, struct 
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {
         double s = (from + (to - from) * i / 4) / l->length;
         struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
-        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id, l->tolerance);
+        status = tri_check_query(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id, l->tolerance);
     }
     return status;
 }
@@ -282,13 +282,13 @@ static enum tri_status cover(struct chains *k, const struct line *l)
         if (k->seen[s.vertex] == k->search)
             continue;
         if (s.at > along(l, covered))
-            status = ask_about(k, l, covered, check_point(k->c, s.vertex));
+            status = query_gap(k, l, covered, check_point(k->c, s.vertex));
         int32_t end = follow(k, l, s.vertex, -1);
         mark_chain(k, l, end, false);
         if (along(l, check_point(k->c, end)) >= along(l, covered))
             covered = check_point(k->c, end);
     }
-    return status == TRI_OK ? ask_about(k, l, covered, l->b) : status;
+    return status == TRI_OK ? query_gap(k, l, covered, l->b) : status;
 }
 
 static bool names_points(const struct tri_pslg *input, int32_t id)
@@ -335,7 +335,7 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     const bool covered = n_asked == (int64_t)k->c->n_queries + k->c->n_missing;
     if (status != TRI_OK || reached < 0 || !covered || k->beside_border)
         return status;
-    return tri_check_ask(k->c, check_point(k->c, reached), TRI_CHECK_INPUT_SEGMENTS, id, l.tolerance);
+    return tri_check_query(k->c, check_point(k->c, reached), TRI_CHECK_INPUT_SEGMENTS, id, l.tolerance);
 }
 
 static void check_markers(struct chains *k)

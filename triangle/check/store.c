@@ -128,7 +128,7 @@ static enum tri_status fetch(struct checker *c, struct file *file)
         here->room = file->n;
     }
     here->n = file->n;
-    if (!tri_read_again(file->kept, here->at, (size_t)here->n * sizeof *here->at, 0))
+    if (!tri_read_back(file->kept, here->at, (size_t)here->n * sizeof *here->at, 0))
         return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read half-edges from a file there");
     (void)tri_file_close(file->kept);
     *file = (struct file){TRI_NO_FILE, 0};
@@ -182,7 +182,7 @@ static int compare_half_edges(const void *left, const void *right)
 }
 
 /* Reports the first half-edge of a faulty edge; all count as faults. */
-static void tell_bad(struct checker *c, const struct check_open *at, int64_t n)
+static void report_bad_edge(struct checker *c, const struct check_open *at, int64_t n)
 {
     int64_t same = 0;
     for (int64_t i = 0; i < n; i++)
@@ -214,7 +214,7 @@ static enum tri_status match_edge(struct checker *c, const struct check_open *at
     if (n == 1)
         tri_check_matched(c, at, NULL);
     else
-        tell_bad(c, at, n);
+        report_bad_edge(c, at, n);
     enum tri_status status = TRI_OK;
     for (int64_t i = 0; i < n && status == TRI_OK; i++)
         status = keep_boundary(c, &at[i]);

@@ -64,7 +64,7 @@ static bool is_stopped(void *user)
 /* --- messages */
 
 /* Reports errors, and remarks on probable mistakes in the input. With Q, remarks are not printed on standard error. */
-static void tell_client(const struct io_run *run, bool is_error, const char *text)
+static void message_client(const struct io_run *run, bool is_error, const char *text)
 {
     if (run->options->message)
         run->options->message(run->options->message_user, is_error, text);
@@ -82,9 +82,9 @@ static void tell_notes(const struct io_run *run)
 {
     const struct tri_notes *notes = &run->report.notes;
     if (notes->skipped[0] && !run->switches->quiet)
-        tell_client(run, false, notes->skipped);
+        message_client(run, false, notes->skipped);
     if (notes->empty[0])
-        tell_client(run, false, notes->empty);
+        message_client(run, false, notes->empty);
 }
 
 static void warn_number(const struct io_run *run, int n, const char *one, const char *several)
@@ -98,7 +98,7 @@ static void warn_number(const struct io_run *run, int n, const char *one, const 
 static void warn_of_switch(void *user, const char *text, bool misread)
 {
     if (misread)
-        tell_client(user, false, text);
+        message_client(user, false, text);
     else
         warn_client(user, text);
 }
@@ -187,8 +187,8 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (status && vorout && vorout != in)
         zero_counts(vorout);
     if (status)
-        tell_client(&run, true, error.text);
+        message_client(&run, true, error.text);
     else if (no_diagram)
-        tell_client(&run, false, "switch v: vorout is NULL, so there is no Voronoi diagram");
+        message_client(&run, false, "switch v: vorout is NULL, so there is no Voronoi diagram");
     return (int)status;
 }

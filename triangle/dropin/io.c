@@ -251,7 +251,7 @@ static void provide_arrays(struct output *o)
 /* --- filling */
 
 /* Converts an index to the caller's numbering; -1: none. */
-static int shown(const struct output *o, int64_t index) { return (int)(index < 0 ? index : index + o->grid.base); }
+static int out_number(const struct output *o, int64_t index) { return (int)(index < 0 ? index : index + o->grid.base); }
 
 /* Writes the points of the mesh or of the Voronoi diagram into these arrays; `markers` may be NULL. The arrays may
  * be those of the input: a point never moves to a higher index, so each is read before it is overwritten. */
@@ -275,7 +275,7 @@ static void fill_triangle(struct output *o, int64_t t)
     int64_t nodes[6];
     grid->triangle(grid->user, t, nodes);
     for (int k = 0; k < grid->n_nodes; k++)
-        o->out.trianglelist[t * grid->n_nodes + k] = shown(o, nodes[k]);
+        o->out.trianglelist[t * grid->n_nodes + k] = out_number(o, nodes[k]);
     for (int32_t k = 0; k < grid->n_columns; k++)
         o->out.triangleattributelist[t * grid->n_columns + k] = (REAL)grid->column(grid->user, t, k);
 }
@@ -285,7 +285,7 @@ static void fill_neighbors(struct output *o, int64_t t)
     int64_t neighbors[3];
     o->grid.neighbors(o->grid.user, t, neighbors);
     for (int k = 0; k < 3; k++)
-        o->out.neighborlist[3 * t + k] = shown(o, neighbors[k]);
+        o->out.neighborlist[3 * t + k] = out_number(o, neighbors[k]);
 }
 
 static void fill_triangles(struct output *o)
@@ -305,7 +305,7 @@ static void fill_edges(const struct output *o, const struct tri_grid *grid, int6
         struct tri_grid_edge edge;
         edge_at(grid->user, i, &edge);
         for (int k = 0; k < 2; k++) {
-            ends[2 * i + k] = shown(o, edge.ends[k]);
+            ends[2 * i + k] = out_number(o, edge.ends[k]);
             if (directions)
                 directions[2 * i + k] = (REAL)edge.direction[k];
         }

@@ -67,8 +67,8 @@ static inline double tri_longest2(const struct tri_shape *shape)
     return tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2]));
 }
 
-/* Returns the product of the two longer squared edges, which is the largest of the three products. (sin^2 of the
- * smallest angle is area2^2 divided by it.) Which two edges are longer is random, so a branch would be mispredicted
+/* Returns the product of the two longer squared edges, which is the largest of the three products. (area2^2 divided by
+ * this product is sin^2 of the smallest angle.) Which two edges are longer is random, so a branch would be mispredicted
  * half the time; the maximum of products needs no branch. */
 static inline double tri_longer_product(double a, double b, double c)
 {

@@ -8,9 +8,9 @@
 #include "triangle/base/grow.h"
 #include "triangle/base/system.h"
 
-static size_t chunk_bytes(const struct tri_h5_laid *laid)
+static size_t chunk_bytes(const struct tri_h5_plan *plan)
 {
-    return (size_t)laid->chunk_rows * tri_h5_row_bytes(laid);
+    return (size_t)plan->chunk_rows * tri_h5_row_bytes(plan);
 }
 
 static int dimensions(const struct tri_h5_array *array) { return array->is_list ? 1 : 2; }
@@ -26,10 +26,10 @@ static enum tri_status no_memory(const struct tri_h5_array *array, struct tri_er
 }
 
 void tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
-                        struct tri_h5_laid *laid, enum tri_h5_type type, int32_t width, int32_t chunk_rows)
+                        struct tri_h5_plan *plan, enum tri_h5_type type, int32_t width, int32_t chunk_rows)
 {
-    *array = (struct tri_h5_array){.file = file, .name = name, .is_list = width == 0, .laid = laid, .dataset = -1};
-    *laid = (struct tri_h5_laid){.type = type, .width = width > 0 ? width : 1, .chunk_rows = chunk_rows};
+    *array = (struct tri_h5_array){.file = file, .name = name, .is_list = width == 0, .plan = plan, .dataset = -1};
+    *plan = (struct tri_h5_plan){.type = type, .width = width > 0 ? width : 1, .chunk_rows = chunk_rows};
 }
 
 void tri_h5_array_free(struct tri_h5_array *array)
@@ -37,7 +37,7 @@ void tri_h5_array_free(struct tri_h5_array *array)
     if (array->file && array->dataset >= 0)
         H5Dclose(array->dataset);
     if (array->file)
-        free(array->laid->place);
+        free(array->plan->place);
     *array = (struct tri_h5_array){.dataset = -1};
 }
 
@@ -47,7 +47,7 @@ void tri_h5_array_free(struct tri_h5_array *array)
  * 0: an error. */
 static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 {
-    const hsize_t chunk[2] = {(hsize_t)array->laid->chunk_rows, (hsize_t)array->laid->width};
+    const hsize_t chunk[2] = {(hsize_t)array->plan->chunk_rows, (hsize_t)array->plan->width};
     hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
     if (creation < 0)
         return creation;
@@ -62,14 +62,14 @@ static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 /* Creates a dataset of n rows; < 0: an error. */
 static hid_t create_dataset(const struct tri_h5_array *array, int64_t n, bool in_chunks)
 {
-    const hsize_t width = (hsize_t)array->laid->width, size[2] = {(hsize_t)n, width}, most[2] = {H5S_UNLIMITED, width};
-    return tri_h5_new_dataset(array->file, array->name, tri_h5_type_id(array->laid->type), dimensions(array), size,
+    const hsize_t width = (hsize_t)array->plan->width, size[2] = {(hsize_t)n, width}, most[2] = {H5S_UNLIMITED, width};
+    return tri_h5_new_dataset(array->file, array->name, tri_h5_type_id(array->plan->type), dimensions(array), size,
                               in_chunks ? most : NULL, creation_of(array, in_chunks));
 }
 
 static bool resize(const struct tri_h5_array *array, int64_t n)
 {
-    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->laid->width};
+    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->plan->width};
     return H5Dset_extent(array->dataset, size) >= 0;
 }
 
@@ -77,44 +77,44 @@ static bool resize(const struct tri_h5_array *array, int64_t n)
  * H5Dget_chunk_info_by_coord would visit all previous chunks (in 1.10). Returns false on failure. */
 static bool find_chunk(const struct tri_h5_array *array, int64_t k)
 {
-    const hsize_t first[2] = {(hsize_t)(k * array->laid->chunk_rows), 0};
+    const hsize_t first[2] = {(hsize_t)(k * array->plan->chunk_rows), 0};
     struct tri_h5_file *file = array->file;
-    file->sought = array; /* its contents are ignored */
+    file->probed = array; /* its contents are ignored */
     file->found = -1;
-    const bool sent = H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, first, chunk_bytes(array->laid), array) >= 0;
-    file->sought = NULL;
-    array->laid->place[k] = file->found;
+    const bool sent = H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, first, chunk_bytes(array->plan), array) >= 0;
+    file->probed = NULL;
+    array->plan->place[k] = file->found;
     return sent && file->found >= 0;
 }
 
 enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chunks, struct tri_error *error)
 {
-    struct tri_h5_laid *laid = array->laid;
-    if (n_chunks <= laid->n)
+    struct tri_h5_plan *plan = array->plan;
+    if (n_chunks <= plan->n)
         return TRI_OK;
-    if (!tri_resize(&laid->place, (size_t)n_chunks, sizeof *laid->place))
+    if (!tri_resize(&plan->place, (size_t)n_chunks, sizeof *plan->place))
         return no_memory(array, error);
     if (array->dataset < 0)
         array->dataset = create_dataset(array, 0, true);
-    if (array->dataset < 0 || !resize(array, n_chunks * laid->chunk_rows))
+    if (array->dataset < 0 || !resize(array, n_chunks * plan->chunk_rows))
         return tri_h5_fail(array->file, array->name, error);
-    while (laid->n < n_chunks)
-        if (!find_chunk(array, laid->n++))
+    while (plan->n < n_chunks)
+        if (!find_chunk(array, plan->n++))
             return tri_h5_fail(array->file, array->name, error);
     return TRI_OK;
 }
 
 enum tri_status tri_h5_array_end(struct tri_h5_array *array, int64_t n, struct tri_error *error)
 {
-    struct tri_h5_laid *laid = array->laid;
+    struct tri_h5_plan *plan = array->plan;
     const bool in_chunks = array->dataset >= 0;
     array->n = n;
-    if (!in_chunks && !tri_resize(&laid->place, 1, sizeof *laid->place))
+    if (!in_chunks && !tri_resize(&plan->place, 1, sizeof *plan->place))
         return no_memory(array, error);
     if (!in_chunks) {
         array->dataset = create_dataset(array, n, false);
-        laid->n = 1;
-        *laid->place = array->dataset >= 0 ? (int64_t)H5Dget_offset(array->dataset) : 0; /* none if there are no rows */
+        plan->n = 1;
+        *plan->place = array->dataset >= 0 ? (int64_t)H5Dget_offset(array->dataset) : 0; /* none if there are no rows */
     }
     bool done = array->dataset >= 0 && (!in_chunks || resize(array, n));
     done = array->dataset >= 0 && H5Dclose(array->dataset) >= 0 && done;
@@ -139,7 +139,7 @@ static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from
                                   struct tri_error *error)
 {
     struct tri_output *output = array->file->output;
-    const size_t bytes = chunk_bytes(array->laid), half = bytes / 2;
+    const size_t bytes = chunk_bytes(array->plan), half = bytes / 2;
     const int64_t got = tri_read_at(output->file, buffer, half, (uint64_t)from);
     if (got < 0)
         return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot read again", errno);
@@ -151,18 +151,18 @@ static enum tri_status move_chunk(const struct tri_h5_array *array, int64_t from
     return tri_output_conclude(output, result, error);
 }
 
-static enum tri_status replace_dataset(struct tri_h5_array *array, const struct tri_h5_laid *old,
+static enum tri_status replace_dataset(struct tri_h5_array *array, const struct tri_h5_plan *old,
                                        struct tri_error *error)
 {
     hid_t dataset = array->dataset;
-    char *buffer = malloc(chunk_bytes(array->laid));
+    char *buffer = malloc(chunk_bytes(array->plan));
     enum tri_status status = buffer ? TRI_OK : no_memory(array, error);
     array->dataset = -1;
     if (!status && H5Ldelete(array->file->id, array->name, H5P_DEFAULT) < 0)
         status = tri_h5_fail(array->file, array->name, error);
     status = status ? status : tri_h5_array_allocate(array, old->n, error);
     for (int64_t k = 0; k < old->n && !status; k++)
-        status = move_chunk(array, old->place[k], array->laid->place[k], buffer, error);
+        status = move_chunk(array, old->place[k], array->plan->place[k], buffer, error);
     H5Dclose(dataset); /* frees the old dataset's space */
     free(buffer);
     return status;
@@ -170,8 +170,8 @@ static enum tri_status replace_dataset(struct tri_h5_array *array, const struct 
 
 enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error)
 {
-    const struct tri_h5_laid old = *array->laid;
-    *array->laid = (struct tri_h5_laid){.type = TRI_H5_INT64, .width = old.width, .chunk_rows = old.chunk_rows};
+    const struct tri_h5_plan old = *array->plan;
+    *array->plan = (struct tri_h5_plan){.type = TRI_H5_INT64, .width = old.width, .chunk_rows = old.chunk_rows};
     const enum tri_status status = replace_dataset(array, &old, error);
     free(old.place);
     return status;

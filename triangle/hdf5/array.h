@@ -14,14 +14,14 @@ struct tri_h5_array {
     struct tri_h5_file *file; /* borrowed; NULL: the array does not exist */
     const char *name;         /* name of the dataset; borrowed */
     bool is_list;             /* one-dimensional; its width is 1 */
-    struct tri_h5_laid *laid; /* offsets of its rows; borrowed, except the array of offsets */
+    struct tri_h5_plan *plan; /* offsets of its rows; borrowed, except the array of offsets */
     int64_t n;                /* number of rows, after the end */
     hid_t dataset;            /* < 0: not allocated */
 };
 
 /* Begins a two-dimensional array [n][width] or, if width is 0, a one-dimensional array [n]. */
 void tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
-                        struct tri_h5_laid *laid, enum tri_h5_type type, int32_t width, int32_t chunk_rows);
+                        struct tri_h5_plan *plan, enum tri_h5_type type, int32_t width, int32_t chunk_rows);
 
 /* Allocates chunks until there are n_chunks. TRI_NO_MEMORY, and errors of writing, as for all functions here. */
 enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chunks, struct tri_error *error);

@@ -63,7 +63,7 @@ static bool deflate_plane(struct ends *e, struct plane *plane, int64_t b, int p)
 }
 
 /* Compresses plane p again if it has changed. */
-static bool renew_plane(struct ends *e, int64_t b, int p)
+static bool update_plane(struct ends *e, int64_t b, int p)
 {
     struct plane *plane = &e->planes[p];
     const int64_t first = b >> (8 * p), last = (b + 3 * (ROWS - 1)) >> (8 * p);
@@ -83,7 +83,7 @@ static size_t make_stream(struct ends *e, int64_t i)
     *at++ = 0x01;
     for (int p = 0; p < PLANES; p++) {
         const struct plane *plane = &e->planes[p];
-        if (!renew_plane(e, 3 * i, p))
+        if (!update_plane(e, 3 * i, p))
             return 0;
         memcpy(at, plane->bytes, plane->n);
         at += plane->n;
@@ -119,7 +119,7 @@ static enum tri_status write_numbers(struct ends *e, int64_t first)
     hid_t memory = H5Screate_simple(1, &size, NULL);
     bool done = memory >= 0 && H5Sselect_hyperslab(e->space, H5S_SELECT_SET, &place, NULL, &size, NULL) >= 0 &&
                 H5Dwrite(e->dataset, H5T_STD_I64LE, memory, e->space, H5P_DEFAULT, e->numbers) >= 0;
-    tri_h5_drop(H5Sclose, memory);
+    tri_h5_close_id(H5Sclose, memory);
     return done ? TRI_OK : tri_h5_fail(e->file, e->path, e->error);
 }
 
@@ -165,8 +165,8 @@ enum tri_status tri_h5_write_ends(struct tri_h5_file *file, const char *path, in
     status = status ? status : write_all(e);
     if (ready)
         deflateEnd(&e->z);
-    tri_h5_drop(H5Dclose, e->dataset);
-    tri_h5_drop(H5Sclose, e->space);
+    tri_h5_close_id(H5Dclose, e->dataset);
+    tri_h5_close_id(H5Sclose, e->space);
     free(e->numbers);
     free(e->stream);
     free(e);

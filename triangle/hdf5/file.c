@@ -43,7 +43,7 @@ static herr_t close_driven(H5FD_t *head)
     return 0;
 }
 
-static herr_t tell_features(const H5FD_t *head, unsigned long *flags)
+static herr_t get_features(const H5FD_t *head, unsigned long *flags)
 {
     (void)head;
     *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
@@ -93,7 +93,7 @@ static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_
 {
     struct driven *driven = (struct driven *)head;
     (void)kind, (void)transfer;
-    if (data == driven->file->sought) {
+    if (data == driven->file->probed) {
         driven->file->found = (int64_t)place;
         return 0;
     }
@@ -112,7 +112,7 @@ static herr_t truncate_driven(H5FD_t *head, hid_t transfer, hbool_t closing)
     driven->written = driven->allocated;
     if (driven->file->failure != 0)
         return 0;
-    return note(driven->file, tri_file_cut(driven->file->output->file, driven->allocated) ? 0 : errno);
+    return note(driven->file, tri_file_set_size(driven->file->output->file, driven->allocated) ? 0 : errno);
 }
 
 static const H5FD_class_t driver = {
@@ -126,7 +126,7 @@ static const H5FD_class_t driver = {
     .fapl_size = sizeof(struct tri_h5_file *),
     .open = open_driven,
     .close = close_driven,
-    .query = tell_features,
+    .query = get_features,
     .get_eoa = get_allocated,
     .set_eoa = set_allocated,
     .get_eof = get_written,
@@ -185,7 +185,7 @@ hid_t tri_h5_no_times(hid_t kind)
     hid_t creation = H5Pcreate(kind);
     if (creation >= 0 && H5Pset_obj_track_times(creation, false) >= 0)
         return creation;
-    tri_h5_drop(H5Pclose, creation);
+    tri_h5_close_id(H5Pclose, creation);
     return -1;
 }
 
@@ -195,23 +195,23 @@ hid_t tri_h5_new_dataset(const struct tri_h5_file *file, const char *path, hid_t
     hid_t space = H5Screate_simple(rank, size, most), dataset = -1;
     if (space >= 0 && creation >= 0)
         dataset = H5Dcreate2(file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    tri_h5_drop(H5Pclose, creation);
-    tri_h5_drop(H5Sclose, space);
+    tri_h5_close_id(H5Pclose, creation);
+    tri_h5_close_id(H5Sclose, space);
     return dataset;
 }
 
 enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *output, struct tri_error *error)
 {
     *file = (struct tri_h5_file){.id = -1, .driver = -1, .output = output};
-    if (!tri_output_has_places(output))
+    if (!tri_output_has_offsets(output))
         return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "an HDF5 file cannot be written to a device or pipe");
     file->driver = H5FDregister(&driver);
     hid_t access = file->driver >= 0 ? access_of(file) : -1, creation = tri_h5_no_times(H5P_FILE_CREATE);
     if (access >= 0 && creation >= 0)
         file->id = H5Fcreate(output->path, H5F_ACC_TRUNC, creation, access);
     enum tri_status status = file->id >= 0 ? TRI_OK : tri_h5_fail(file, "the file", error);
-    tri_h5_drop(H5Pclose, access);
-    tri_h5_drop(H5Pclose, creation);
+    tri_h5_close_id(H5Pclose, access);
+    tri_h5_close_id(H5Pclose, creation);
     return status;
 }
 

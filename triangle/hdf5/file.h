@@ -17,7 +17,7 @@ struct tri_h5_file {
     struct tri_output *output; /* borrowed */
     int failure;    /* first failure, as from tri_output_write_at; 0: none. Later writes are ignored but reported to
                        HDF5 as successful, so that it frees its resources */
-    const void *sought; /* for writes from this address, only their file offset is recorded, in `found`; NULL: none */
+    const void *probed; /* for writes from this address, only their file offset is recorded, in `found`; NULL: none */
     int64_t found;      /* that offset; < 0: no such write yet */
 };
 
@@ -40,7 +40,7 @@ struct tri_h5_reason {
 struct tri_h5_reason tri_h5_reason(void);
 
 /* Closes an object; does nothing if id < 0. */
-static inline void tri_h5_drop(herr_t (*close_call)(hid_t), hid_t id)
+static inline void tri_h5_close_id(herr_t (*close_call)(hid_t), hid_t id)
 {
     if (id >= 0)
         close_call(id);

@@ -36,7 +36,7 @@ static bool has_type(hid_t dataset, unsigned wanted)
     bool found = false;
     for (enum tri_h5_type k = TRI_H5_FLOAT64; type >= 0 && k <= TRI_H5_INT64; k++)
         found = found || ((wanted >> k & 1) && H5Tequal(type, tri_h5_type_id(k)) > 0);
-    tri_h5_drop(H5Tclose, type);
+    tri_h5_close_id(H5Tclose, type);
     return found;
 }
 
@@ -78,7 +78,7 @@ static const char *wrong_storage(const struct tri_h5 *h5, enum tri_h5_kind k, hi
     const H5D_layout_t layout = H5Pget_layout(creation);
     hid_t type = H5Dget_type(h5->datasets[k]);
     const double bytes = type >= 0 ? (double)H5Tget_size(type) : 8;
-    tri_h5_drop(H5Tclose, type);
+    tri_h5_close_id(H5Tclose, type);
     if (layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED)
         return "has virtual or compact storage, which is not supported";
     if (H5Pget_external_count(creation) != 0)
@@ -108,7 +108,7 @@ static enum tri_status check_array(struct tri_h5 *h5, enum tri_h5_kind k, struct
     const char *wrong = creation < 0            ? "cannot be examined"
                         : are_too_many(h5, k)   ? "has more rows than a mesh with this number of points can have"
                                                 : wrong_storage(h5, k, creation);
-    tri_h5_drop(H5Pclose, creation);
+    tri_h5_close_id(H5Pclose, creation);
     return wrong ? tri_fail(error, TRI_BAD_INPUT, h5->path, 0, "the array /%s %s", forms[k].name, wrong) : TRI_OK;
 }
 
@@ -145,8 +145,8 @@ static int64_t about(const struct tri_h5 *h5, const char *name)
     if (space < 0 || type < 0 || H5Sget_simple_extent_npoints(space) != 1 || H5Tequal(type, H5T_STD_I64LE) <= 0 ||
         H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
         value = -1;
-    tri_h5_drop(H5Sclose, space);
-    tri_h5_drop(H5Tclose, type);
+    tri_h5_close_id(H5Sclose, space);
+    tri_h5_close_id(H5Tclose, type);
     H5Aclose(attribute);
     return value;
 }
@@ -180,10 +180,10 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
 static enum tri_status open_file(struct tri_h5 *h5, struct tri_error *error)
 {
     struct tri_file_facts facts;
-    const tri_file file = tri_file_open(h5->path, TRI_OPEN_LOOK);
+    const tri_file file = tri_file_open(h5->path, TRI_OPEN_NO_WAIT);
     if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, h5->path, "cannot open", errno);
-    const bool regular = tri_file_look(file, &facts) && facts.kind == TRI_REGULAR;
+    const bool regular = tri_file_get_facts(file, &facts) && facts.kind == TRI_REGULAR;
     (void)tri_file_close(file);
     if (!regular)
         return tri_fail(error, TRI_CANNOT_READ, h5->path, 0, "not a regular file");
@@ -224,8 +224,8 @@ void tri_h5_free(struct tri_h5 *h5)
     H5E_BEGIN_TRY
     {
         for (int k = 0; k < TRI_H5_KINDS; k++)
-            tri_h5_drop(H5Dclose, h5->datasets[k]);
-        tri_h5_drop(H5Fclose, h5->file);
+            tri_h5_close_id(H5Dclose, h5->datasets[k]);
+        tri_h5_close_id(H5Fclose, h5->file);
     }
     H5E_END_TRY
     free(h5);
@@ -244,8 +244,8 @@ static bool read_rows(const struct tri_h5 *h5, enum tri_h5_kind k, int64_t first
     bool done = memory >= 0 && space >= 0 &&
                 H5Sselect_hyperslab(space, H5S_SELECT_SET, place, NULL, size, NULL) >= 0 &&
                 H5Dread(h5->datasets[k], type, memory, space, H5P_DEFAULT, out) >= 0;
-    tri_h5_drop(H5Sclose, memory);
-    tri_h5_drop(H5Sclose, space);
+    tri_h5_close_id(H5Sclose, memory);
+    tri_h5_close_id(H5Sclose, space);
     return done;
 }
 

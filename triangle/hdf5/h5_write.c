@@ -85,8 +85,8 @@ static enum tri_status add_segments(struct segments *s, const struct tri_tile *t
 static bool read_batch(struct segments *s)
 {
     const uint64_t place = place_of(s->n_read);
-    return tri_read_again(s->spool->file, (char *)s->ends, END_BYTES, place) &&
-           tri_read_again(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
+    return tri_read_back(s->spool->file, (char *)s->ends, END_BYTES, place) &&
+           tri_read_back(s->spool->file, (char *)s->markers, BATCH_BYTES - END_BYTES, place + END_BYTES);
 }
 
 /* After all segments have been added: returns the next ones, in order, as a tile without other items. When none are
@@ -98,7 +98,7 @@ static enum tri_status next_segments(struct segments *s, struct tri_tile *tile, 
     enum tri_status status = TRI_OK;
     if (spooled && s->n_read == 0) /* write the last batch to make room for the first */
         status = write_batch(s, error);
-    if (!status && spooled && !(left > 0 ? read_batch(s) : tri_file_cut(s->spool->file, 0)))
+    if (!status && spooled && !(left > 0 ? read_batch(s) : tri_file_set_size(s->spool->file, 0)))
         status = tri_fail_system(error, TRI_CANNOT_WRITE, s->spool->path, "cannot read segments again", errno);
     *tile = (struct tri_tile){.ends = (const int64_t(*)[2])s->ends, .segment_markers = s->markers,
                               .first_segment = s->n_read};
@@ -117,12 +117,12 @@ struct tri_h5_writer {
     struct tri_h5_part *part;    /* writes rows; NULL: other processes do */
     struct segments segments;
     int64_t n_points, n_triangles, n_chunks; /* number so far; the last: allocated chunks of points, and of triangles */
-    int64_t most_narrow;
+    int64_t max_narrow;
     int64_t n_input;      /* number of points that existed before refinement */
     double bounds[4];     /* least x, least y, largest x, largest y; infinite if there are no points */
 };
 
-bool tri_h5_is_there(void) { return true; }
+bool tri_h5_is_available(void) { return true; }
 
 /* --- beginning */
 
@@ -161,10 +161,10 @@ static void begin_arrays(struct tri_h5_writer *w, const struct tri_stream *strea
 /* --- tiles */
 
 /* Changes corners to 64 bits if the point numbers require it. */
-static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
+static enum tri_status widen_if_needed(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     const enum tri_h5_kind kind = TRI_H5_OF_TRIANGLES;
-    if (n_points <= w->most_narrow || w->layout.array[kind].type == TRI_H5_INT64)
+    if (n_points <= w->max_narrow || w->layout.array[kind].type == TRI_H5_INT64)
         return TRI_OK;
     const enum tri_status status = w->part ? tri_h5_part_pause(w->part, kind, error) : TRI_OK;
     return status ? status : tri_h5_array_widen(&w->arrays[kind], error);
@@ -174,19 +174,19 @@ static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, 
 static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (n_points <= CHUNK_POINTS && n_points <= w->most_narrow)
+    if (n_points <= CHUNK_POINTS && n_points <= w->max_narrow)
         return TRI_OK;
     while (w->n_chunks * CHUNK_POINTS < n_points && !status) {
         w->n_chunks++;
         for (enum tri_h5_kind kind = 0; kind < TRI_H5_OF_SEGMENTS && !status; kind++)
             if (w->arrays[kind].file)
                 status = tri_h5_array_allocate(&w->arrays[kind], w->n_chunks, error);
-        status = status ? status : widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
+        status = status ? status : widen_if_needed(w, w->n_chunks * CHUNK_POINTS, error);
     }
     return status;
 }
 
-static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status write_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
@@ -249,7 +249,7 @@ static enum tri_status write_rest(struct tri_h5_writer *w, struct tri_error *err
 
 /* --- several ranks: all sizes are known, and all ranks write their rows */
 
-static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
+static enum tri_status allocate_all(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
     w->n_points = stream->first_vertex[stream->n_ranks] - w->options.n_orphans;
     w->n_triangles = stream->first_triangle[stream->n_ranks];
@@ -260,7 +260,7 @@ static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream 
 
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer) { return &writer->layout; }
 
-void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
+void tri_h5_writer_set_totals(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
 {
     writer->n_input = n_input;
     memcpy(writer->bounds, bounds, sizeof writer->bounds);
@@ -272,12 +272,12 @@ static void empty(struct tri_h5_writer *w)
 {
     const struct tri_h5_options options = w->options;
     *w = (struct tri_h5_writer){.options = options, .file = {.id = -1, .driver = -1},
-                                .most_narrow = options.most_narrow > 0 ? options.most_narrow : (int64_t)INT32_MAX + 1,
+                                .max_narrow = options.max_narrow > 0 ? options.max_narrow : (int64_t)INT32_MAX + 1,
                                 .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 }
 
 /* Closes an unfinished file without writing the rest, since its contents are of no use. */
-static void let_go(struct tri_h5_writer *w)
+static void close_unfinished(struct tri_h5_writer *w)
 {
     if (w->file.id >= 0 && w->file.failure == 0)
         w->file.failure = -1;
@@ -288,9 +288,9 @@ static void let_go(struct tri_h5_writer *w)
     (void)tri_h5_close(&w->file, NULL);
 }
 
-static enum tri_status begin_again(struct tri_h5_writer *w, struct tri_error *error)
+static enum tri_status restart_file(struct tri_h5_writer *w, struct tri_error *error)
 {
-    let_go(w);
+    close_unfinished(w);
     empty(w);
     return tri_output_restart(w->options.file, error);
 }
@@ -302,14 +302,14 @@ static enum tri_status begin_file(void *user, const struct tri_stream *stream, s
     enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
-        status = w->segments.ends ? begin_again(w, error) : TRI_OK;
+        status = w->segments.ends ? restart_file(w, error) : TRI_OK;
         begin_arrays(w, stream);
         status = status ? status : open_segments(&w->segments, w->options.xdmf, error);
         if (!status && alone)
             status = tri_h5_part_new(&w->part, &w->layout, true, stream, w->options.file, error);
         status = status ? status : tri_h5_create(&w->file, w->options.file, error);
         if (!status && !alone)
-            status = lay_out(w, stream, error);
+            status = allocate_all(w, stream, error);
     }
     H5E_END_TRY
     return status;
@@ -362,7 +362,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
     w->options = *options;
     empty(w);
     (void)H5dont_atexit(); /* otherwise HDF5 prints messages about unwritable files when the process ends */
-    *sink = (struct tri_sink){w, begin_file, take_tile, end_file};
+    *sink = (struct tri_sink){w, begin_file, write_tile, end_file};
     return TRI_OK;
 }
 
@@ -372,7 +372,7 @@ void tri_h5_writer_free(struct tri_h5_writer *writer)
         return;
     H5E_BEGIN_TRY
     {
-        let_go(writer);
+        close_unfinished(writer);
     }
     H5E_END_TRY
     free(writer);

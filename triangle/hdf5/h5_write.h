@@ -17,7 +17,7 @@ struct tri_h5_options {
     bool markers;          /* write markers */
     struct tri_output *file, *xdmf; /* open outputs of the caller; `file` must have offsets */
     int64_t n_orphans;     /* with several ranks: number of points that are left out */
-    int64_t most_narrow;   /* number of points up to which 32-bit numbers are used; <= 0: the maximum */
+    int64_t max_narrow;   /* number of points up to which 32-bit numbers are used; <= 0: the maximum */
 };
 
 struct tri_h5_writer;
@@ -30,7 +30,7 @@ static inline double tri_h5_writer_bytes(double triangles)
 }
 
 /* Does this build have HDF5? */
-bool tri_h5_is_there(void);
+bool tri_h5_is_available(void);
 
 /* Makes a sink that writes the file; if the stream begins again, the file is written again from the start. Call the
  * sink from one thread at a time. After the end of the stream the outputs are complete and the caller commits them.
@@ -44,9 +44,9 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
  * the offsets in this layout (triangle/hdf5/rows.h), which belongs to the writer. */
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer);
 
-/* Sets what the writer cannot determine in this case, before the end: the number of points that existed before
- * refinement, and the bounds of all points. */
-void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4]);
+/* With several ranks the writer cannot determine the following values. Set them before the end: the number of points
+ * that existed before refinement, and the bounds of all points. */
+void tri_h5_writer_set_totals(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4]);
 
 /* NULL is allowed. */
 void tri_h5_writer_free(struct tri_h5_writer *writer);

@@ -5,16 +5,16 @@
 #include "triangle/hdf5/h5_read.h"
 #include "triangle/hdf5/h5_write.h"
 
-static const char NONE[] = "this build has no HDF5 (Debian: libhdf5-dev, then build again)";
+static const char NO_HDF5[] = "this build has no HDF5 (Debian: libhdf5-dev, then build again)";
 
-bool tri_h5_is_there(void) { return false; }
+bool tri_h5_is_available(void) { return false; }
 
 enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
                                   struct tri_sink *sink, struct tri_error *error)
 {
     (void)sink;
     *writer = NULL;
-    return tri_fail(error, TRI_CANNOT_WRITE, options->name, 0, "%s", NONE);
+    return tri_fail(error, TRI_CANNOT_WRITE, options->name, 0, "%s", NO_HDF5);
 }
 
 void tri_h5_writer_free(struct tri_h5_writer *writer) { (void)writer; }
@@ -26,7 +26,7 @@ const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *wri
     return NULL;
 }
 
-void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
+void tri_h5_writer_set_totals(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
 {
     (void)writer, (void)n_input, (void)bounds;
 }
@@ -34,7 +34,7 @@ void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const dou
 enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error)
 {
     *h5 = NULL;
-    return tri_fail(error, TRI_CANNOT_READ, path, 0, "%s", NONE);
+    return tri_fail(error, TRI_CANNOT_READ, path, 0, "%s", NO_HDF5);
 }
 
 void tri_h5_free(struct tri_h5 *h5) { (void)h5; }
@@ -52,5 +52,5 @@ enum tri_status tri_h5_read(const struct tri_h5 *h5, enum tri_h5_kind kind, int6
                             struct tri_error *error)
 {
     (void)h5, (void)kind, (void)first, (void)n, (void)out;
-    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NO_HDF5);
 }

@@ -86,20 +86,20 @@ void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile)
 enum { BUFFER_BYTES = 1 << 20 };
 
 /* An asynchronous write; at most one piece at a time. */
-struct behind {
-    struct tri_behind *under_way; /* NULL: no write in progress */
+struct async {
+    struct tri_async *handle; /* NULL: no write in progress */
     const char *data;             /* borrowed until the write is complete */
     size_t size;
     uint64_t place;
 };
 
-struct strip {
-    const struct tri_h5_laid *laid;
+struct row_buffer {
+    const struct tri_h5_plan *plan;
     int64_t next;
     int32_t n, room; /* rows in the buffer, and its capacity */
     char *buffer;    /* NULL: no rows so far */
     char *other;     /* second buffer, which is being written; NULL: not needed so far */
-    struct behind behind;
+    struct async async;
 };
 
 struct tri_h5_part {
@@ -107,7 +107,7 @@ struct tri_h5_part {
     bool alone;
     struct tri_h5_rows rows;
     double *columns;
-    struct strip strip[TRI_H5_KINDS];
+    struct row_buffer row_buffer[TRI_H5_KINDS];
 };
 
 static enum tri_status no_memory(const struct tri_h5_part *part, struct tri_error *error)
@@ -122,100 +122,100 @@ static bool is_aligned(uint64_t place, const char *data, size_t size)
     return (place | (uint64_t)(uintptr_t)data | size) % TRI_PAGE_BYTES == 0;
 }
 
-/* Starts writing at an offset; no other write may be in progress. The data are borrowed until wait_behind. Returns 0,
+/* Starts writing at an offset; no other write may be in progress. The data are borrowed until wait_async. Returns 0,
  * or a result for tri_output_conclude. */
-static int start_behind(struct behind *behind, struct tri_output *output, uint64_t place, const char *data, size_t size)
+static int start_async(struct async *async, struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
-    assert(!behind->under_way && tri_output_has_places(output));
+    assert(!async->handle && tri_output_has_offsets(output));
     if (tri_stop_is_asked(output->stop))
         return TRI_OUTPUT_STOPPED;
     const tri_file file = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
-    *behind = (struct behind){tri_behind_start(file, data, size, place), data, size, place};
-    return behind->under_way ? 0 : tri_output_write_at(output, place, data, size);
+    *async = (struct async){tri_async_start(file, data, size, place), data, size, place};
+    return async->handle ? 0 : tri_output_write_at(output, place, data, size);
 }
 
 /* Waits until the write in progress, if any, is complete. Returns the same. Bytes that could not be written
  * asynchronously are written directly. */
-static int wait_behind(struct behind *behind, const struct tri_output *output)
+static int wait_async(struct async *async, const struct tri_output *output)
 {
-    if (!behind->under_way)
+    if (!async->handle)
         return 0;
-    const size_t done = tri_behind_wait(behind->under_way);
-    behind->under_way = NULL;
-    return tri_output_write_at(output, behind->place + done, behind->data + done, behind->size - done);
+    const size_t done = tri_async_wait(async->handle);
+    async->handle = NULL;
+    return tri_output_write_at(output, async->place + done, async->data + done, async->size - done);
 }
 
 /* --- one array */
 
 /* Allocates a page-aligned buffer, as required to bypass the system's cache. */
-static char *new_buffer(const struct strip *s)
+static char *new_buffer(const struct row_buffer *s)
 {
-    return tri_page_alloc((size_t)s->room * tri_h5_row_bytes(s->laid));
+    return tri_page_alloc((size_t)s->room * tri_h5_row_bytes(s->plan));
 }
 
-static bool begin_strip(const struct tri_h5_part *part, struct strip *s)
+static bool allocate_buffer(const struct tri_h5_part *part, struct row_buffer *s)
 {
-    const size_t bytes = tri_h5_row_bytes(s->laid);
-    s->room = part->alone ? s->laid->chunk_rows : bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / bytes) : 1;
+    const size_t bytes = tri_h5_row_bytes(s->plan);
+    s->room = part->alone ? s->plan->chunk_rows : bytes < BUFFER_BYTES ? (int32_t)(BUFFER_BYTES / bytes) : 1;
     s->buffer = new_buffer(s);
     return s->buffer;
 }
 
 /* Waits for the write in progress, then starts writing the buffer. Returns the same as tri_output_write_at. */
-static int send_buffer(const struct tri_h5_part *part, struct strip *s, uint64_t place, size_t bytes)
+static int send_buffer(const struct tri_h5_part *part, struct row_buffer *s, uint64_t place, size_t bytes)
 {
-    int result = wait_behind(&s->behind, part->file);
+    int result = wait_async(&s->async, part->file);
     s->other = part->alone && !s->other ? new_buffer(s) : s->other;
     if (result || !s->other)
         return result ? result : tri_output_write_at(part->file, place, s->buffer, bytes);
     char *buffer = s->buffer;
-    result = start_behind(&s->behind, part->file, place, buffer, bytes);
+    result = start_async(&s->async, part->file, place, buffer, bytes);
     s->buffer = s->other;
     s->other = buffer;
     return result;
 }
 
-static enum tri_status flush_strip(const struct tri_h5_part *part, struct strip *s, struct tri_error *error)
+static enum tri_status flush_buffer(const struct tri_h5_part *part, struct row_buffer *s, struct tri_error *error)
 {
-    const int64_t first = s->next - s->n, chunk_rows = s->laid->chunk_rows;
-    const size_t row_bytes = tri_h5_row_bytes(s->laid), bytes = (size_t)s->n * row_bytes;
+    const int64_t first = s->next - s->n, chunk_rows = s->plan->chunk_rows;
+    const size_t row_bytes = tri_h5_row_bytes(s->plan), bytes = (size_t)s->n * row_bytes;
     if (s->n == 0)
         return TRI_OK;
-    assert(first / chunk_rows < s->laid->n);
-    const uint64_t place = (uint64_t)s->laid->place[first / chunk_rows] + (uint64_t)(first % chunk_rows) * row_bytes;
+    assert(first / chunk_rows < s->plan->n);
+    const uint64_t place = (uint64_t)s->plan->place[first / chunk_rows] + (uint64_t)(first % chunk_rows) * row_bytes;
     s->n = 0;
     return tri_output_conclude(part->file, send_buffer(part, s, place, bytes), error);
 }
 
 /* Returns how many more rows fit in the buffer and in the current chunk. */
-static int32_t room_of(const struct strip *s)
+static int32_t room_of(const struct row_buffer *s)
 {
-    const int64_t here = s->laid->chunk_rows - s->next % s->laid->chunk_rows;
+    const int64_t here = s->plan->chunk_rows - s->next % s->plan->chunk_rows;
     return here < s->room - s->n ? (int32_t)here : s->room - s->n;
 }
 
-static bool is_full(const struct strip *s)
+static bool is_full(const struct row_buffer *s)
 {
-    return s->n == s->room || (s->n > 0 && s->next % s->laid->chunk_rows == 0);
+    return s->n == s->room || (s->n > 0 && s->next % s->plan->chunk_rows == 0);
 }
 
 /* Adds rows. A full buffer is written only when more rows arrive, because the offset may be unknown before. */
 static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind, int64_t first, int32_t n,
                                 struct tri_error *error)
 {
-    struct strip *s = &part->strip[kind];
+    struct row_buffer *s = &part->row_buffer[kind];
     enum tri_status status = TRI_OK;
-    if (s->laid->width == 0 || n == 0)
+    if (s->plan->width == 0 || n == 0)
         return TRI_OK;
-    if (!s->buffer && !begin_strip(part, s))
+    if (!s->buffer && !allocate_buffer(part, s))
         return no_memory(part, error);
     if (first != s->next)
-        status = flush_strip(part, s, error);
+        status = flush_buffer(part, s, error);
     s->next = first;
     for (int32_t i = 0; !status && i < n;) {
-        status = is_full(s) ? flush_strip(part, s, error) : TRI_OK;
+        status = is_full(s) ? flush_buffer(part, s, error) : TRI_OK;
         const int32_t room = room_of(s), end = room < n - i ? i + room : n;
-        tri_h5_put(&part->rows, kind, s->laid->type, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->laid));
+        tri_h5_put(&part->rows, kind, s->plan->type, i, end, s->buffer + (size_t)s->n * tri_h5_row_bytes(s->plan));
         s->n += end - i;
         s->next += end - i;
         i = end;
@@ -225,9 +225,9 @@ static enum tri_status add_rows(struct tri_h5_part *part, enum tri_h5_kind kind,
 
 enum tri_status tri_h5_part_pause(struct tri_h5_part *part, enum tri_h5_kind kind, struct tri_error *error)
 {
-    struct strip *s = &part->strip[kind];
-    enum tri_status status = flush_strip(part, s, error);
-    status = status ? status : tri_output_conclude(part->file, wait_behind(&s->behind, part->file), error);
+    struct row_buffer *s = &part->row_buffer[kind];
+    enum tri_status status = flush_buffer(part, s, error);
+    status = status ? status : tri_output_conclude(part->file, wait_async(&s->async, part->file), error);
     if (status)
         return status;
     free(s->buffer);
@@ -251,7 +251,7 @@ enum tri_status tri_h5_part_new(struct tri_h5_part **part, const struct tri_h5_l
     *p = (struct tri_h5_part){.file = file, .alone = alone, .columns = columns,
                               .rows = {NULL, columns, stream->n_attributes, stream->n_columns}};
     for (int kind = 0; kind < TRI_H5_KINDS; kind++)
-        p->strip[kind].laid = &layout->array[kind];
+        p->row_buffer[kind].plan = &layout->array[kind];
     return TRI_OK;
 }
 
@@ -281,8 +281,8 @@ enum tri_status tri_h5_part_end(struct tri_h5_part *part, struct tri_error *erro
 void tri_h5_part_free(struct tri_h5_part *part)
 {
     for (int kind = 0; part && kind < TRI_H5_KINDS; kind++) {
-        struct strip *s = &part->strip[kind];
-        (void)wait_behind(&s->behind, part->file);
+        struct row_buffer *s = &part->row_buffer[kind];
+        (void)wait_async(&s->async, part->file);
         free(s->buffer);
         free(s->other);
     }

@@ -74,16 +74,16 @@ void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile);
 
 /* The offsets of the rows of all arrays; the same on all machines that write parts, except for the pointers. */
 struct tri_h5_layout {
-    struct tri_h5_laid {
+    struct tri_h5_plan {
         enum tri_h5_type type;
         int32_t width, chunk_rows; /* numbers in a row, 0: no such array; rows in a chunk */
         int64_t n, *place;         /* [n] offsets of the chunks in the file, in bytes */
     } array[TRI_H5_KINDS];
 };
 
-static inline size_t tri_h5_row_bytes(const struct tri_h5_laid *laid)
+static inline size_t tri_h5_row_bytes(const struct tri_h5_plan *plan)
 {
-    return (laid->type == TRI_H5_INT32 ? 4u : 8u) * (size_t)laid->width;
+    return (plan->type == TRI_H5_INT32 ? 4u : 8u) * (size_t)plan->width;
 }
 
 struct tri_h5_part;

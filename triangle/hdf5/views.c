@@ -57,7 +57,7 @@ static hid_t box_in(int rank, const hsize_t size[2], const hsize_t first[2], con
     hid_t space = H5Screate_simple(rank, size, NULL);
     if (space >= 0 && H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, box, NULL) >= 0)
         return space;
-    tri_h5_drop(H5Sclose, space);
+    tri_h5_close_id(H5Sclose, space);
     return -1;
 }
 
@@ -69,8 +69,8 @@ static void add_part(struct views *v, hid_t creation, int rank, const hsize_t si
     hid_t source = checked(v, H5Screate_simple(part->source_rank, part->source_size, NULL));
     if (!v->failed)
         checked(v, H5Pset_virtual(creation, box, ".", part->source, source));
-    tri_h5_drop(H5Sclose, source);
-    tri_h5_drop(H5Sclose, box);
+    tri_h5_close_id(H5Sclose, source);
+    tri_h5_close_id(H5Sclose, box);
 }
 
 /* Adds a dataset that is composed of other datasets; the rest has the fill value. */
@@ -84,7 +84,7 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
         checked(v, H5Pset_fill_value(creation, H5T_NATIVE_INT, &fill));
     for (int i = 0; i < n; i++)
         add_part(v, creation, rank, size, &parts[i]);
-    tri_h5_drop(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
+    tri_h5_close_id(H5Dclose, checked(v, tri_h5_new_dataset(v->file, path, type, rank, size, NULL, creation)));
 }
 
 /* --- VTK */
@@ -98,13 +98,13 @@ static void add_count(struct views *v, const char *path, int64_t count)
     hid_t dataset = tri_h5_new_dataset(v->file, path, H5T_STD_I64LE, 1, &(hsize_t){1}, NULL, creation);
     if (checked(v, dataset) >= 0)
         checked(v, H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count));
-    tri_h5_drop(H5Dclose, dataset);
+    tri_h5_close_id(H5Dclose, dataset);
 }
 
 static void add_vtk_cells(struct views *v)
 {
     const hsize_t m = (hsize_t)v->arrays[TRI_H5_OF_TRIANGLES].n, s = (hsize_t)v->arrays[TRI_H5_OF_SEGMENTS].n;
-    const hid_t type = tri_h5_type_id(v->arrays[TRI_H5_OF_TRIANGLES].laid->type);
+    const hid_t type = tri_h5_type_id(v->arrays[TRI_H5_OF_TRIANGLES].plan->type);
     const struct part nodes[2] = {{"/" TRI_H5_TRIANGLES, 2, {m, 3}, {0, 0}, {3 * m, 0}},
                                   {"/" TRI_H5_SEGMENTS, 2, {s, 2}, {3 * m, 0}, {2 * s, 0}}};
     const struct part lines = {LINE_TYPES, 1, {s, 0}, {m, 0}, {s, 0}};
@@ -122,7 +122,7 @@ static void add_vtk_data(struct views *v)
 {
     const struct tri_h5_array *a = v->arrays, *of_cells = &a[TRI_H5_OF_TRIANGLE_ATTRIBUTES];
     const hsize_t m = (hsize_t)a[TRI_H5_OF_TRIANGLES].n, s = (hsize_t)a[TRI_H5_OF_SEGMENTS].n;
-    const hsize_t k = of_cells->file ? (hsize_t)of_cells->laid->width : 0;
+    const hsize_t k = of_cells->file ? (hsize_t)of_cells->plan->width : 0;
     const struct part markers = {"/" TRI_H5_SEGMENT_MARKERS, 1, {s, 0}, {m, 0}, {s, 0}};
     const struct part attributes = {"/" TRI_H5_TRIANGLE_ATTRIBUTES, 2, {m, k}, {0, 0}, {m, k}};
     add_group(v, "/VTKHDF/PointData");
@@ -132,7 +132,7 @@ static void add_vtk_data(struct views *v)
     if (a[TRI_H5_OF_SEGMENT_MARKERS].file)
         add_view(v, "/VTKHDF/CellData/marker", H5T_STD_I32LE, 1, (hsize_t[2]){m + s, 0}, 0, &markers, 1);
     if (of_cells->file)
-        add_view(v, "/VTKHDF/CellData/attributes", tri_h5_type_id(of_cells->laid->type), 2, (hsize_t[2]){m + s, k}, 0,
+        add_view(v, "/VTKHDF/CellData/attributes", tri_h5_type_id(of_cells->plan->type), 2, (hsize_t[2]){m + s, k}, 0,
                  &attributes, 1);
 }
 
@@ -208,10 +208,10 @@ static void put_item(struct xdmf *text, const struct tri_h5_array *array)
 {
     char words[200], width[20] = "";
     if (!array->is_list)
-        snprintf(width, sizeof width, " %" PRId32, array->laid->width);
+        snprintf(width, sizeof width, " %" PRId32, array->plan->width);
     snprintf(words, sizeof words, "<DataItem Dimensions=\"%" PRId64 "%s\" NumberType=\"%s\" Precision=\"%d\" "
-             "Format=\"HDF\">", array->n, width, array->laid->type == TRI_H5_FLOAT64 ? "Float" : "Int",
-             array->laid->type == TRI_H5_INT32 ? 4 : 8);
+             "Format=\"HDF\">", array->n, width, array->plan->type == TRI_H5_FLOAT64 ? "Float" : "Int",
+             array->plan->type == TRI_H5_INT32 ? 4 : 8);
     put_words(text, words);
     put_words(text, text->name);
     put_words(text, ":/");
@@ -225,7 +225,7 @@ static void put_attribute(struct xdmf *text, const struct tri_h5_array *array, c
     if (!array->file)
         return;
     snprintf(words, sizeof words, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", name,
-             array->laid->width == 1 ? "Scalar" : "Matrix", center);
+             array->plan->width == 1 ? "Scalar" : "Matrix", center);
     put_words(text, words);
     put_item(text, array);
     put_words(text, "\n</Attribute>\n");

@@ -11,7 +11,7 @@
  * permanent is the sum of l_a (|b_x c_y| + |b_y c_x|). By Cauchy-Schwarz and 2 s t <= s^2 + t^2 it is at most l_a l_b +
  * l_b l_c + l_c l_a, which is at most a third of (l_a + l_b + l_c)^2. The factor is rounded up to cover the rounding of
  * that square. Nothing underflows in the range of predicates.h. */
-static const double DOUBT = 4e-16;
+static const double INCIRCLE_BOUND = 4e-16;
 
 void tri_cavity_free(struct tri_cavity *cavity)
 {
@@ -25,7 +25,7 @@ void tri_cavity_free(struct tri_cavity *cavity)
 
 /* Items that the arrays hold beyond one for each triangle: two edges, the pending edges among them, and one entry that
  * marks the end of the last edge. Each side of a split adds two corners. */
-enum { MORE = 5 };
+enum { EXTRA_ITEMS = 5 };
 
 /* Result of one attempt if the arrays are too small. They must not move during a search, so the caller enlarges them
  * and starts the search again. */
@@ -36,7 +36,7 @@ static bool grow(struct tri_cavity *c)
     const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->corner, sizeof *c->corner},
                                          {&c->edge, sizeof *c->edge}, {&c->wall, sizeof *c->wall},
                                          {&c->pending, sizeof *c->pending}};
-    return tri_grow_together(arrays, 5, &c->capacity, c->capacity + 1, MORE);
+    return tri_grow_together(arrays, 5, &c->capacity, c->capacity + 1, EXTRA_ITEMS);
 }
 
 bool tri_fence_owns(const struct tri_fence *fence, const struct tri_mesh *mesh, tri_triangle_id t)
@@ -53,7 +53,7 @@ static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, co
                              const struct tri_cavity_corner *b, const struct tri_cavity_corner *c, double sum,
                              double det)
 {
-    if (fabs(det) > DOUBT * (sum * sum))
+    if (fabs(det) > INCIRCLE_BOUND * (sum * sum))
         return det > 0;
     return tri_in_circle_near(mesh->xy[a->v], mesh->xy[b->v], mesh->xy[c->v], p);
 }
@@ -273,12 +273,12 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
 /* Assigns numbers to the triangles of the fan: first those of the cavity, then new ones. A fan has at least as many
  * triangles as its cavity (Euler), so no number is left over. The first number is repeated after the last, as its
  * neighbour in the fan. */
-static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
+static void number_fan(struct tri_cavity *c, struct tri_mesh *mesh)
 {
     assert(c->n_tri <= c->n_edges);
     for (int32_t i = c->n_tri; i < c->n_edges; i++) {
         assert(mesh->n_triangles < mesh->triangle_capacity);
-        mesh->tri[mesh->n_triangles].life = 0;
+        mesh->tri[mesh->n_triangles].generation = 0;
         c->tri[i] = mesh->n_triangles++;
     }
     c->tri[c->n_edges] = c->tri[0];
@@ -286,7 +286,7 @@ static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 
 #ifndef NDEBUG
 /* Checks that no other call has changed a triangle of the cavity. */
-static bool claim(const struct tri_cavity *c)
+static bool claim_triangles(const struct tri_cavity *c)
 {
     for (int32_t i = 0; i < c->n_tri; i++)
         if (!tri_owners_claim(c->owners, c->tri[i]))
@@ -306,7 +306,7 @@ static bool is_inside(const struct tri_mesh *mesh, tri_triangle_id t, struct tri
 /* If regions meet without a subsegment between them, assigns each new triangle the region in which its centroid lies,
  * so regions keep their places. If rounding prevents this, the triangle keeps the region inside its edge. Searches the
  * cavity's triangles first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
-static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
+static void place_new_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
     assert(0 <= first && first <= end && end <= c->n_edges && 0 <= first_tri && end_tri <= c->n_tri);
@@ -321,13 +321,13 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
     }
 }
 
-void tri_cavity_take(struct tri_cavity *c, struct tri_mesh *mesh)
+void tri_cavity_number_fan(struct tri_cavity *c, struct tri_mesh *mesh)
 {
     assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2); /* Euler: a disk without a vertex inside */
-    assert(claim(c));
+    assert(claim_triangles(c));
     if (c->mixed)
-        place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
-    take_numbers(c, mesh);
+        place_new_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
+    number_fan(c, mesh);
 }
 
 /* Makes the triangles of edges first .. end - 1. Links each one to its neighbours in the cycle of all edges, without
@@ -343,7 +343,7 @@ static void fill_chain(const struct tri_cavity *c, struct tri_mesh *mesh, tri_ve
 void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
 {
     assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
-    tri_cavity_take(c, mesh);
+    tri_cavity_number_fan(c, mesh);
     fill_chain(c, mesh, v, 0, c->n_edges);
 }
 
@@ -357,12 +357,12 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
     assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
     assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
     assert(v >= 0 && v < mesh->n_vertices && v != old.v[0] && v != old.v[1]);
-    assert(claim(c));
+    assert(claim_triangles(c));
     if (c->mixed) {
-        place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
-        place_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);
+        place_new_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
+        place_new_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);
     }
-    take_numbers(c, mesh);
+    number_fan(c, mesh);
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {

@@ -98,10 +98,10 @@ static inline struct tri_relative tri_relative(const struct tri_point *q, struct
     return relative;
 }
 
-/* tri_cavity_fill in two steps, for callers that process each new triangle as it is made. tri_cavity_take assigns
+/* tri_cavity_fill in two steps, for callers that process each new triangle as it is made. tri_cavity_number_fan assigns
  * numbers to the triangles of the fan. tri_make_fan_triangle makes triangle `own` on an edge, between its neighbours
  * `before` and `behind`. */
-void tri_cavity_take(struct tri_cavity *cavity, struct tri_mesh *mesh);
+void tri_cavity_number_fan(struct tri_cavity *cavity, struct tri_mesh *mesh);
 
 static inline void tri_make_fan_triangle(struct tri_mesh *mesh, tri_vertex_id v, const struct tri_cavity_edge *edge,
                                          tri_triangle_id before, tri_triangle_id own, tri_triangle_id behind)
@@ -110,7 +110,7 @@ static inline void tri_make_fan_triangle(struct tri_mesh *mesh, tri_vertex_id v,
     struct tri_triangle *t = &mesh->tri[own];
     assert(a != b && a != v && b != v);
     *t = (struct tri_triangle){{v, a, b}, {edge->outer, tri_code(behind, 2), tri_code(before, 1)}, edge->region,
-                               t->life + 1};
+                               t->generation + 1};
     tri_relink(mesh, edge->outer, a, tri_code(own, 0));
 }
 

@@ -39,20 +39,20 @@ struct tri_grid {
     void (*edge)(const void *user, int64_t i, struct tri_grid_edge *edge);       /* stores edge i */
 };
 
-enum { TRI_GRID_ROUNDS = 1 << 15 };
+enum { TRI_GRID_PERIOD = 1 << 15 };
 
 /* Allows the storage to evict pages of the mesh and of work arrays from memory. Loops that do not read the grid in
- * order call it every TRI_GRID_ROUNDS items. tri_grid_pass does this in round i of such a loop. */
-static inline void tri_grid_let_go(const struct tri_grid *grid)
+ * order call it every TRI_GRID_PERIOD items. tri_grid_evict_periodically does this in round i of such a loop. */
+static inline void tri_grid_evict_pages(const struct tri_grid *grid)
 {
-    if (grid->storage && grid->storage->let_go)
-        grid->storage->let_go(grid->storage->user);
+    if (grid->storage && grid->storage->evict_pages)
+        grid->storage->evict_pages(grid->storage->user);
 }
 
-static inline void tri_grid_pass(const struct tri_grid *grid, int64_t i)
+static inline void tri_grid_evict_periodically(const struct tri_grid *grid, int64_t i)
 {
-    if (i % TRI_GRID_ROUNDS == 0)
-        tri_grid_let_go(grid);
+    if (i % TRI_GRID_PERIOD == 0)
+        tri_grid_evict_pages(grid);
 }
 
 /* What a grid of a mesh contains. All pointers are borrowed and must stay valid as long as the grid.

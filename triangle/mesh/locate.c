@@ -119,7 +119,7 @@ static bool is_lower(const void *mesh, tri_sub_id a, tri_sub_id b)
 }
 
 /* Handles the events at one point: removes subsegments that end there and inserts those that start there. */
-static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
+static void handle_ends(struct sweep *w, const struct event *event, int32_t n)
 {
     int32_t n_start = 0;
     assert(n > 0);
@@ -175,7 +175,7 @@ static void sweep(struct sweep *w, tri_triangle_id *faces)
         for (n_ends = 0; i + n_ends < end && w->event[i + n_ends].code >= 0;)
             n_ends++;
         if (n_ends > 0)
-            pass_ends(w, &w->event[i], n_ends);
+            handle_ends(w, &w->event[i], n_ends);
         int32_t face = n_ends > 0 ? face_at(w->mesh, w->event[i].code >> 1, true) : face_of(w, w->event[i].at);
         for (int32_t k = i + n_ends; k < end; k++)
             faces[~w->event[k].code] = face;
@@ -183,7 +183,7 @@ static void sweep(struct sweep *w, tri_triangle_id *faces)
     assert(tri_order_above(&w->order, TRI_NONE) == TRI_NONE);
 }
 
-static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
+static enum tri_status locate_by_sweep(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
                                  tri_triangle_id *faces, struct tri_error *error)
 {
     struct sweep w = {.mesh = mesh};
@@ -204,7 +204,7 @@ static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_p
 /* --- walks and sweep combined */
 
 /* Lists the points within the range of the predicates in `order`, sorted along the curve. Returns their number. */
-static int32_t arrange(const struct tri_point *points, int32_t n, int32_t *order, uint64_t *scratch)
+static int32_t sort_points_in_range(const struct tri_point *points, int32_t n, int32_t *order, uint64_t *scratch)
 {
     int32_t n_order = 0;
     for (int32_t i = 0; i < n; i++)
@@ -224,7 +224,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
         struct walk w = {mesh, 0, mesh->n_triangles};
         for (int32_t i = 0; i < n; i++)
             faces[i] = TRI_NONE; /* points out of range are outside */
-        int32_t n_order = mesh->n_triangles > 0 ? arrange(points, n, order, scratch) : 0;
+        int32_t n_order = mesh->n_triangles > 0 ? sort_points_in_range(points, n, order, scratch) : 0;
         for (int32_t i = 0; i < n_order; i++) {
             faces[order[i]] = walk_to(&w, points[order[i]]);
             all = all && faces[order[i]] != NOT_FOUND;
@@ -234,7 +234,7 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
     free(scratch);
     if (!room)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to locate %d points", (int)n);
-    return all ? TRI_OK : sweep_for(mesh, points, n, faces, error);
+    return all ? TRI_OK : locate_by_sweep(mesh, points, n, faces, error);
 }
 
 tri_triangle_id tri_walk_to(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)

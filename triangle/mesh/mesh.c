@@ -192,7 +192,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
 }
 
 /* Copies counts and capacities from one mesh to another. */
-static void take_counts(struct tri_mesh *to, const struct tri_mesh *from)
+static void copy_counts(struct tri_mesh *to, const struct tri_mesh *from)
 {
     to->n_vertices = from->n_vertices;
     to->vertex_capacity = from->vertex_capacity;
@@ -211,8 +211,8 @@ void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b)
     }
     a->storage = b->storage;
     b->storage = before.storage;
-    take_counts(a, b);
-    take_counts(b, &before);
+    copy_counts(a, b);
+    copy_counts(b, &before);
 }
 
 static bool fill_array(struct tri_mesh *to, enum tri_array which, const void *from, size_t bytes)
@@ -235,7 +235,7 @@ static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const 
             memory = fill_array(to, which, a.at, (size_t)a.n * a.item);
     }
     if (memory)
-        take_counts(to, from);
+        copy_counts(to, from);
     else
         tri_mesh_drop(to);
     return memory;
@@ -347,7 +347,7 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
 }
 
 /* Returns the largest absolute coordinate. */
-static double size_of(const struct tri_pslg *pslg)
+static double largest_coordinate(const struct tri_pslg *pslg)
 {
     double size = 0;
     for (int32_t i = 0; i < 2 * pslg->n_points; i++)
@@ -358,7 +358,7 @@ static double size_of(const struct tri_pslg *pslg)
 /* Returns 1 for coordinates of ordinary size. Otherwise returns a power of two that scales the largest coordinate to
  * about 1, subject to one limit: all coordinates of the mesh (triangle/geometry/point.h) must be doubles in the
  * caller's units as well. The former are multiples of 2^-268 units, the latter multiples of 2^-1074. */
-static double unit_for(double size)
+static double choose_unit(double size)
 {
     int exponent;
     if (size == 0 || (size >= 0x1p-100 && size <= TRI_LARGEST_COORDINATE / 2))
@@ -367,16 +367,16 @@ static double unit_for(double size)
     return ldexp(1, exponent > -805 ? exponent - 1 : -806); /* scales the largest coordinate into [1, 2) or below */
 }
 
-struct taking {
+struct point_copy {
     struct tri_mesh *mesh;
     const struct tri_pslg *pslg;
 };
 
-static void take_share(void *context, size_t share)
+static void copy_points_share(void *context, size_t share)
 {
-    const struct taking *taking = context;
-    struct tri_mesh *mesh = taking->mesh;
-    const struct tri_pslg *pslg = taking->pslg;
+    const struct point_copy *point_copy = context;
+    struct tri_mesh *mesh = point_copy->mesh;
+    const struct tri_pslg *pslg = point_copy->pslg;
     struct tri_range range = tri_share(share, pslg->n_points);
     for (int32_t i = range.first; i < range.last; i++) {
         mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
@@ -391,7 +391,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
                                      const struct tri_executor *executor, struct tri_error *error)
 {
     int32_t n = pslg->n_points, attributes = pslg->n_attributes;
-    const double size = size_of(pslg);
+    const double size = largest_coordinate(pslg);
     assert(mesh->n_vertices == 0);
     if (size > 0 && size < DBL_MIN)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
@@ -400,8 +400,8 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     enum tri_status status = tri_mesh_reserve_vertices(mesh, n, error);
     if (status)
         return status;
-    mesh->unit = unit_for(size);
-    tri_execute(executor, tri_shares(n), take_share, &(struct taking){mesh, pslg});
+    mesh->unit = choose_unit(size);
+    tri_execute(executor, tri_shares(n), copy_points_share, &(struct point_copy){mesh, pslg});
     if (n > 0 && attributes > 0)
         memcpy(mesh->attributes, pslg->attributes, (size_t)n * (size_t)attributes * sizeof *mesh->attributes);
     mesh->n_vertices = mesh->n_input = n;
@@ -447,7 +447,7 @@ static void gather_share(void *context, size_t share)
     }
 }
 
-static void bring_share(void *context, size_t share)
+static void copy_back_share(void *context, size_t share)
 {
     const struct gathering *g = context;
     struct tri_range range = tri_share(share, g->n);
@@ -467,7 +467,7 @@ void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const 
             continue;
         struct gathering g = {(char *)array[k] + (size_t)first * item[k], scratch, array[k], item[k], from, n};
         tri_execute(executor, tri_shares(n), gather_share, &g);
-        tri_execute(executor, tri_shares(n), bring_share, &g);
+        tri_execute(executor, tri_shares(n), copy_back_share, &g);
     }
 }
 

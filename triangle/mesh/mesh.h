@@ -1,6 +1,6 @@
 /* The mesh: flat arrays with indices, shared by all stages of the triangulator.
  *
- * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life.
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a generation.
  * Link e is opposite corner e:
  *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
  *   link <  0   ~s: the edge is subsegment s, whose record holds the triangles on both sides.
@@ -44,7 +44,7 @@ struct tri_triangle {
     tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the number is free */
     tri_link n[3];        /* links to neighbours and subsegments, see above */
     tri_region_id region; /* index in tri_mesh.regions */
-    uint32_t life;        /* incremented when the number is reused, so that queue entries can detect it */
+    uint32_t generation;        /* incremented when the number is reused, so that queue entries can detect it */
 };
 
 struct tri_subsegment {
@@ -77,7 +77,7 @@ struct tri_incidence {
 struct tri_limits {
     double finest2;     /* squared length of the shortest edge that the coordinates can resolve */
     double shortest2;   /* like finest2, but with accumulated rounding: nearer vertices are not distinct features */
-    double dearest_gap; /* a narrow gap between parents stays unfilled if it would take more points than this */
+    double costliest_gap; /* a narrow gap between parents stays unfilled if it would take more points than this */
     double gap_points;  /* estimated number of points in the gaps that are filled */
 };
 
@@ -106,7 +106,7 @@ struct tri_storage {
     void *user;
     /* Allows the storage to evict pages of work arrays that have been read or written. May be called by any thread.
      * NULL: the storage evicts pages by itself. */
-    void (*let_go)(const void *user);
+    void (*evict_pages)(const void *user);
 };
 
 struct tri_mesh;

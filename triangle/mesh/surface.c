@@ -13,7 +13,7 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/mesh/locate.h"
 
-enum { FEW = 8, AT_ONCE = 4096, SIDES = 4 };
+enum { FEW = 8, BLOCK_VERTICES = 4096, SIDES = 4 };
 
 struct box {
     double most[SIDES]; /* upper bounds of x, y, -x, -y of its triangles, enlarged by the rounding of vertices */
@@ -28,7 +28,7 @@ struct tri_surface {
     int32_t n_settled;      /* number of leading vertices whose attributes are set */
 };
 
-static double within(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
+static double clamp_to(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
 
 static double *attributes_of(const struct tri_mesh *mesh, tri_vertex_id v)
 {
@@ -42,7 +42,7 @@ void tri_interpolate_edge(const struct tri_mesh *mesh, tri_vertex_id a, tri_vert
     const double fraction = ((p.x - from.x) * x + (p.y - from.y) * y) / (x * x + y * y);
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
         const double at_a = attributes_of(mesh, a)[k], at_b = attributes_of(mesh, b)[k];
-        to[k] = within(at_a + fraction * (at_b - at_a), tri_lesser(at_a, at_b), tri_larger(at_a, at_b));
+        to[k] = clamp_to(at_a + fraction * (at_b - at_a), tri_lesser(at_a, at_b), tri_larger(at_a, at_b));
     }
 }
 
@@ -84,7 +84,7 @@ static void interpolate(const struct tri_mesh *mesh, const tri_vertex_id corners
         const double a = attributes_of(mesh, v[0])[k];
         const double b = attributes_of(mesh, v[1])[k], c = attributes_of(mesh, v[2])[k];
         const double value = a + (area[1] / sum * (b - a) + area[2] / sum * (c - a));
-        to[k] = within(value, tri_lesser(a, tri_lesser(b, c)), tri_larger(a, tri_larger(b, c)));
+        to[k] = clamp_to(value, tri_lesser(a, tri_lesser(b, c)), tri_larger(a, tri_larger(b, c)));
     }
 }
 
@@ -221,10 +221,10 @@ static void settle_share(void *context, size_t share)
     const struct tri_mesh *mesh = context;
     const tri_vertex_id first = mesh->surface->n_settled;
     const struct tri_range range = tri_share(share, mesh->n_vertices - first);
-    tri_vertex_id part[AT_ONCE];
-    uint64_t scratch[2 * AT_ONCE];
+    tri_vertex_id part[BLOCK_VERTICES];
+    uint64_t scratch[2 * BLOCK_VERTICES];
     for (int32_t i = range.first, n; i < range.last; i += n) {
-        for (n = 0; n < AT_ONCE && i + n < range.last; n++)
+        for (n = 0; n < BLOCK_VERTICES && i + n < range.last; n++)
             part[n] = first + i + n;
         tri_hilbert_order_coarse(mesh->xy, part, n, scratch);
         tri_surface_set(mesh, part, n);

@@ -197,7 +197,7 @@ struct usage {
 };
 
 /* Several threads may store to one vertex; all store the same value. */
-static void note_corners(void *context, size_t share)
+static void mark_corners(void *context, size_t share)
 {
     const struct usage *u = context;
     struct tri_range range = tri_share(share, u->mesh->n_triangles);
@@ -209,7 +209,7 @@ static void note_corners(void *context, size_t share)
 static int64_t count_used(const struct usage *u, const struct tri_executor *executor)
 {
     int64_t n = 0;
-    tri_execute(executor, tri_shares(u->mesh->n_triangles), note_corners, (void *)u);
+    tri_execute(executor, tri_shares(u->mesh->n_triangles), mark_corners, (void *)u);
     for (tri_vertex_id v = 0; v < u->mesh->n_vertices; v++)
         n += atomic_load_explicit(&u->used[v], memory_order_relaxed);
     return n;

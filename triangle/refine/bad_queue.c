@@ -24,7 +24,7 @@ void tri_bad_queue_free(struct tri_bad_queue *queue)
     queue->window = queue->cold = NULL;
 }
 
-static int32_t take_block(struct tri_bad_queue *queue)
+static int32_t allocate_block(struct tri_bad_queue *queue)
 {
     int32_t block = queue->free_block;
     if (block != NIL)
@@ -38,9 +38,9 @@ static int32_t take_block(struct tri_bad_queue *queue)
 }
 
 /* Appends a block to the bucket. Returns false if memory ran out. */
-static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
+static bool append_block(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 {
-    int32_t block = take_block(queue);
+    int32_t block = allocate_block(queue);
     if (block == NIL)
         return false;
     if (bucket->count == 0) {
@@ -58,7 +58,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
 {
     assert(b >= 0 && b < TRI_BUCKETS);
     struct tri_bucket *bucket = &queue->bucket[b];
-    if ((bucket->count == 0 || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
+    if ((bucket->count == 0 || bucket->end == TRI_BLOCK) && !append_block(queue, bucket))
         return false;
     queue->block[bucket->last].entry[bucket->end++] = entry;
     bucket->count++;
@@ -76,7 +76,7 @@ bool tri_bad_queue_spill(struct tri_bad_queue *queue)
     return true;
 }
 
-static void refill(struct tri_bad_queue *queue)
+static void refill_window(struct tri_bad_queue *queue)
 {
     int64_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
     assert(queue->head == queue->tail);
@@ -104,7 +104,7 @@ static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_buck
     if (bucket->count > 1 && bucket->begin + 1 < TRI_BLOCK)
         __builtin_prefetch(&mesh->tri[soon[1].t]);
     const struct tri_triangle *t = &mesh->tri[soon->t];
-    if (t->life != soon->life || !tri_is_live(t))
+    if (t->generation != soon->generation || !tri_is_live(t))
         return;
     for (int k = 0; k < 3; k++) {
         __builtin_prefetch(&mesh->xy[t->v[k]]);
@@ -115,7 +115,7 @@ static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_buck
 }
 
 /* Frees the bucket's first block. All its entries have been popped. */
-static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
+static void free_first_block(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 {
     int32_t block = bucket->first;
     bucket->first = queue->block[block].next;
@@ -124,7 +124,7 @@ static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
     queue->free_block = block;
 }
 
-static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *entry)
+static void pop_first_entry(struct tri_bad_queue *queue, int b, struct tri_entry *entry)
 {
     struct tri_bucket *bucket = &queue->bucket[b];
     assert(bucket->count > 0);
@@ -132,7 +132,7 @@ static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *ent
     bucket->count--;
     queue->n_angles--;
     if (bucket->count == 0 || bucket->begin == TRI_BLOCK)
-        shorten(queue, bucket);
+        free_first_block(queue, bucket);
     if (bucket->count == 0)
         queue->filled[b / 64] &= ~(UINT64_C(1) << b % 64);
 }
@@ -146,7 +146,7 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struc
         int b = 64 * word + lowest_bit(queue->filled[word]);
         if (b >= limit)
             return false;
-        take_first(queue, b, entry);
+        pop_first_entry(queue, b, entry);
         if (queue->bucket[b].count > 0)
             fetch_ahead(queue, &queue->bucket[b], mesh);
         return true;
@@ -155,14 +155,14 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struc
 }
 
 /* Moves the next entries from the window to the batch, and drops stale ones. */
-static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *tri)
+static void filter_batch(struct tri_bad_queue *queue, const struct tri_triangle *tri)
 {
     uint32_t waiting = queue->tail - queue->head, n = waiting < TRI_BATCH ? waiting : TRI_BATCH;
     int32_t kept = 0;
     for (uint32_t i = 0; i < n; i++) {
         struct tri_entry entry = queue->window[queue->head++ & MASK];
         queue->batch[kept] = entry;
-        kept += tri[entry.t].life == entry.life;
+        kept += tri[entry.t].generation == entry.generation;
     }
     queue->next = 0;
     queue->n_batch = kept;
@@ -174,10 +174,10 @@ bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh,
         return tri_bad_queue_pop_angle(queue, TRI_BUCKETS, mesh, entry);
     while (queue->next == queue->n_batch) {
         if (queue->head == queue->tail && queue->n_cold > 0)
-            refill(queue);
+            refill_window(queue);
         if (queue->head == queue->tail)
             return false;
-        take_batch(queue, mesh->tri);
+        filter_batch(queue, mesh->tri);
     }
     *entry = queue->batch[queue->next++];
     return true;

@@ -8,10 +8,10 @@
  *
  * Triangles that are only too large are served first in, first out, which spreads sizes evenly, but within a window.
  * If the window is full, its older half moves to a stack; if it is empty, entries return from the stack. So the work
- * stays in the cache regardless of the size of the mesh. An entry holds a triangle and its generation number
- * (`life`): if the mesh has another number for that triangle, the entry is stale. Two of three entries for sizes are
- * stale when popped, because earlier points were inserted nearby. They are filtered in batches, so the loop has no
- * unpredictable branch. */
+ * stays in the cache regardless of the size of the mesh. An entry holds a triangle and its generation: if
+ * the mesh has another generation for that triangle, the entry is stale. Two of three entries for sizes are stale when
+ * popped, because earlier points were inserted nearby. They are filtered in batches, so the loop has no unpredictable
+ * branch. */
 #ifndef TRIANGLE_REFINE_BAD_QUEUE_H
 #define TRIANGLE_REFINE_BAD_QUEUE_H
 
@@ -26,7 +26,7 @@ enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_BLOCK = 31, TRI_BATCH = 16 
 
 struct tri_entry {
     tri_triangle_id t; /* the triangle */
-    uint32_t life;     /* generation number of the triangle when the entry was pushed */
+    uint32_t generation;     /* generation number of the triangle when the entry was pushed */
 };
 
 /* Consecutive entries of one bucket. */

@@ -37,7 +37,7 @@ static bool push(struct tri_refiner *r, struct tri_front_stack *to, tri_triangle
 {
     if (!tri_grow(&to->item, &to->capacity, to->n + 1, sizeof *to->item))
         return false;
-    to->item[to->n++] = (struct tri_entry){t, r->mesh->tri[t].life};
+    to->item[to->n++] = (struct tri_entry){t, r->mesh->tri[t].generation};
     return true;
 }
 
@@ -51,7 +51,7 @@ static bool push_angle(struct tri_refiner *r, tri_triangle_id id, double a, doub
 
 /* Is the new triangle on cavity edge i too large? If not, queues it if its angle is bad. Sets *room to false if
  * memory ran out. */
-static bool judge(struct tri_refiner *r, int32_t i, bool *room)
+static bool is_fan_triangle_large(struct tri_refiner *r, int32_t i, bool *room)
 {
     const struct tri_cavity_edge *edge = &r->cavity.edge[i];
     const struct tri_relative a = edge[0].a->r, b = edge[1].a->r;
@@ -68,14 +68,14 @@ static bool judge(struct tri_refiner *r, int32_t i, bool *room)
 
 /* Pushes the new triangles that are too large, and the neighbours of new triangles that are too large and now lie on
  * the front. */
-bool tri_front_feed(struct tri_refiner *r)
+bool tri_front_queue_fan(struct tri_refiner *r)
 {
     const struct tri_cavity *c = &r->cavity;
     struct tri_front *f = &r->front;
     const int32_t n = c->n_edges;
     bool room = tri_grow(&f->large, &f->capacity, n, sizeof *f->large);
     for (int32_t i = 0; room && i < n; i++)
-        f->large[i] = judge(r, i, &room);
+        f->large[i] = is_fan_triangle_large(r, i, &room);
     for (int32_t i = 0; room && i < n; i++) {
         const struct tri_triangle *t = &r->mesh->tri[c->tri[i]];
         const tri_link outer = c->edge[i].outer;
@@ -118,7 +118,7 @@ static int best_edge(const struct tri_refiner *r, const struct tri_triangle *t, 
     return best;
 }
 
-/* A triangle and its circumcentre, in a frame whose origin is the first end a of the chosen edge ab. */
+/* A triangle and its circumcentre. The origin of the coordinates is a, and the x axis is along the chosen edge ab. */
 struct stand {
     struct tri_point a; /* first end of the edge */
     double x, y;       /* unit vector from a to b */
@@ -180,7 +180,7 @@ struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id tr
 /* Walks along a subsegment until the integral of ds / h is `count`. Returns the integral reached, and sets *fraction
  * to the point reached. Takes a limited number of steps; if the subsegment needs more, *fraction is 0.5, so that it
  * is halved first. */
-static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, double count, double *fraction)
+static double integrate(const struct tri_refiner *r, const struct tri_subsegment *s, double count, double *fraction)
 {
     enum { MOST_STEPS = 1 << 16 };
     const struct tri_point a = r->mesh->xy[s->v[0]], b = r->mesh->xy[s->v[1]];
@@ -204,14 +204,14 @@ static double walk(const struct tri_refiner *r, const struct tri_subsegment *s, 
 /* Finds where to divide the subsegment. Returns false if it is short enough or must not be split. */
 static bool find_division(const struct tri_refiner *r, const struct tri_subsegment *s, double *fraction)
 {
-    const double all = walk(r, s, HUGE_VAL, fraction);
+    const double all = integrate(r, s, HUGE_VAL, fraction);
     const int parts = (int)tri_lesser(all + 0.5, 1e9);
     if (parts < 2 || tri_is_protected(r->quality, s))
         return false;
     if (r->mesh->on[s->v[0]] == TRI_VERTEX_ACUTE || r->mesh->on[s->v[1]] == TRI_VERTEX_ACUTE)
         *fraction = tri_split_fraction(r->mesh, s);
     else if (*fraction == 1)
-        walk(r, s, all * (parts / 2) / parts, fraction);
+        integrate(r, s, all * (parts / 2) / parts, fraction);
     return *fraction > 0.01 && *fraction < 0.99;
 }
 
@@ -231,7 +231,7 @@ static bool divide(struct tri_refiner *r)
         if (outcome == FAILED)
             return false;
         r->n_encroached -= outcome != DONE;
-        if (outcome == DONE && !tri_feed_subsegment(r, r->mesh->n_subs - 1)) /* the second half */
+        if (outcome == DONE && !tri_queue_subsegment(r, r->mesh->n_subs - 1)) /* the second half */
             return false;
     }
     return true;
@@ -243,7 +243,7 @@ static bool list_segments(struct tri_refiner *r)
 {
     bool room = true;
     for (int32_t i = r->n_worklist - 1; room && i >= 0; i--)
-        room = tri_feed_beside(r, tri_listed(r, i));
+        room = tri_queue_beside(r, tri_worklist_triangle(r, i));
     return room;
 }
 
@@ -274,7 +274,7 @@ static enum tri_outcome find_star(struct tri_refiner *r, tri_triangle_id first, 
         for (int e = 0; e < 2; e++) { /* the outer edge, then the edge to the next triangle */
             const int edge = e == 0 ? k : tri_next[k];
             if (t->n[edge] == TRI_BEYOND)
-                return tri_wait_for(r, (tri_vertex_id[2]){t->v[tri_next[edge]], t->v[tri_prev[edge]]});
+                return tri_request_beyond(r, (tri_vertex_id[2]){t->v[tri_next[edge]], t->v[tri_prev[edge]]});
         }
         if (t->n[tri_next[k]] < 0)
             return REFUSED;
@@ -335,7 +335,7 @@ static void fill_star(struct tri_refiner *r, struct star *s, int ear[MOST_STAR][
         const int a = ear[k][0], b = ear[k][1], c = ear[k][2];
         struct tri_triangle *t = &m->tri[s->id[k]];
         *t = (struct tri_triangle){{s->rim[a], s->rim[b], s->rim[c]}, {s->outer[b], TRI_BEYOND, s->outer[a]},
-                                   t->region, t->life + 1};
+                                   t->region, t->generation + 1};
         tri_relink(m, s->outer[a], s->rim[a], tri_code(s->id[k], 2));
         tri_relink(m, s->outer[b], s->rim[b], tri_code(s->id[k], 0));
         if (k + 1 < s->n - 2) {
@@ -348,7 +348,7 @@ static void fill_star(struct tri_refiner *r, struct star *s, int ear[MOST_STAR][
 }
 
 /* Erases v: replaces its star by the Delaunay triangulation of the rim, if the star may be changed. */
-static enum tri_outcome erase(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v)
+static enum tri_outcome erase_vertex(struct tri_refiner *r, tri_triangle_id first, tri_vertex_id v)
 {
     struct star star;
     int ear[MOST_STAR][3];
@@ -358,7 +358,7 @@ static enum tri_outcome erase(struct tri_refiner *r, tri_triangle_id first, tri_
     fill_star(r, &star, ear);
     for (int k = star.n - 2; k < star.n; k++) {
         r->mesh->tri[star.id[k]].v[0] = TRI_NONE;
-        r->mesh->tri[star.id[k]].life++;
+        r->mesh->tri[star.id[k]].generation++;
     }
     r->mesh->on[v] = TRI_VERTEX_NONE;
     r->report->inserted_free--;
@@ -383,7 +383,7 @@ static bool erase_corners(struct tri_refiner *r, tri_triangle_id id)
         const tri_vertex_id v = m->tri[id].v[k];
         if (m->on[v] != TRI_VERTEX_FREE || !(m->length[v] < 0))
             continue;
-        const enum tri_outcome outcome = erase(r, id, v);
+        const enum tri_outcome outcome = erase_vertex(r, id, v);
         if (outcome == FAILED)
             return false;
         k = outcome == DONE ? -1 : k;
@@ -395,7 +395,7 @@ static bool erase_all(struct tri_refiner *r)
 {
     const bool may = r->hooks->erased && r->hooks->fence && tri_area_scale(r->quality) <= 1;
     for (; may && r->next_listed < r->n_worklist; r->next_listed++)
-        if (!erase_corners(r, tri_listed(r, r->next_listed)))
+        if (!erase_corners(r, tri_worklist_triangle(r, r->next_listed)))
             return false;
     return true;
 }
@@ -403,10 +403,10 @@ static bool erase_all(struct tri_refiner *r)
 /* --- the stage */
 
 /* Pushes the triangles of the worklist that are too large. */
-static bool take_all(struct tri_refiner *r)
+static bool push_all_large(struct tri_refiner *r)
 {
     for (int32_t i = r->n_worklist - 1; i >= 0; i--) {
-        const tri_triangle_id id = tri_listed(r, i);
+        const tri_triangle_id id = tri_worklist_triangle(r, i);
         const struct tri_triangle *t = &r->mesh->tri[id];
         if (!tri_is_live(t) || !is_large(r, id))
             continue;
@@ -423,7 +423,7 @@ static bool take_all(struct tri_refiner *r)
 bool tri_front_begin(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
-        r->n_worklist = tri_count_listed(r);
+        r->n_worklist = tri_worklist_length(r);
         r->step = DIVIDING;
         if (!r->quality->conforming && !list_segments(r))
             return false;
@@ -438,7 +438,7 @@ bool tri_front_begin(struct tri_refiner *r)
         return true;
     if (!erase_all(r))
         return false;
-    r->n_worklist = tri_count_listed(r);
+    r->n_worklist = tri_worklist_length(r);
     r->step = ADVANCING;
-    return take_all(r);
+    return push_all_large(r);
 }

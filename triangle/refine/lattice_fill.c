@@ -150,7 +150,7 @@ static enum tri_outcome check_around(struct tri_fill *f, struct place at)
     return DONE;
 }
 
-static enum tri_outcome leave_out(struct tri_fill *f, struct place at)
+static enum tri_outcome drop_site(struct tri_fill *f, struct place at)
 {
     f->sites.at[site_at(f, at)] = TRI_SITE_OUT;
     return check_around(f, at);
@@ -181,7 +181,7 @@ static enum tri_outcome walk_to(struct tri_refiner *r, struct tri_point p, tri_t
         if (e == 3)
             return DONE;
         if (at->n[e] == TRI_BEYOND)
-            return tri_wait_for(r, (tri_vertex_id[]){at->v[tri_next[e]], at->v[tri_prev[e]]});
+            return tri_request_beyond(r, (tri_vertex_id[]){at->v[tri_next[e]], at->v[tri_prev[e]]});
         if (at->n[e] < 0 || !tri_fence_owns(r->hooks->fence, m, tri_of(at->n[e])))
             return REFUSED;
         *t = tri_of(at->n[e]);
@@ -190,7 +190,7 @@ static enum tri_outcome walk_to(struct tri_refiner *r, struct tri_point p, tri_t
 }
 
 /* Inserts a rim site. */
-static enum tri_outcome insert(struct tri_refiner *r, struct place at)
+static enum tri_outcome insert_site(struct tri_refiner *r, struct place at)
 {
     struct tri_sites *s = &r->fill->sites;
     const int32_t site = site_at(r->fill, at);
@@ -216,7 +216,7 @@ static enum tri_outcome insert(struct tri_refiner *r, struct place at)
 
 /* Looks at a site. If all triangles around it are cells, it waits to be filled. If only some are, it is a rim site
  * and is inserted. If none is, it is left out. */
-static enum tri_outcome look_at(struct tri_refiner *r, struct place at)
+static enum tri_outcome look_at_site(struct tri_refiner *r, struct place at)
 {
     struct tri_fill *f = r->fill;
     if (!is_in(f, at))
@@ -225,24 +225,24 @@ static enum tri_outcome look_at(struct tri_refiner *r, struct place at)
     if (in == ALL_IN)
         return DONE;
     if (!has_cell(in))
-        return leave_out(f, at);
+        return drop_site(f, at);
     if (f->sites.at[site_at(f, at)] != TRI_SITE_FREE)
         return DONE;
-    const enum tri_outcome outcome = insert(r, at);
+    const enum tri_outcome outcome = insert_site(r, at);
     if (outcome == FAILED)
         return FAILED;
-    return outcome == DONE ? check_around(f, at) : leave_out(f, at);
+    return outcome == DONE ? check_around(f, at) : drop_site(f, at);
 }
 
 /* Looks at all sites in the list. FAILED: the current site is still in the list. */
-static enum tri_outcome look_at_all(struct tri_refiner *r)
+static enum tri_outcome look_at_sites(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
     while (f->n_check > 0) {
         if (tri_refiner_must_stop(r))
             return FAILED;
         const struct place at = f->check[--f->n_check];
-        if (look_at(r, at) == FAILED) {
+        if (look_at_site(r, at) == FAILED) {
             check(f, at); /* this cannot fail for lack of room, because the entry was just popped */
             return FAILED;
         }
@@ -270,7 +270,7 @@ static enum tri_outcome find_edge(struct tri_refiner *r, tri_triangle_id t, tri_
             }
             const tri_link link = tri[at].n[side[k]];
             if (link == TRI_BEYOND)
-                return tri_wait_for(r, (tri_vertex_id[]){a, tri[at].v[turn == 0 ? tri_prev[k] : tri_next[k]]});
+                return tri_request_beyond(r, (tri_vertex_id[]){a, tri[at].v[turn == 0 ? tri_prev[k] : tri_next[k]]});
             if (link < 0)
                 break;
             at = tri_of(link);
@@ -311,9 +311,9 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
             border.region = r->mesh->tri[tri_of(border.inside)].region;
         }
         if (border.outside == TRI_BEYOND)
-            return tri_wait_for(r, (tri_vertex_id[]){v[a], v[b]});
+            return tri_request_beyond(r, (tri_vertex_id[]){v[a], v[b]});
         if (border.outside < 0 || !is_delaunay(r, c, border.outside)) {
-            if (leave_out(f, c->at[a]) == FAILED || leave_out(f, c->at[b]) == FAILED)
+            if (drop_site(f, c->at[a]) == FAILED || drop_site(f, c->at[b]) == FAILED)
                 return FAILED;
             continue;
         }
@@ -325,12 +325,12 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
 }
 
 /* Inserts the rim, lists the border of the cells, and counts the sites without a vertex. */
-static enum tri_outcome settle(struct tri_refiner *r)
+static enum tri_outcome settle_rim(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
     do {
         f->n_border = f->n_cells = f->n_new = 0;
-        if (look_at_all(r) == FAILED || each_cell(r, list_border) == FAILED)
+        if (look_at_sites(r) == FAILED || each_cell(r, list_border) == FAILED)
             return FAILED;
     } while (f->n_check > 0);
     for (int32_t i = 0; i < f->sites.n; i++)
@@ -341,7 +341,7 @@ static enum tri_outcome settle(struct tri_refiner *r)
 /* --- removing the triangles inside */
 
 /* Reverts the changes of walk_inside. */
-static void put_back(const struct tri_refiner *r)
+static void revert_inside(const struct tri_refiner *r)
 {
     const struct tri_fill *f = r->fill;
     for (int32_t i = 0; i < f->n_numbers; i++)
@@ -366,12 +366,12 @@ static bool note_inside(const struct tri_refiner *r, tri_triangle_id t, tri_regi
 }
 
 /* Marks the neighbours of a triangle inside as inside. */
-static enum tri_outcome walk_on(struct tri_refiner *r, tri_triangle_id inside)
+static enum tri_outcome mark_neighbours(struct tri_refiner *r, tri_triangle_id inside)
 {
     const struct tri_triangle *t = &r->mesh->tri[inside];
     for (int e = 0; e < 3; e++) {
         if (t->n[e] == TRI_BEYOND)
-            return tri_wait_for(r, (tri_vertex_id[]){t->v[tri_next[e]], t->v[tri_prev[e]]});
+            return tri_request_beyond(r, (tri_vertex_id[]){t->v[tri_next[e]], t->v[tri_prev[e]]});
         if (t->n[e] != CUT && (t->n[e] < 0 || !note_inside(r, tri_of(t->n[e]), ~t->region)))
             return REFUSED;
     }
@@ -390,12 +390,12 @@ static enum tri_outcome walk_inside(struct tri_refiner *r)
     for (int32_t i = 0; outcome == DONE && i < f->n_border; i++)
         outcome = note_inside(r, tri_of(f->border[i].inside), f->border[i].region) ? DONE : REFUSED;
     for (int32_t i = 0; outcome == DONE && i < f->n_numbers; i++)
-        outcome = walk_on(r, f->number[i]);
+        outcome = mark_neighbours(r, f->number[i]);
     if (outcome == DONE && f->n_numbers + 2 * f->n_new != f->n_cells) /* by Euler's formula, there are other vertices
                                                                          inside */
         outcome = REFUSED;
     if (outcome != DONE)
-        put_back(r);
+        revert_inside(r);
     return outcome;
 }
 
@@ -417,7 +417,7 @@ static void place_vertices(struct tri_refiner *r)
             s->at[site] = tri_add_vertex(r, tri_site_place(s, row, column), TRI_VERTEX_FREE, 0);
             r->mesh->feature[s->at[site]] = s->lattice.feature;
             for (int k = 0; k < 2; k++) {
-                r->mesh->tri[r->mesh->n_triangles].life = 0;
+                r->mesh->tri[r->mesh->n_triangles].generation = 0;
                 f->number[f->n_numbers++] = r->mesh->n_triangles++;
             }
         }
@@ -442,7 +442,7 @@ static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, b
     const bool at_border = s->at[c->across[1]] == TRI_SITE_OUT;
     assert(tri_owners_claim(r->hooks->owners, own) && (at_border || before != TRI_NONE));
     *t = (struct tri_triangle){{s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]}, {CUT, CUT, CUT},
-                               at_border ? TRI_NONE : r->mesh->tri[before].region, t->life + 1};
+                               at_border ? TRI_NONE : r->mesh->tri[before].region, t->generation + 1};
     for (int e = 0; e < 3; e++)
         if (s->at[c->across[e]] == TRI_SITE_OUT) {
             const struct border *border = &f->border[f->n_border++];
@@ -459,7 +459,7 @@ static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, b
 }
 
 /* Replaces the triangles inside the border by the cells. */
-static enum tri_outcome put_cells(struct tri_refiner *r)
+static enum tri_outcome replace_by_cells(struct tri_refiner *r)
 {
     struct tri_fill *f = r->fill;
     if (f->n_new == 0)
@@ -511,7 +511,7 @@ static bool list_large(struct tri_refiner *r, tri_triangle_id t, int32_t place)
         return true;
     if (!tri_grow(&f->large, &f->large_capacity, f->n_large + 1, sizeof *f->large))
         return false;
-    f->large[f->n_large++] = (struct large){bound, {t, r->mesh->tri[t].life}, place};
+    f->large[f->n_large++] = (struct large){bound, {t, r->mesh->tri[t].generation}, place};
     f->cells += area2 / bound;
     return true;
 }
@@ -523,27 +523,27 @@ static bool list_all_large(struct tri_refiner *r)
     int32_t place = 0;
     bool room = true;
     for (; room && place < r->n_worklist; place++)
-        room = list_large(r, tri_listed(r, place), place);
+        room = list_large(r, tri_worklist_triangle(r, place), place);
     while (room && tri_bad_queue_pop(&r->queue, r->mesh, &entry))
-        room = entry.life != r->mesh->tri[entry.t].life || list_large(r, entry.t, place++);
+        room = entry.generation != r->mesh->tri[entry.t].generation || list_large(r, entry.t, place++);
     return room;
 }
 
 /* Puts the triangles that came from the queue back, if they are unchanged. Returns false if memory ran out. */
-static bool queue_again(struct tri_refiner *r)
+static bool requeue_large(struct tri_refiner *r)
 {
     const struct tri_fill *f = r->fill;
     bool room = true;
     for (int32_t i = 0; room && i < f->n_large; i++) {
         const struct tri_entry entry = f->large[i].entry;
         if (f->large[i].place >= r->n_worklist)
-            room = tri_bad_queue_push_size(&r->queue, entry, entry.life == r->mesh->tri[entry.t].life);
+            room = tri_bad_queue_push_size(&r->queue, entry, entry.generation == r->mesh->tri[entry.t].generation);
     }
     return room;
 }
 
 /* Starts a fill. If cells are not worthwhile, the fill has nothing to do. Returns false if memory ran out. */
-static bool begin(struct tri_refiner *r)
+static bool begin_fill(struct tri_refiner *r)
 {
     assert(r->queue.n_angles == 0);
     r->fill = calloc(1, sizeof *r->fill);
@@ -595,7 +595,7 @@ static bool find_sites(struct tri_refiner *r)
     return check_all(f);
 }
 
-static void end_bound(struct tri_fill *f)
+static void finish_bound(struct tri_fill *f)
 {
     const double area2 = f->large[f->done].area2;
     while (f->done < f->n_large && f->large[f->done].area2 == area2)
@@ -605,7 +605,7 @@ static void end_bound(struct tri_fill *f)
     f->n_check = 0;
 }
 
-bool tri_wants_cells(const struct tri_refiner *r)
+bool tri_may_fill_lattice(const struct tri_refiner *r)
 {
     return r->lattice && !r->hooks->urgent && !r->hooks->gate && r->quality->max_steiner < 0 &&
            tri_area_scale(r->quality) <= 1;
@@ -613,18 +613,18 @@ bool tri_wants_cells(const struct tri_refiner *r)
 
 bool tri_fill_lattice(struct tri_refiner *r)
 {
-    if (!tri_wants_cells(r))
+    if (!tri_may_fill_lattice(r))
         return true;
-    if (!r->fill && !begin(r))
+    if (!r->fill && !begin_fill(r))
         return false;
     while (r->fill->done < r->fill->n_large) {
         if (!r->fill->has_sites && !find_sites(r))
             return false;
-        if (r->fill->sites.n > 0 && (settle(r) == FAILED || put_cells(r) == FAILED))
+        if (r->fill->sites.n > 0 && (settle_rim(r) == FAILED || replace_by_cells(r) == FAILED))
             return false;
-        end_bound(r->fill);
+        finish_bound(r->fill);
     }
-    const bool room = queue_again(r);
+    const bool room = requeue_large(r);
     tri_fill_free(r);
     return room;
 }

@@ -60,7 +60,7 @@ static bool is_above(const struct petal *petal, struct tri_point q)
 static bool is_in_disk(const struct petal *petal, struct tri_point q) { return tri_distance2(petal->o, q) < petal->r2; }
 
 /* Makes q the best point if it is better. q lies on the boundary of the Voronoi cell of v. */
-static void consider(struct petal *petal, struct tri_point q, tri_vertex_id v)
+static void consider_point(struct petal *petal, struct tri_point q, tri_vertex_id v)
 {
     double distance2 = tri_distance2(q, relative(petal, v));
     if (!is_above(petal, q) || !(distance2 > petal->best2))
@@ -93,7 +93,7 @@ static void set_disk(struct petal *petal, double height)
 
 /* Follows an edge of the diagram to the next triangle. Returns that triangle if it lies inside the fence and its
  * circumcentre *d inside the petal; otherwise TRI_NONE. */
-static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence, const struct pending *edge,
+static tri_triangle_id follow_voronoi(struct petal *petal, const struct tri_fence *fence, const struct pending *edge,
                               struct tri_point *d)
 {
     const struct tri_mesh *mesh = petal->mesh;
@@ -104,7 +104,7 @@ static tri_triangle_id follow(struct petal *petal, const struct tri_fence *fence
     struct tri_point at = *d;
     bool inside = is_in_disk(petal, *d);
     if (inside || leave_disk(petal, edge->c, *d, &at))
-        consider(petal, at, beside);
+        consider_point(petal, at, beside);
     return inside && is_above(petal, *d) ? tri_of(across) : TRI_NONE;
 }
 
@@ -128,7 +128,7 @@ static bool walk_diagram(struct petal *petal, const struct tri_fence *fence, tri
                 beyond[1] = near->v[tri_prev[e]];
                 return false;
             }
-            t = near->n[e] >= 0 ? follow(petal, fence, &edge, &c) : TRI_NONE;
+            t = near->n[e] >= 0 ? follow_voronoi(petal, fence, &edge, &c) : TRI_NONE;
             from = t == TRI_NONE ? from : tri_edge(near->n[e]);
         }
     }

@@ -32,20 +32,20 @@ static bool next_entry(struct tri_refiner *r)
                                  : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
 
-static bool work_off(struct tri_refiner *r)
+static bool run_queue(struct tri_refiner *r)
 {
     assert(r->step != NOT_BEGUN);
     for (;;) {
         if (tri_refiner_must_stop(r))
             return false;
-        if (!r->in_hand && !tri_split_encroached(r)) /* after a pause, the interrupted triangle comes first */
+        if (!r->is_pending && !tri_split_encroached(r)) /* after a pause, the interrupted triangle comes first */
             return false;
-        if (!r->in_hand && !next_entry(r))
+        if (!r->is_pending && !next_entry(r))
             return true;
-        r->in_hand = true;
+        r->is_pending = true;
         if (tri_treat(r, r->hand) == FAILED)
             return false;
-        r->in_hand = false;
+        r->is_pending = false;
     }
 }
 
@@ -53,8 +53,8 @@ static bool work_off(struct tri_refiner *r)
 static bool queue_chunk(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < TRI_WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
-        tri_triangle_id triangle = tri_listed(r, r->next_listed);
-        if ((r->quality->conforming && !tri_feed_beside(r, triangle)) || !tri_feed_triangle(r, triangle, false))
+        tri_triangle_id triangle = tri_worklist_triangle(r, r->next_listed);
+        if ((r->quality->conforming && !tri_queue_beside(r, triangle)) || !tri_queue_triangle(r, triangle, false))
             return false;
     }
     assert(r->next_listed <= r->n_worklist);
@@ -71,23 +71,23 @@ static bool queue_chunk(struct tri_refiner *r)
 static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
-        assert(!r->in_hand && r->n_encroached == 0);
-        r->n_worklist = tri_count_listed(r);
+        assert(!r->is_pending && r->n_encroached == 0);
+        r->n_worklist = tri_worklist_length(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
     }
     while (r->step == FIRST_PASS) {
-        if (!work_off(r))
+        if (!run_queue(r))
             return false;
         if (r->next_listed == r->n_worklist) {
             r->step = ALL_ANGLES;
-            r->limit = tri_wants_cells(r) ? TRI_BUCKETS : 0;
+            r->limit = tri_may_fill_lattice(r) ? TRI_BUCKETS : 0;
         } else if (!queue_chunk(r)) {
             return false;
         }
     }
     if (r->step == ALL_ANGLES) {
-        if (!work_off(r))
+        if (!run_queue(r))
             return false;
         r->step = FILLING;
     }
@@ -97,10 +97,10 @@ static bool refine_worklist(struct tri_refiner *r)
         r->step = SECOND_PASS;
         r->next_listed = 0;
     }
-    if (!work_off(r))
+    if (!run_queue(r))
         return false;
     while (tri_has_sizes(r->quality) && r->next_listed < r->n_worklist)
-        if (!tri_feed_triangle(r, tri_listed(r, r->next_listed++), true) || !work_off(r))
+        if (!tri_queue_triangle(r, tri_worklist_triangle(r, r->next_listed++), true) || !run_queue(r))
             return false;
     return true;
 }
@@ -120,7 +120,7 @@ static void begin_stages(struct tri_refiner *r)
 static bool refine_in_stages(struct tri_refiner *r)
 {
     for (; r->stage != LAST_STAGE; r->stage = r->stage == USUAL_STAGE ? LAST_STAGE : USUAL_STAGE) {
-        if (r->stage == FRONT_STAGE ? !tri_front_begin(r) || !work_off(r) : !refine_worklist(r))
+        if (r->stage == FRONT_STAGE ? !tri_front_begin(r) || !run_queue(r) : !refine_worklist(r))
             return false;
         r->step = NOT_BEGUN;
         r->criterion.bounds = tri_bounds_of(r->quality, tri_worked_angle(r->quality));
@@ -173,7 +173,7 @@ enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
 {
     r->error = (struct tri_error){.status = TRI_OK}; /* without a failure, the caller's error stays unchanged */
     if (refine_in_stages(r)) {
-        assert(!r->in_hand && r->n_encroached == 0);
+        assert(!r->is_pending && r->n_encroached == 0);
         return TRI_OK;
     }
     if (r->error.status == TRI_OK)

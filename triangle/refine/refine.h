@@ -78,7 +78,7 @@ enum tri_excuse { /* the reason why a triangle is still bad */
     TRI_EXCUSE_NARROW_GAP,  /* lies in a narrow gap between two segments, and filling the gap would need too many
                                points */
     TRI_EXCUSE_PROTECTED,   /* -Y or -YY forbids to split a segment here */
-    TRI_EXCUSE_LIMIT,       /* -S is reached, or angles would need an unlimited number of points here
+    TRI_EXCUSE_LIMIT,       /* -S is reached, or the angle bound would need points without end here
                                (feature_size.h) */
     TRI_EXCUSE_PRECISION,   /* features are closer together than coordinates can resolve */
     TRI_EXCUSE_DEFERRED,    /* deferred because of the gate or the fence */

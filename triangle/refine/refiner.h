@@ -36,7 +36,7 @@ struct tri_refiner {
     int32_t next_listed, n_worklist; /* next triangle of the worklist; its length */
     enum tri_bound_stage stage;      /* current stage */
     enum tri_excuse excuse; /* reason of the last outcome REFUSED */
-    bool in_hand;     /* true: the treatment of `hand` was interrupted by a pause */
+    bool is_pending;     /* true: the treatment of `hand` was interrupted by a pause */
     struct tri_entry hand;  /* the triangle being treated */
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming), or to divide (front.c) */
     int32_t n_encroached, encroached_capacity; /* entries of `encroached`; allocated */
@@ -56,13 +56,13 @@ static inline enum tri_badness tri_refiner_judge(const struct tri_refiner *r, co
 }
 
 /* Returns the length of the worklist. Without a worklist all triangles are listed. */
-static inline int32_t tri_count_listed(const struct tri_refiner *r)
+static inline int32_t tri_worklist_length(const struct tri_refiner *r)
 {
     return r->hooks->worklist ? r->hooks->n_worklist : r->mesh->n_triangles;
 }
 
 /* Returns triangle i of the worklist. */
-static inline tri_triangle_id tri_listed(const struct tri_refiner *r, int32_t i)
+static inline tri_triangle_id tri_worklist_triangle(const struct tri_refiner *r, int32_t i)
 {
     return r->hooks->worklist ? r->hooks->worklist[i] : i;
 }
@@ -83,19 +83,19 @@ enum tri_outcome {
 bool tri_push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest);
 
 /* Queues the triangle if its size (`sizes` true) or its angle (`sizes` false) is bad. */
-bool tri_feed_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes);
+bool tri_queue_triangle(struct tri_refiner *r, tri_triangle_id triangle, bool sizes);
 
 /* Fills the cavity with a fan of triangles around v, and queues the bad ones. */
-bool tri_fill_and_feed(struct tri_refiner *r, tri_vertex_id v);
+bool tri_fill_and_queue(struct tri_refiner *r, tri_vertex_id v);
 
 /* Queues the bad triangles of the fan that has just filled the cavity. */
-bool tri_feed_fan(struct tri_refiner *r);
+bool tri_queue_fan(struct tri_refiner *r);
 
 /* For -D: push onto the stack of subsegments to test for encroachment. In this order: subsegment s, the subsegments
  * on the sides of a triangle, the walls of the cavity. */
-bool tri_feed_subsegment(struct tri_refiner *r, tri_sub_id s);
-bool tri_feed_beside(struct tri_refiner *r, tri_triangle_id triangle);
-bool tri_feed_walls(struct tri_refiner *r);
+bool tri_queue_subsegment(struct tri_refiner *r, tri_sub_id s);
+bool tri_queue_beside(struct tri_refiner *r, tri_triangle_id triangle);
+bool tri_queue_walls(struct tri_refiner *r);
 
 /* --- front.c */
 
@@ -108,7 +108,7 @@ bool tri_front_next(struct tri_refiner *r);
 
 /* Queues new triangles that are too large, and neighbours that now lie on the front. Returns false if memory ran
  * out. */
-bool tri_front_feed(struct tri_refiner *r);
+bool tri_front_queue_fan(struct tri_refiner *r);
 
 /* Returns the point to insert for a triangle that is too large. */
 struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape);
@@ -116,7 +116,7 @@ struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id tr
 /* --- lattice_fill.c */
 
 /* May this call fill parts of the mesh with lattice cells? */
-bool tri_wants_cells(const struct tri_refiner *r);
+bool tri_may_fill_lattice(const struct tri_refiner *r);
 
 /* Replaces triangles of the worklist and of the queue that are too large by lattice cells. Returns false on failure
  * or if there is no room; call it again to resume. */
@@ -133,7 +133,7 @@ tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t 
 
 /* Requests the part of the mesh beyond an edge. When it has arrived, the caller's step is tried again. Returns
  * FAILED. */
-enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2]);
+enum tri_outcome tri_request_beyond(struct tri_refiner *r, const tri_vertex_id edge[2]);
 
 /* Inserts the lattice point p, which lies in the triangle, or splits a subsegment that p encroaches (AGAIN).
  * REFUSED: p is too close to a vertex or a subsegment, or the fence forbids it. */

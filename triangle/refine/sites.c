@@ -125,7 +125,7 @@ static void paint_row(struct tri_sites *s, int32_t row, struct span columns, tri
 }
 
 /* Computes the index at which each row starts. s->n stays 0 if there are more than `most` sites. */
-static void lay_out(struct tri_sites *s, int32_t most)
+static void index_rows(struct tri_sites *s, int32_t most)
 {
     int64_t n = 0;
     for (int32_t row = 0; row < s->n_rows && n <= most; row++) {
@@ -172,7 +172,7 @@ static struct span columns_near(const struct tri_lattice *lattice, const struct 
 }
 
 /* Removes the sites closer than `distance` to a segment. */
-static void wipe_out(struct tri_sites *s, struct segment segment, double distance)
+static void remove_sites_near(struct tri_sites *s, struct segment segment, double distance)
 {
     const struct tri_lattice *lattice = &s->lattice;
     const struct span rows = rows_between(lattice, tri_lesser(segment.a.y, segment.b.y) - distance,
@@ -202,7 +202,7 @@ static void note_vertex(struct tri_sites *s, const struct tri_mesh *mesh, tri_ve
     const struct tri_point p = mesh->xy[v];
     const int32_t site = tri_site_of(s, p);
     if (site == TRI_NONE) {
-        wipe_out(s, (struct segment){p, p}, TRI_LATTICE_APART * s->lattice.edge);
+        remove_sites_near(s, (struct segment){p, p}, TRI_LATTICE_APART * s->lattice.edge);
     } else if (s->at[site] != TRI_SITE_OUT) {
         s->at[site] = v;
         s->near[site] = t;
@@ -215,7 +215,7 @@ static void note_features(struct tri_sites *s, const struct tri_mesh *mesh, tri_
     for (int k = 0; k < 3; k++) {
         note_vertex(s, mesh, t->v[k], triangle);
         if (t->n[k] < 0 && t->n[k] != TRI_BEYOND)
-            wipe_out(s, (struct segment){mesh->xy[t->v[tri_next[k]]], mesh->xy[t->v[tri_prev[k]]]},
+            remove_sites_near(s, (struct segment){mesh->xy[t->v[tri_next[k]]], mesh->xy[t->v[tri_prev[k]]]},
                      TRI_LATTICE_OFF_WALLS * s->lattice.edge);
     }
 }
@@ -232,7 +232,7 @@ bool tri_sites_find(struct tri_sites *s, const struct tri_mesh *mesh, const stru
     for (int32_t row = 0; row < s->n_rows; row++)
         s->row[row] = (struct tri_site_row){INT32_MAX / 2, -1, 0};
     paint_all(s, mesh, triangle, n, widen_row);
-    lay_out(s, most);
+    index_rows(s, most);
     s->at = malloc(((size_t)s->n + 1) * sizeof *s->at);
     s->near = malloc(((size_t)s->n + 1) * sizeof *s->near);
     if (!s->at || !s->near)

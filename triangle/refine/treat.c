@@ -65,7 +65,7 @@ tri_vertex_id tri_add_vertex(struct tri_refiner *r, struct tri_point p, int32_t 
     return v;
 }
 
-static void tell_changes(const struct tri_refiner *r)
+static void report_changes(const struct tri_refiner *r)
 {
     if (r->hooks->part)
         r->hooks->part->changed(r->hooks->part->user, r->cavity.tri, r->cavity.n_edges);
@@ -83,10 +83,10 @@ static enum tri_outcome insert_free(struct tri_refiner *r, struct tri_point p, t
     const double feature = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
                                               corner[tri_prev[shape->shortest]], p, r->sized);
     r->mesh->feature[v] = tri_lesser(feature, most);
-    bool room = tri_fill_and_feed(r, v);
-    tell_changes(r);
+    bool room = tri_fill_and_queue(r, v);
+    report_changes(r);
     r->report->inserted_free++;
-    return room && tri_feed_walls(r) ? DONE : FAILED;
+    return room && tri_queue_walls(r) ? DONE : FAILED;
 }
 
 static bool at_limit(struct tri_refiner *r)
@@ -108,7 +108,7 @@ static enum tri_outcome defer(struct tri_refiner *r, tri_triangle_id triangle, i
 }
 
 /* Changes nothing. The step is tried again when more of the mesh is available. */
-enum tri_outcome tri_wait_for(struct tri_refiner *r, const tri_vertex_id edge[2])
+enum tri_outcome tri_request_beyond(struct tri_refiner *r, const tri_vertex_id edge[2])
 {
     assert(r->hooks->part);
     r->hooks->part->beyond(r->hooks->part->user, edge);
@@ -150,9 +150,9 @@ static tri_sub_id wall_out_of_level(const struct tri_refiner *r, tri_vertex_id l
     return TRI_NONE;
 }
 
-/* Finds the cavity of the first candidate level with split->level. Level in spite of rounding means: neither the
- * vertex nor the new point lies in the diametral circle of a subsegment of the other. Walls that contained an
- * earlier candidate are tested before the next search. */
+/* Finds the cavity of the first candidate level with split->level. The new point counts as level with the vertex if
+ * neither lies in the diametral circle of a subsegment that belongs to the other, although coordinates are rounded.
+ * Walls that contained an earlier candidate are tested before the next search. */
 static enum tri_search find_level_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
                                         const struct tri_split_base *base, int32_t *n_left)
 {
@@ -209,7 +209,7 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     if (found == TRI_SEARCH_FENCED)
         return defer(r, triangle, &r->report->fenced);
     if (found == TRI_SEARCH_BEYOND)
-        return tri_wait_for(r, r->cavity.beyond);
+        return tri_request_beyond(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || tri_make_room(r, 1))
@@ -219,11 +219,11 @@ static enum tri_outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri
     tri_vertex_id v = tri_add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
-    tell_changes(r);
+    report_changes(r);
     r->report->inserted_on_segments++;
-    bool room = tri_feed_fan(r) && tri_feed_walls(r);
+    bool room = tri_queue_fan(r) && tri_queue_walls(r);
     if (room && r->quality->conforming)
-        room = tri_feed_subsegment(r, s) && tri_feed_subsegment(r, second);
+        room = tri_queue_subsegment(r, s) && tri_queue_subsegment(r, second);
     return room ? DONE : FAILED;
 }
 
@@ -317,7 +317,7 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
     case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
-    case TRI_SEARCH_BEYOND: return tri_wait_for(r, r->cavity.beyond);
+    case TRI_SEARCH_BEYOND: return tri_request_beyond(r, r->cavity.beyond);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }
@@ -330,7 +330,7 @@ static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangl
     tri_vertex_id beyond[2];
     switch (tri_petal_point(r->mesh, r->hooks->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
     case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
-    case TRI_PETAL_BEYOND: return tri_wait_for(r, beyond);
+    case TRI_PETAL_BEYOND: return tri_request_beyond(r, beyond);
     default: return REFUSED;
     }
 }
@@ -395,7 +395,7 @@ enum tri_outcome tri_insert_in_lattice(struct tri_refiner *r, tri_triangle_id tr
     r->sized = true;
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: break;
-    case TRI_SEARCH_BEYOND: return tri_wait_for(r, r->cavity.beyond);
+    case TRI_SEARCH_BEYOND: return tri_request_beyond(r, r->cavity.beyond);
     case TRI_SEARCH_NO_MEMORY: return FAILED;
     default: return REFUSED;
     }
@@ -432,8 +432,8 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {
         const struct tri_triangle *t = &r->mesh->tri[entry.t];
-        assert(entry.t >= 0 && entry.life <= t->life);
-        if (t->life != entry.life || !tri_is_live(t))
+        assert(entry.t >= 0 && entry.generation <= t->generation);
+        if (t->generation != entry.generation || !tri_is_live(t))
             return DONE;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         enum tri_badness badness = tri_refiner_judge(r, t, &shape);
@@ -468,7 +468,7 @@ bool tri_split_encroached(struct tri_refiner *r)
         tri_sub_id s = r->encroached[r->n_encroached - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
-            return tri_wait_for(r, sub->v) != FAILED;
+            return tri_request_beyond(r, sub->v) != FAILED;
         r->n_encroached--;
         struct tri_disk_split where;
         if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))

@@ -80,7 +80,7 @@ static void settle_triangles(struct tri_background *b)
     b->n_triangles = n;
 }
 
-static bool take(struct tri_background *b, const struct tri_size_field *f, const struct tri_size_frame *frame)
+static bool copy_field(struct tri_background *b, const struct tri_size_field *f, const struct tri_size_frame *frame)
 {
     const double unit = frame->mesh->unit;
     b->n = (int32_t)f->points.n;
@@ -110,7 +110,7 @@ static bool is_before(const void *background, int32_t v, int32_t w)
 
 /* Merges points at the same position into one corner with the smallest length. Some formats do not share points
  * between triangles, and lengths must propagate between them. Returns false if memory ran out. */
-static bool weld(struct tri_background *b)
+static bool merge_coincident(struct tri_background *b)
 {
     int32_t *order = malloc(2 * (size_t)b->n * sizeof *order), *first = order + b->n;
     for (int32_t i = 0; order && i < b->n; i++)
@@ -131,7 +131,7 @@ static bool weld(struct tri_background *b)
 }
 
 /* Clears the lengths of vertices that belong to no triangle. Returns false if memory ran out. */
-static bool forget_unused(struct tri_background *b)
+static bool clear_unused(struct tri_background *b)
 {
     bool *used = calloc((size_t)b->n, sizeof *used);
     for (int64_t k = 0; used && k < 3 * (int64_t)b->n_triangles; k++)
@@ -151,7 +151,7 @@ enum tri_status tri_background_make(struct tri_background *background, const str
     const struct tri_contest contest = {key, allowed, b};
     bool has_data;
     *b = (struct tri_background){0};
-    enum tri_status status = take(b, field, frame) && forget_unused(b) && weld(b)
+    enum tri_status status = copy_field(b, field, frame) && clear_unused(b) && merge_coincident(b)
                                  ? TRI_OK
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     const struct tri_spreading cells = {b->at, b->n, b->corner, b->n_triangles, 3};

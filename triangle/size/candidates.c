@@ -121,7 +121,7 @@ static bool keep_winners(const struct making *m, int32_t *list, int64_t *n, stru
 }
 
 /* Is the list short enough for a leaf, or can it be shortened? */
-static bool settle(const struct making *m, int32_t *list, int64_t *n, struct tri_cell cell, const struct verdict *v)
+static bool trim_list(const struct making *m, int32_t *list, int64_t *n, struct tri_cell cell, const struct verdict *v)
 {
     if (*n <= SHORT)
         return true;
@@ -152,7 +152,7 @@ struct part {
     double most;           /* upper bound on the smallest key anywhere in the part */
 };
 
-static struct verdict ask_all(const struct making *m, int64_t from, int64_t to, struct part *parts, int n_parts,
+static struct verdict compute_keys(const struct making *m, int64_t from, int64_t to, struct part *parts, int n_parts,
                               double radius)
 {
     struct verdict v = {m->stack[from], HUGE_VAL, 0};
@@ -191,7 +191,7 @@ static struct verdict choose(struct making *m, int64_t from, int64_t to, int64_t
     struct part parts[QUARTERS];
     for (int k = 0; k < n_parts; k++)
         parts[k] = (struct part){lattice_place(low, side, 0.5, a_side, k), {.value = HUGE_VAL}, HUGE_VAL};
-    const struct verdict v = ask_all(m, from, to, parts, n_parts, radius);
+    const struct verdict v = compute_keys(m, from, to, parts, n_parts, radius);
     const struct sight *sight = m->sight;
     m->n = at;
     for (int64_t i = from; i < to; i++, sight += n_parts) {
@@ -205,7 +205,7 @@ static struct verdict choose(struct making *m, int64_t from, int64_t to, int64_t
 }
 
 /* Leaves a cell to a task. */
-static void put_off(struct making *m, int32_t at, struct tri_cell cell, const int32_t *list, int64_t n)
+static void defer_cell(struct making *m, int32_t at, struct tri_cell cell, const int32_t *list, int64_t n)
 {
     struct portion *portion = &m->portion[m->n_portions];
     *portion = (struct portion){.at = at, .cell = cell, .list = malloc((size_t)n * sizeof *list), .n = n};
@@ -247,16 +247,16 @@ static void divide(struct making *m, int32_t at, struct tri_cell cell, int64_t f
                                                          the quarters anyway */
         v = choose(m, first, m->n, first, cell, 2);
     int64_t n = m->n - first;
-    if (settle(m, m->stack + first, &n, cell, &v))
+    if (trim_list(m, m->stack + first, &n, cell, &v))
         make_leaf(m, at, m->stack + first, n);
     else if (m->portion && cell.depth == AHEAD)
-        put_off(m, at, cell, m->stack + first, n);
+        defer_cell(m, at, cell, m->stack + first, n);
     else
         quarter(m, at, cell, first, first + n);
     m->n = first;
 }
 
-static void do_portion(void *making, size_t i)
+static void run_portion(void *making, size_t i)
 {
     const struct making *all = making;
     struct portion *portion = &all->portion[i];
@@ -278,7 +278,7 @@ static void do_portion(void *making, size_t i)
 }
 
 /* Appends the result of a task to the tree. */
-static void join(struct making *m, const struct portion *portion)
+static void append_portion(struct making *m, const struct portion *portion)
 {
     struct tri_candidates *out = m->out;
     struct tri_quadtree *tree = &out->tree;
@@ -316,9 +316,9 @@ enum tri_status tri_candidates_make(struct tri_candidates *candidates, const str
     }
     free(m.stack);
     free(m.sight);
-    tri_execute(frame->executor, m.status ? 0 : m.n_portions, do_portion, &m);
+    tri_execute(frame->executor, m.status ? 0 : m.n_portions, run_portion, &m);
     for (size_t i = 0; i < m.n_portions; i++) {
-        join(&m, &portion[i]);
+        append_portion(&m, &portion[i]);
         free(portion[i].list);
         tri_candidates_clear(&portion[i].out);
     }

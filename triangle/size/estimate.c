@@ -62,30 +62,30 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
 }
 
 /* The caller's sizes in a piece of a triangle, as a size h with 1 / h^2 triangles per unit of area. */
-struct wish {
+struct caller_piece {
     const struct tri_asked *asked; /* the wanted sizes */
     const struct tri_point *piece; /* [3] */
     struct budget *budget;         /* limit on calls */
 };
 
-static double wished_at(const void *user, struct tri_point q)
+static double caller_size_at(const void *user, struct tri_point q)
 {
     const double MEAN_SQUARE = TRI_EQUILATERAL * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
     const double ANY = 1e99;
-    const struct wish *wish = user;
-    struct budget *budget = wish->budget;
-    budget->stopped = budget->stopped || tri_stop_is_due(wish->asked->mesh->stop, &budget->step);
+    const struct caller_piece *caller_piece = user;
+    struct budget *budget = caller_piece->budget;
+    budget->stopped = budget->stopped || tri_stop_is_due(caller_piece->asked->mesh->stop, &budget->step);
     budget->left = budget->stopped ? 0 : budget->left - 1;
-    return budget->stopped ? ANY : sqrt(MEAN_SQUARE) * tri_asked_length(wish->asked, wish->piece, q);
+    return budget->stopped ? ANY : sqrt(MEAN_SQUARE) * tri_asked_length(caller_piece->asked, caller_piece->piece, q);
 }
 
 /* Returns the number of triangles that the caller's functions need in a piece. */
-static double wished_in(const struct estimator *e, const struct tri_point p[3])
+static double caller_work_in(const struct estimator *e, const struct tri_point p[3])
 {
-    const struct wish wish = {&e->asked, p, e->budget};
+    const struct caller_piece caller_piece = {&e->asked, p, e->budget};
     if (e->at_least && e->budget->left <= 0)
         return 0;
-    const struct tri_integrand field = {wished_at, &wish, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
+    const struct tri_integrand field = {caller_size_at, &caller_piece, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
                                          &e->budget->left, e->at_least};
     return tri_integral(&field, p);
 }
@@ -96,7 +96,7 @@ static double asked_in(const struct estimator *e, tri_region_id region, const st
     const double mean = tri_mean_over_bound(e->asked.quality);
     double work = tri_area_of(p[0], p[1], p[2]) * 2 / (mean * tri_area2_bound(&e->asked, region));
     if (tri_sizes_vary(e->asked.quality))
-        work = fmax(work, wished_in(e, p));
+        work = fmax(work, caller_work_in(e, p));
     return work < MOST_WORK ? work : MOST_WORK;
 }
 
@@ -209,7 +209,7 @@ static double sum_of(struct works w, const struct tri_executor *executor, double
     return sum;
 }
 
-static void know_share(void *context, size_t share)
+static void compute_share_works(void *context, size_t share)
 {
     const struct works *w = context;
     struct tri_range range = tri_share(share, w->n);
@@ -219,11 +219,11 @@ static void know_share(void *context, size_t share)
 
 /* Computes the work of all triangles. The caller frees the result. NULL if memory ran out: each is then computed on
  * request. */
-static double *know_all(struct works w, const struct tri_executor *executor)
+static double *compute_works(struct works w, const struct tri_executor *executor)
 {
     w.known = malloc(((size_t)w.n + 1) * sizeof *w.known);
     if (w.known)
-        tri_execute(executor_for(&w, executor), tri_shares(w.n), know_share, &w);
+        tri_execute(executor_for(&w, executor), tri_shares(w.n), compute_share_works, &w);
     return w.known;
 }
 
@@ -259,7 +259,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_quality *quali
     struct budget budget = budget_for(mesh, MOST_ASKED);
     struct estimator e = estimator_for(mesh, quality, &budget);
     double urgent = 0, ignored = 0, again = 0;
-    e.known = asks ? know_all(asked_works(&e), executor) : NULL;
+    e.known = asks ? compute_works(asked_works(&e), executor) : NULL;
     const double asked = tri_has_sizes(quality) ? sum_of(asked_works(&e), executor, &urgent) : 0;
     if (may_come_first(quality) && (asks || outweighs_angles(&e, asked, executor)))
         again = TRI_AGAIN / (TRI_NEVER_AGAIN - tri_worked_angle(quality));
@@ -369,9 +369,9 @@ bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_quality *qual
     struct budget budget = budget_for(mesh, (int64_t)SAMPLES_ASKED * MOST_ASKED);
     struct estimator e = estimator_for(mesh, quality, &budget);
     assert(take && grain >= 0);
-    e.known = tri_has_sizes(quality) ? know_all(asked_works(&e), executor) : NULL;
+    e.known = tri_has_sizes(quality) ? compute_works(asked_works(&e), executor) : NULL;
     struct works rest = sampled_works(&e, rest_work);
-    rest.known = know_all(rest, executor);
+    rest.known = compute_works(rest, executor);
     bool taken = sample_rest(&to, &rest, grain);
     if (taken && tri_has_sizes(quality))
         taken = sample_asked(&to, &e, grain);

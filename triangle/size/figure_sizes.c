@@ -184,7 +184,7 @@ static bool find_chains(struct channels *c)
 }
 
 /* Are the subsegments on the same segment, or on two with a common end? */
-static bool meet(const struct tri_mesh *mesh, tri_sub_id a, tri_sub_id b)
+static bool share_segment(const struct tri_mesh *mesh, tri_sub_id a, tri_sub_id b)
 {
     const tri_vertex_id *v = mesh->parents[mesh->sub[a].parent].v, *w = mesh->parents[mesh->sub[b].parent].v;
     return v[0] == w[0] || v[0] == w[1] || v[1] == w[0] || v[1] == w[1];
@@ -192,7 +192,7 @@ static bool meet(const struct tri_mesh *mesh, tri_sub_id a, tri_sub_id b)
 
 /* Returns the distance along the chain between points on two walls. at_a, at_b: distance of each point from its
  * wall's first end. */
-static double way_between(const struct channels *c, int32_t a, double at_a, int32_t b, double at_b)
+static double chain_distance(const struct channels *c, int32_t a, double at_a, int32_t b, double at_b)
 {
     const struct along *p = &c->along[a], *q = &c->along[b];
     const double way = fabs(p->place + p->sign * at_a - q->place - q->sign * at_b);
@@ -217,8 +217,8 @@ static double shrink(const struct channels *c, int32_t wall, struct tri_point x,
         if (!(next < 0.999 * radius) || (found < HUGE_VAL && next - ahead > BESIDE * next))
             break;
         radius = next;
-        if (next - ahead <= ACROSS * next && !meet(c->frame->mesh, c->sub[wall], c->sub[other]) &&
-            way_between(c, wall, at_x, other, at_q) > FAR * sqrt(l2))
+        if (next - ahead <= ACROSS * next && !share_segment(c->frame->mesh, c->sub[wall], c->sub[other]) &&
+            chain_distance(c, wall, at_x, other, at_q) > FAR * sqrt(l2))
             found = next;
         else if (next > found / 2) /* the found ball was only a step towards a corner */
             found = HUGE_VAL;

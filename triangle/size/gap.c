@@ -31,12 +31,12 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
     enum tri_corner corner = tri_corner_between(mesh, first, second);
     if (corner != TRI_APART)
         return corner == TRI_NARROW_CORNER;
-    return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.dearest_gap;
+    return tri_filling_cost(mesh, first, second, u, v) <= mesh->limits.costliest_gap;
 }
 
 /* Returns the cost of the most expensive gap between the parent, which passes through u, and a parent that bounds
  * triangle v, u, w at v. */
-static double dearest_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id w,
+static double costliest_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id w,
                              tri_vertex_id v, bool apart)
 {
     int32_t n;
@@ -51,14 +51,14 @@ static double dearest_across(const struct tri_mesh *mesh, tri_parent_id parent, 
 
 double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v)
 {
-    const double cost = dearest_across(mesh, parent, u, u, v, true);
-    return cost > mesh->limits.dearest_gap ? cost : 0;
+    const double cost = costliest_across(mesh, parent, u, u, v, true);
+    return cost > mesh->limits.costliest_gap ? cost : 0;
 }
 
 bool tri_lines_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_vertex_id v)
 {
     const tri_vertex_id *end = mesh->parents[p].v;
-    return dearest_across(mesh, p, end[0], end[1], v, false) > mesh->limits.dearest_gap;
+    return costliest_across(mesh, p, end[0], end[1], v, false) > mesh->limits.costliest_gap;
 }
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
@@ -154,7 +154,7 @@ bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, co
 
 bool tri_spans_gap(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
 {
-    return gap_between(mesh, u, v, v, mesh->limits.dearest_gap).cost > mesh->limits.dearest_gap;
+    return gap_between(mesh, u, v, v, mesh->limits.costliest_gap).cost > mesh->limits.costliest_gap;
 }
 
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
@@ -248,22 +248,22 @@ void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const struct demand demand = whole_demand(mesh, executor);
     const double affordable = TRI_GAP_ALLOWANCE + TRI_GAP_PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
-    double all = 0, dearer = 0, cheaper = 0;
+    double all = 0, costlier = 0, cheaper = 0;
     int limit = octave_of(affordable);
     for (int octave = TRI_CHEAP_GAP + 1; octave < OCTAVES; octave++) {
         all += demand.cost[octave];
-        dearer += demand.count[octave];
+        costlier += demand.count[octave];
         limit = demand.count[octave] > 0 && octave > limit ? octave : limit;
     }
     mesh->limits.gap_points = all <= TRI_ALL_GAPS ? all : affordable;
     limit = all <= TRI_ALL_GAPS ? limit : TRI_CHEAP_GAP;
     for (int octave = TRI_CHEAP_GAP + 1; octave < OCTAVES && all > TRI_ALL_GAPS; octave++) {
         cheaper += demand.cost[octave];
-        dearer -= demand.count[octave];
-        if (cheaper + ldexp(dearer, octave) > affordable)
+        costlier -= demand.count[octave];
+        if (cheaper + ldexp(costlier, octave) > affordable)
             break;
         limit = octave;
     }
     assert(limit >= TRI_CHEAP_GAP && limit <= OCTAVES);
-    mesh->limits.dearest_gap = ldexp(1, limit);
+    mesh->limits.costliest_gap = ldexp(1, limit);
 }

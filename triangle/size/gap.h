@@ -20,8 +20,7 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
  * that v lies on. Returns 0 if there is no unfilled gap. */
 double tri_gap_across(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id u, tri_vertex_id v);
 
-/* Returns the approximate number of points needed to fill the gap that the shortest edge of the triangle bridges; 0
- * if it bridges none. */
+/* If the shortest edge of the triangle bridges a gap, returns about how many points fill this gap; otherwise 0. */
 double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* Does the shortest edge of the triangle bridge a spike? */

@@ -83,7 +83,7 @@ static enum tri_status check_field(const struct tri_size_field *f, struct tri_er
 }
 
 /* Reports the error of a field, with the field's index and kind. */
-static enum tri_status blame(const struct tri_sizes *sizes, int64_t k, const struct tri_error *own,
+static enum tri_status fail_field(const struct tri_sizes *sizes, int64_t k, const struct tri_error *own,
                              struct tri_error *error)
 {
     static const char *const names[] = {"", ", a number", ", a raster", ", a mesh", ", a function", ", near segments"};
@@ -113,7 +113,7 @@ enum tri_status tri_sizes_check(const struct tri_sizes *s, struct tri_error *err
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "sizes is NULL, and n_sizes %lld", (long long)s->n);
     for (int64_t k = 0; k < s->n; k++)
         if (check_field(&s->fields[k], &own))
-            return blame(s, k, &own, error);
+            return fail_field(s, k, &own, error);
     return TRI_OK;
 }
 
@@ -158,7 +158,7 @@ static double growth_of(const struct making *m, const struct tri_size_field *f)
     return f->growth < 0 ? m->frame.gradation : given > 0 ? fmin(f->growth, given) : f->growth;
 }
 
-static enum tri_status take_near(struct making *m, const struct tri_size_field *f, struct tri_error *error)
+static enum tri_status add_near_field(struct making *m, const struct tri_size_field *f, struct tri_error *error)
 {
     const struct tri_mesh *mesh = m->frame.mesh;
     const double growth = growth_of(m, f);
@@ -188,7 +188,7 @@ static void note_uncovered(struct making *m, int64_t k, struct tri_point low, st
              high.x * unit, high.y * unit, f->low.x * unit, f->low.y * unit, f->high.x * unit, f->high.y * unit);
 }
 
-static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error *error)
+static enum tri_status add_raster_field(struct making *m, int64_t k, struct tri_error *error)
 {
     struct tri_raster *r = &m->out->raster[m->out->n_rasters];
     const enum tri_status status = tri_raster_make(r, &m->sizes->fields[k], &m->frame, error);
@@ -202,7 +202,7 @@ static enum tri_status take_raster(struct making *m, int64_t k, struct tri_error
     return TRI_OK;
 }
 
-static enum tri_status take_background(struct making *m, int64_t k, struct tri_error *error)
+static enum tri_status add_mesh_field(struct making *m, int64_t k, struct tri_error *error)
 {
     struct tri_background *b = &m->out->background[m->out->n_backgrounds];
     const enum tri_status status = tri_background_make(b, &m->sizes->fields[k], &m->frame, error);
@@ -222,7 +222,7 @@ static enum tri_status take_background(struct making *m, int64_t k, struct tri_e
     return TRI_OK;
 }
 
-static enum tri_status take_function(struct making *m, int64_t k, struct tri_error *error)
+static enum tri_status add_function_field(struct making *m, int64_t k, struct tri_error *error)
 {
     struct tri_sampled *s = &m->out->sampled[m->out->n_sampled];
     const enum tri_status status = tri_sampled_make(s, &m->sizes->fields[k], &m->frame, error);
@@ -233,21 +233,21 @@ static enum tri_status take_function(struct making *m, int64_t k, struct tri_err
     return status;
 }
 
-static enum tri_status take(struct making *m, int64_t k, struct tri_error *error)
+static enum tri_status add_field(struct making *m, int64_t k, struct tri_error *error)
 {
     const struct tri_size_field *f = &m->sizes->fields[k];
     switch (f->kind) {
     case TRI_SIZE_NUMBER: m->out->number = fmin(m->out->number, f->length / m->frame.mesh->unit); return TRI_OK;
-    case TRI_SIZE_NEAR: return take_near(m, f, error);
-    case TRI_SIZE_RASTER: return take_raster(m, k, error);
-    case TRI_SIZE_MESH: return take_background(m, k, error);
-    case TRI_SIZE_FUNCTION: return take_function(m, k, error);
+    case TRI_SIZE_NEAR: return add_near_field(m, f, error);
+    case TRI_SIZE_RASTER: return add_raster_field(m, k, error);
+    case TRI_SIZE_MESH: return add_mesh_field(m, k, error);
+    case TRI_SIZE_FUNCTION: return add_function_field(m, k, error);
     }
     return TRI_OK;
 }
 
 /* Adds the lengths that follow from the shape of the input. */
-static enum tri_status take_figure(struct making *m, struct tri_error *error)
+static enum tri_status add_shape_lengths(struct making *m, struct tri_error *error)
 {
     const struct tri_sizes *s = m->sizes;
     struct tri_near *near = &m->out->near;
@@ -259,7 +259,7 @@ static enum tri_status take_figure(struct making *m, struct tri_error *error)
     return status ? status : tri_near_settle(near, &m->frame, error);
 }
 
-static enum tri_status take_all(struct making *m, struct tri_error *error)
+static enum tri_status add_all_fields(struct making *m, struct tri_error *error)
 {
     struct tri_lengths *l = m->out;
     const double unit = m->frame.mesh->unit;
@@ -273,10 +273,10 @@ static enum tri_status take_all(struct making *m, struct tri_error *error)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
     for (int64_t k = 0; k < m->sizes->n; k++) {
         struct tri_error own;
-        if (take(m, k, &own))
-            return blame(m->sizes, k, &own, error);
+        if (add_field(m, k, &own))
+            return fail_field(m->sizes, k, &own, error);
     }
-    return take_figure(m, error);
+    return add_shape_lengths(m, error);
 }
 
 enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_sizes *sizes,
@@ -291,7 +291,7 @@ enum tri_status tri_lengths_new(struct tri_lengths **lengths, const struct tri_s
     m.frame.executor = executor;
     if (!m.out)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
-    status = take_all(&m, error);
+    status = add_all_fields(&m, error);
     if (status || (count_sources(m.out) == 0 && !(m.out->number < HUGE_VAL)))
         tri_lengths_free(m.out);
     else

@@ -22,7 +22,7 @@ struct spreading {
 };
 
 /* Tries the y of a neighbour for the node in column i and row j. offset: from the node to the neighbour. */
-static inline void ask(struct spreading *s, int32_t i, int32_t j, int32_t offset)
+static inline void try_neighbour(struct spreading *s, int32_t i, int32_t j, int32_t offset)
 {
     const int32_t node = j * s->width + i, from = s->from[node + offset];
     if (from == s->from[node])
@@ -43,16 +43,16 @@ static void sweep_row(struct spreading *s, int32_t j, int way)
     const int32_t up = before >= 0 && before < s->height ? -way * w : 0;
     for (int32_t i = 0; i < w; i++) {
         if (i > 0)
-            ask(s, i, j, -1);
+            try_neighbour(s, i, j, -1);
         if (up && i > 0)
-            ask(s, i, j, up - 1);
+            try_neighbour(s, i, j, up - 1);
         if (up)
-            ask(s, i, j, up);
+            try_neighbour(s, i, j, up);
         if (up && i + 1 < w)
-            ask(s, i, j, up + 1);
+            try_neighbour(s, i, j, up + 1);
     }
     for (int32_t i = w - 2; i >= 0; i--)
-        ask(s, i, j, 1);
+        try_neighbour(s, i, j, 1);
 }
 
 static enum tri_status spread(struct spreading *s, const struct tri_stop *stop, struct tri_error *error)
@@ -93,7 +93,7 @@ static enum tri_status fill_gaps(struct spreading *s, float *value, float *base,
 }
 
 /* Converts the field's values for storage, with 0 for no data. Returns the number of nodes without data. */
-static int64_t take(struct tri_raster *r, const struct tri_size_field *f, const struct tri_size_frame *frame)
+static int64_t copy_values(struct tri_raster *r, const struct tri_size_field *f, const struct tri_size_frame *frame)
 {
     int64_t gaps = 0;
     double longest = 0;
@@ -148,7 +148,7 @@ enum tri_status tri_raster_make(struct tri_raster *raster, const struct tri_size
                            {f->values.width, f->values.n}, 1, malloc((size_t)n * sizeof *r.value)};
     if (!r.value)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sizes");
-    const int64_t gaps = take(&r, f, frame);
+    const int64_t gaps = copy_values(&r, f, frame);
     const enum tri_status status = gaps < n ? limit(&r, gaps, frame, error)
                                             : tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no value is above 0");
     if (status)

@@ -95,7 +95,7 @@ static struct tri_point place_of(const struct sampling *s, int32_t v)
 }
 
 /* Calls the function for the points from `asked` on. Points outside the mesh's box are moved to its border. */
-static enum tri_status ask(struct sampling *s, struct tri_error *error)
+static enum tri_status sample_points(struct sampling *s, struct tri_error *error)
 {
     const struct tri_size_frame *f = s->frame;
     const int32_t n = s->n - s->asked;
@@ -194,7 +194,7 @@ static bool cut(struct sampling *s, int32_t i)
 
 /* Divides a leaf and first any larger neighbours, so that neighbours differ by a factor of two at most. So a
  * variation beside a large cell is also searched inside that cell. Returns false if memory ran out. */
-static bool cut_evenly(struct sampling *s, int32_t i)
+static bool divide_evenly(struct sampling *s, int32_t i)
 {
     const struct tri_cell cell = s->part[i].cell;
     const int shift = TRI_QUADTREE_DEEPEST - cell.depth;
@@ -205,7 +205,7 @@ static bool cut_evenly(struct sampling *s, int32_t i)
         if (x < 0 || y < 0 || x > most || y > most)
             continue;
         const int32_t other = tri_quadtree_leaf(&s->out->tree, (uint32_t)x << shift, (uint32_t)y << shift, &around);
-        if (around.depth < cell.depth && !cut_evenly(s, other))
+        if (around.depth < cell.depth && !divide_evenly(s, other))
             return false;
     }
     return cut(s, i);
@@ -220,13 +220,13 @@ static enum tri_status go_deeper(struct sampling *s, struct tri_error *error)
         return no_memory(error);
     for (int32_t i = first; is_asked && i < n; i++)
         find_places(s, &s->part[i]);
-    const enum tri_status status = is_asked ? ask(s, error) : TRI_OK;
+    const enum tri_status status = is_asked ? sample_points(s, error) : TRI_OK;
     for (int32_t i = first; !status && i < n; i++)
         s->part[i].error = is_asked ? error_of(s, &s->part[i]) : HUGE_VAL;
     const double tolerance = is_asked ? tolerance_for(s) : 0;
     s->first = n;
     for (int32_t i = first; !status && i < n; i++)
-        if (s->part[i].at >= 0 && s->part[i].error > tolerance && !cut_evenly(s, i))
+        if (s->part[i].at >= 0 && s->part[i].error > tolerance && !divide_evenly(s, i))
             return no_memory(error);
     return status;
 }
@@ -249,7 +249,7 @@ static int32_t *list_leaves(struct sampling *s)
 /* --- storing */
 
 /* Limits the gradient and stores the values of each leaf. */
-static enum tri_status keep(struct sampling *s, struct tri_error *error)
+static enum tri_status store_values(struct sampling *s, struct tri_error *error)
 {
     struct tri_sampled *out = s->out;
     struct tri_point *at = malloc((size_t)s->n * sizeof *at);
@@ -288,7 +288,7 @@ enum tri_status tri_sampled_make(struct tri_sampled *sampled, const struct tri_s
         s.part[s.n_parts++] = (struct part){.node = {-1, -1, -1, -1, -1, -1, -1, -1, -1}};
     while (!status && s.first < s.n_parts)
         status = go_deeper(&s, error);
-    status = status ? status : keep(&s, error);
+    status = status ? status : store_values(&s, error);
     free(s.part);
     free(s.node);
     free(s.length);

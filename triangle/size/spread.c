@@ -17,7 +17,7 @@ struct pass {
 };
 
 /* Tries the source node of each changed corner for all other corners of the cell. */
-static void level_out(struct pass *p, const int32_t *corner)
+static void propagate_in_cell(struct pass *p, const int32_t *corner)
 {
     const struct tri_point *at = p->cells->at;
     for (int32_t a = 0; a < p->cells->corners; a++) {
@@ -54,7 +54,7 @@ enum tri_status tri_spread(const struct tri_spreading *cells, const double *base
     for (bool back = false; p.any && !is_stopped; back = !back) {
         p.any = false;
         for (int32_t c = 0; c < cells->n_cells; c++)
-            level_out(&p, cells->cell + (size_t)(back ? cells->n_cells - 1 - c : c) * (size_t)cells->corners);
+            propagate_in_cell(&p, cells->cell + (size_t)(back ? cells->n_cells - 1 - c : c) * (size_t)cells->corners);
         for (int32_t v = 0; v < cells->n; v++)
             p.changed[v] = (unsigned char)(p.changed[v] << 1 & 2);
         is_stopped = tri_stop_is_asked(stop);

@@ -37,7 +37,7 @@ static int compare(const void *left, const void *right)
 }
 
 /* Returns the first side that is not before (from, to). */
-static int64_t find(const struct builder *b, int64_t from, int64_t to)
+static int64_t find_side(const struct builder *b, int64_t from, int64_t to)
 {
     const struct side wanted = {.from = from, .to = to, .segment = INT64_MAX};
     int64_t low = 0, high = b->n;
@@ -57,14 +57,14 @@ static bool has_side(const struct builder *b, int64_t i, int64_t from, int64_t t
 }
 
 /* Sets `used` for sides of segments that have a triangle. on_segment: one byte per point. */
-static void use_sides(struct builder *b, const char *on_segment)
+static void mark_used_sides(struct builder *b, const char *on_segment)
 {
     for (int64_t t = 0; t < b->grid->n_triangles; t++) {
         int64_t nodes[6];
         b->grid->triangle(b->grid->user, t, nodes);
         for (int k = 0; k < 3; k++) {
             const int64_t from = nodes[(k + 1) % 3], to = nodes[(k + 2) % 3];
-            const int64_t i = on_segment[from] && on_segment[to] ? find(b, from, to) : b->n;
+            const int64_t i = on_segment[from] && on_segment[to] ? find_side(b, from, to) : b->n;
             if (has_side(b, i, from, to))
                 b->sides[i].used = true;
         }
@@ -77,7 +77,7 @@ static void keep_boundary(struct builder *b)
     int64_t n = 0;
     for (int64_t i = 0; i < b->n; i++) {
         struct side *side = &b->sides[i];
-        const int64_t other = find(b, side->to, side->from);
+        const int64_t other = find_side(b, side->to, side->from);
         side->boundary = side->used && !(has_side(b, other, side->to, side->from) && b->sides[other].used);
     }
     for (int64_t i = 0; i < b->n; i++)
@@ -104,7 +104,7 @@ static bool list_sides(struct builder *b)
         }
     }
     qsort(b->sides, (size_t)b->n, sizeof *b->sides, compare);
-    use_sides(b, on_segment);
+    mark_used_sides(b, on_segment);
     keep_boundary(b);
     free(on_segment);
     return true;
@@ -113,7 +113,7 @@ static bool list_sides(struct builder *b)
 /* Returns an unused side that leaves the node; -1: none. */
 static int64_t next_side(const struct builder *b, int64_t node)
 {
-    for (int64_t i = find(b, node, INT64_MIN); i < b->n && b->sides[i].from == node; i++)
+    for (int64_t i = find_side(b, node, INT64_MIN); i < b->n && b->sides[i].from == node; i++)
         if (!b->sides[i].used)
             return i;
     return -1;

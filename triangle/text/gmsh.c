@@ -56,7 +56,7 @@ static int64_t node_at(const struct gmsh *g, int64_t i)
 {
     if (!g->parts)
         return i;
-    tri_grid_pass(g->grid, i);
+    tri_grid_evict_periodically(g->grid, i);
     return i < g->n_inner ? g->parts->inner[g->parts->first_inner[g->part] + i] : g->border[i - g->n_inner];
 }
 
@@ -90,7 +90,7 @@ static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t
 
 /* Selects entries begin .. end - 1 of a list of positions, or, if it is NULL, of all elements. They ascend, as do
  * groups. */
-static void choose(struct groups *groups, const int64_t *place, int64_t begin, int64_t end)
+static void select_range(struct groups *groups, const int64_t *place, int64_t begin, int64_t end)
 {
     groups->place = place;
     groups->first[0] = begin;
@@ -105,7 +105,7 @@ static int64_t interface_size(const struct gmsh *g, int64_t i)
     return g->parts->first_shared[i + 1] - g->parts->first_shared[i];
 }
 
-static enum tri_status choose_nodes(struct gmsh *g)
+static enum tri_status select_nodes(struct gmsh *g)
 {
     const struct tri_parts *p = g->parts;
     int64_t n = 0, at = 0;
@@ -192,7 +192,7 @@ static void put_entities(struct gmsh *g, const struct groups *groups)
 }
 
 /* Writes the numbers of points, curves, surfaces and volumes. */
-static void put_numbers(struct gmsh *g, int64_t curves, int64_t surfaces)
+static void put_entity_counts(struct gmsh *g, int64_t curves, int64_t surfaces)
 {
     char bytes[32], *at = tri_put_i64(tri_put_u64(bytes, 0), curves);
     put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
@@ -225,7 +225,7 @@ static void write_names(struct gmsh *g)
 static void write_entities(struct gmsh *g)
 {
     put_text(g, "$Entities\n");
-    put_numbers(g, g->curves.n, g->surfaces.n);
+    put_entity_counts(g, g->curves.n, g->surfaces.n);
     put_entities(g, &g->curves);
     put_entities(g, &g->surfaces);
     put_text(g, "\n$EndEntities\n");
@@ -305,7 +305,7 @@ static void write_pieces(struct gmsh *g)
         return;
     put_text(g, "$PartitionedEntities\n");
     put_bytes(g, bytes, tri_put_u64(tri_put_i64(bytes, g->parts->n), 0));
-    put_numbers(g, count_pieces(g, &g->curves) + count_interfaces(g), count_pieces(g, &g->surfaces));
+    put_entity_counts(g, count_pieces(g, &g->curves) + count_interfaces(g), count_pieces(g, &g->surfaces));
     put_pieces(g, &g->curves);
     for (int64_t i = 0; i < g->parts->n_interfaces; i++)
         if (has_interface(g, i))
@@ -389,7 +389,7 @@ static void write_nodes(struct gmsh *g)
 
 static int64_t element_tag(const struct gmsh *g, const struct groups *groups, int64_t i)
 {
-    tri_grid_pass(g->grid, i);
+    tri_grid_evict_periodically(g->grid, i);
     return (groups == &g->curves ? g->grid->n_triangles : 0) + place_at(groups, i) + 1;
 }
 
@@ -578,8 +578,8 @@ enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *
     struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
                      .n_inner = grid->n_points};
     enum tri_status status = begin_gmsh(&g);
-    choose(&g.surfaces, NULL, 0, grid->n_triangles);
-    choose(&g.curves, NULL, 0, grid->n_segments);
+    select_range(&g.surfaces, NULL, 0, grid->n_triangles);
+    select_range(&g.curves, NULL, 0, grid->n_segments);
     status = status ? status : write_all(&g);
     free_gmsh(&g);
     return status;
@@ -590,9 +590,9 @@ static enum tri_status write_part(struct gmsh *g, int part, struct tri_output *o
     const struct tri_parts *p = g->parts;
     g->part = part;
     g->output = output;
-    choose(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
-    choose(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
-    enum tri_status status = choose_nodes(g);
+    select_range(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
+    select_range(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
+    enum tri_status status = select_nodes(g);
     status = status ? status : write_all(g);
     free(g->border);
     return status;

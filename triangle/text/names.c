@@ -14,14 +14,14 @@ char *tri_name(const char *stem, size_t length, const char *ending)
 }
 
 /* Lower case, independent of the locale. */
-static char small(char c) { return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); }
+static char to_lower(char c) { return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); }
 
 bool tri_name_ends(const char *name, const char *ending)
 {
     const size_t n = strlen(name), m = strlen(ending);
     bool ends = n >= m;
     for (size_t i = 0; ends && i < m; i++)
-        ends = small(name[n - m + i]) == ending[i];
+        ends = to_lower(name[n - m + i]) == ending[i];
     return ends;
 }
 

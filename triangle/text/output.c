@@ -22,7 +22,7 @@ enum {
 void tri_outputs_begin(struct tri_output_set *set) { *set = (struct tri_output_set){0}; }
 
 /* Returns the folder of the path directory_of followed by name; from malloc. */
-static char *beside(const char *directory_of, const char *name)
+static char *path_beside(const char *directory_of, const char *name)
 {
     return tri_name(directory_of, tri_path_folder_length(directory_of), name);
 }
@@ -56,7 +56,7 @@ static char *temporary_name(const char *path, int i)
     put_prefix(name);
     size_t length = strlen(name);
     snprintf(name + length, sizeof name - length, "%ld-%d.tmp", tri_process(), i);
-    return beside(path, name);
+    return path_beside(path, name);
 }
 
 /* Returns the process number in a temporary name of this host; 0: another host, or not a temporary name. */
@@ -90,21 +90,21 @@ static bool remove_if_left(void *user, const char *name)
         return true;
     const tri_file file = tri_folder_file(left->folder, name, TRI_FOLDER_CHANGE);
     if (file != TRI_NO_FILE && tri_file_lock(file) == TRI_LOCKED)
-        (void)tri_folder_drop(left->folder, name);
+        (void)tri_folder_unlink(left->folder, name);
     (void)tri_file_close(file);
     return true;
 }
 
 static tri_file open_folder_of(const char *path)
 {
-    char *name = beside(path, ".");
+    char *name = path_beside(path, ".");
     const tri_file folder = name ? tri_folder_open(name, false) : TRI_NO_FILE;
     free(name);
     return folder;
 }
 
 /* Removes temporary files in the folder of `path` whose processes no longer exist. */
-static void remove_left(const char *path)
+static void remove_leftovers(const char *path)
 {
     struct leftovers left = {.folder = open_folder_of(path)};
     put_prefix(left.prefix);
@@ -119,19 +119,19 @@ static bool is_same_directory(const char *a, const char *b)
     return tri_path_folder_length(b) == length && memcmp(a, b, length) == 0;
 }
 
-static void tidy_up(const struct tri_output_set *set, const char *path)
+static void remove_leftovers_once(const struct tri_output_set *set, const char *path)
 {
     for (int i = 0; i < set->n; i++)
         if (is_same_directory(set->outputs[i].path, path)) /* done before */
             return;
-    remove_left(path);
+    remove_leftovers(path);
 }
 
 /* Locks a new file. Returns false if another process has locked or removed it since it was created. */
-static bool is_kept(tri_file file)
+static bool lock_new(tri_file file)
 {
     struct tri_file_facts facts;
-    return tri_file_lock(file) != TRI_LOCKED_BY_ANOTHER && tri_file_look(file, &facts) && facts.names > 0;
+    return tri_file_lock(file) != TRI_LOCKED_BY_ANOTHER && tri_file_get_facts(file, &facts) && facts.names > 0;
 }
 
 /* If several processes or threads try the same name, the system lets only one of them create it. */
@@ -142,7 +142,7 @@ static enum tri_status create_temporary(struct tri_output_set *set, struct tri_o
         if (!name)
             return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
         output->file = tri_file_open(name, TRI_OPEN_NEW);
-        if (output->file != TRI_NO_FILE && is_kept(output->file)) {
+        if (output->file != TRI_NO_FILE && lock_new(output->file)) {
             output->temporary = name;
             return TRI_OK;
         }
@@ -170,7 +170,7 @@ static enum tri_status open_in_place(struct tri_output *output, struct tri_error
     if (output->file == TRI_NO_FILE)
         return errno == EINTR ? tri_fail_stopped(error) : cannot_create(output, error);
     struct tri_file_facts now;
-    if (tri_file_look(output->file, &now) && now.kind != TRI_REGULAR)
+    if (tri_file_get_facts(output->file, &now) && now.kind != TRI_REGULAR)
         return TRI_OK;
     (void)tri_file_close(output->file);
     output->file = TRI_NO_FILE;
@@ -196,7 +196,7 @@ static struct tri_output_place place_of(const char *path, const struct tri_file_
     struct tri_file_facts at;
     const int length = snprintf(folder, sizeof folder, "%.*s.", (int)tri_path_folder_length(path), path);
     const bool is_whole = length >= 0 && (size_t)length < sizeof folder;
-    const bool is_known = old ? old->kind == TRI_REGULAR : is_whole && tri_path_look(folder, &at);
+    const bool is_known = old ? old->kind == TRI_REGULAR : is_whole && tri_path_get_facts(folder, &at);
     if (!is_known)
         return (struct tri_output_place){0};
     at = old ? *old : at;
@@ -213,8 +213,8 @@ static bool is_same_place(const struct tri_output_place *a, const char *path_a, 
 bool tri_is_same_file(const char *a, const char *b)
 {
     struct tri_file_facts old;
-    const struct tri_output_place of_a = place_of(a, tri_path_look(a, &old) ? &old : NULL);
-    const struct tri_output_place of_b = place_of(b, tri_path_look(b, &old) ? &old : NULL);
+    const struct tri_output_place of_a = place_of(a, tri_path_get_facts(a, &old) ? &old : NULL);
+    const struct tri_output_place of_b = place_of(b, tri_path_get_facts(b, &old) ? &old : NULL);
     return is_same_place(&of_a, a, &of_b, b);
 }
 
@@ -234,9 +234,9 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
                                    struct tri_error *error)
 {
     struct tri_file_facts old;
-    const bool exists = tri_path_look(path, &old), replaces = exists && old.kind == TRI_REGULAR;
+    const bool exists = tri_path_get_facts(path, &old), replaces = exists && old.kind == TRI_REGULAR;
     output->path = !exists || replaces ? tri_path_resolve(path)
-                                       : beside("", path); /* /dev/stdout must not be resolved */
+                                       : path_beside("", path); /* /dev/stdout must not be resolved */
     if (!output->path && errno == EPERM)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "is a link that another user made, which is not followed");
     if (!output->path)
@@ -249,10 +249,10 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
         return status;
     if (exists && !replaces)
         return set->trial ? TRI_OK : open_in_place(output, error);
-    tidy_up(set, output->path);
+    remove_leftovers_once(set, output->path);
     status = create_temporary(set, output, error);
     output->replaces = replaces;
-    if (status == TRI_OK && replaces && !tri_file_permit(output->file, &old))
+    if (status == TRI_OK && replaces && !tri_file_set_permissions(output->file, &old))
         return cannot_create(output, error);
     return status;
 }
@@ -297,7 +297,7 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
 
 enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *error)
 {
-    if (!tri_output_has_places(output) || !tri_file_cut(output->file, 0))
+    if (!tri_output_has_offsets(output) || !tri_file_set_size(output->file, 0))
         return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "cannot be written a second time");
     output->size = 0;
     output->failed = false;
@@ -308,7 +308,7 @@ enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *
 
 static int64_t write_some(const struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
-    return tri_output_has_places(output) ? tri_write_some(output->file, data, size, place)
+    return tri_output_has_offsets(output) ? tri_write_some(output->file, data, size, place)
                                          : tri_write_next(output->file, data, size);
 }
 
@@ -341,7 +341,7 @@ enum tri_status tri_output_conclude(struct tri_output *output, int result, struc
 
 tri_file tri_output_direct(struct tri_output *output)
 {
-    assert(tri_output_has_places(output));
+    assert(tri_output_has_offsets(output));
     if (output->direct == TRI_NO_FILE && !output->no_direct) {
         output->direct = tri_file_direct(output->file);
         output->no_direct = output->direct == TRI_NO_FILE;
@@ -356,12 +356,12 @@ static enum tri_status sync_output(struct tri_output *output, struct tri_error *
 }
 
 /* Starts writing an open file to the disk, if the system has a call for that. Returns its size; 0: it is not open. */
-static uint64_t send_off(const struct tri_output *output)
+static uint64_t start_sync(const struct tri_output *output)
 {
     struct tri_file_facts facts;
-    if (!tri_output_has_places(output) || !tri_file_look(output->file, &facts))
+    if (!tri_output_has_offsets(output) || !tri_file_get_facts(output->file, &facts))
         return 0;
-    tri_file_send_off(output->file, 0, 0);
+    tri_file_start_sync(output->file, 0, 0);
     return facts.size;
 }
 
@@ -369,9 +369,9 @@ static uint64_t send_off(const struct tri_output *output)
 static enum tri_status sync_in_pieces(struct tri_output *output, struct tri_error *error)
 {
     enum { PIECE = 1 << 24 };
-    const uint64_t bytes = send_off(output);
+    const uint64_t bytes = start_sync(output);
     for (uint64_t place = 0; place < bytes; place += PIECE) {
-        tri_file_await(output->file, place, PIECE);
+        tri_file_finish_sync(output->file, place, PIECE);
         if (tri_stop_is_asked(output->stop))
             return tri_fail_stopped(error);
     }
@@ -384,8 +384,8 @@ enum tri_status tri_outputs_sync(struct tri_output_set *set, struct tri_error *e
     enum tri_status status = TRI_OK;
     uint64_t bytes = 0;
     for (int i = 0; i < set->n; i++)
-        bytes += send_off(&set->outputs[i]);
-    set->waits = bytes >= TRI_WAITED_FOR;
+        bytes += start_sync(&set->outputs[i]);
+    set->waits = bytes >= TRI_SYNC_BYTES;
     for (int i = 0; set->waits && !status && i < set->n; i++)
         status = sync_in_pieces(&set->outputs[i], error);
     return status;
@@ -408,7 +408,7 @@ enum { SHIFT_BYTES = 1 << 20 };
 
 /* Moves bytes forwards starting from the end, or backwards starting from the beginning, so that nothing is overwritten
  * before it has been moved. */
-static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
+static int move_bytes(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
 {
     const uint64_t end = output->size;
     int result = 0;
@@ -416,24 +416,24 @@ static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *
         const uint64_t left = end - from - done;
         const size_t n = left < SHIFT_BYTES ? (size_t)left : SHIFT_BYTES;
         const uint64_t at = by > 0 ? end - done - n : from + done;
-        result = tri_read_again(output->file, buffer, n, at)
+        result = tri_read_back(output->file, buffer, n, at)
                      ? tri_output_write_at(output, at + (uint64_t)by, buffer, n)
                      : errno;
         done += n;
     }
     output->size = end + (uint64_t)by;
-    if (!result && by < 0 && !tri_file_cut(output->file, output->size))
+    if (!result && by < 0 && !tri_file_set_size(output->file, output->size))
         result = errno;
     return result;
 }
 
 enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error)
 {
-    assert(tri_output_has_places(output) && from <= output->size && (by >= 0 || from >= (uint64_t)-by));
+    assert(tri_output_has_offsets(output) && from <= output->size && (by >= 0 || from >= (uint64_t)-by));
     char *buffer = malloc(SHIFT_BYTES);
     if (!buffer)
         return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to write the file");
-    const int result = by ? move_all(output, from, by, buffer) : 0;
+    const int result = by ? move_bytes(output, from, by, buffer) : 0;
     free(buffer);
     return tri_output_conclude(output, result, error);
 }
@@ -457,7 +457,7 @@ static enum tri_status close_output(struct tri_output *output, struct tri_error 
 /* --- renaming */
 
 /* Gives the file to be replaced, if there is one, a second name. */
-static void keep_old(struct tri_output_set *set, struct tri_output *output)
+static void link_old(struct tri_output_set *set, struct tri_output *output)
 {
     for (int i = 0; output->temporary && !output->old && i < MAX_NAMES; i++) {
         char *const name = temporary_name(output->path, set->next_name++);
@@ -485,7 +485,7 @@ static enum tri_status rename_output(struct tri_output *output, struct tri_error
 }
 
 /* Restores what was under the name before: the old file, or none. */
-static void put_back(struct tri_output *output)
+static void restore_old(struct tri_output *output)
 {
     if (output->renamed && output->old && tri_path_rename(output->old, output->path)) {
         free(output->old);
@@ -510,14 +510,14 @@ enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error 
     for (int i = 0; status == TRI_OK && i < set->n; i++)
         status = close_output(&set->outputs[i], error);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
-        keep_old(set, &set->outputs[i]);
+        link_old(set, &set->outputs[i]);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
         status = rename_output(&set->outputs[i], error);
     for (int i = 0; set->waits && status == TRI_OK && i < set->n; i++)
         if (i == 0 || !is_same_directory(set->outputs[i - 1].path, set->outputs[i].path))
             status = sync_folder(&set->outputs[i], error);
     for (int i = 0; status != TRI_OK && i < set->n; i++)
-        put_back(&set->outputs[i]);
+        restore_old(&set->outputs[i]);
     tri_outputs_abort(set);
     return status;
 }
@@ -549,7 +549,7 @@ bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
                 tri_host_name(ticket->host, TRI_TICKET_HOST);
     free(temporary);
     ticket->length = made ? 1 + ((uint64_t)(1e9 * tri_seconds()) / 16 + (uint64_t)tri_process()) % MOST : 0;
-    made = made && tri_file_cut(output->file, ticket->length) && tri_file_look(output->file, &facts);
+    made = made && tri_file_set_size(output->file, ticket->length) && tri_file_get_facts(output->file, &facts);
     ticket->inode = made ? facts.node : 0;
     if (!made)
         ticket->path[0] = 0;
@@ -560,11 +560,11 @@ bool tri_output_join(struct tri_output *output, struct tri_ticket *ticket, const
 {
     struct tri_file_facts facts;
     *output = (struct tri_output){.path = ticket->path, .temporary = ticket->temporary, .direct = TRI_NO_FILE,
-                                  .stop = stop, .file = tri_file_open(ticket->temporary, TRI_OPEN_JOIN)};
+                                  .stop = stop, .file = tri_file_open(ticket->temporary, TRI_OPEN_WRITE_SHARED)};
     if (output->file == TRI_NO_FILE)
         return false;
-    if (tri_file_look(output->file, &facts) && facts.node == ticket->inode && facts.size == ticket->length &&
-        tri_file_keeps_apart(output->file, ticket->host))
+    if (tri_file_get_facts(output->file, &facts) && facts.node == ticket->inode && facts.size == ticket->length &&
+        tri_file_allows_shared_pages(output->file, ticket->host))
         return true;
     (void)tri_file_close(output->file);
     output->file = TRI_NO_FILE;
@@ -590,7 +590,7 @@ enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output
         return tri_fail(error, TRI_NO_MEMORY, to->path, 0, "no memory to write the file");
     for (uint64_t done = 0; done < n && !result; done += PIECE) {
         const size_t piece = n - done < PIECE ? (size_t)(n - done) : PIECE;
-        if (!tri_read_again(from->file, buffer, piece, done)) {
+        if (!tri_read_back(from->file, buffer, piece, done)) {
             const int reason = errno;
             free(buffer);
             return tri_fail_system(error, TRI_CANNOT_WRITE, from->path, "cannot read again", reason);

@@ -72,7 +72,7 @@ enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *
 enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error);
 
 /* Can several threads write pieces at given offsets? A file has offsets, a device or pipe does not. */
-static inline bool tri_output_has_places(const struct tri_output *output) { return output->temporary != NULL; }
+static inline bool tri_output_has_offsets(const struct tri_output *output) { return output->temporary != NULL; }
 
 /* Reserves the next `size` bytes and returns their offset. The caller must write them. */
 uint64_t tri_output_reserve(struct tri_output *output, size_t size);
@@ -92,11 +92,11 @@ tri_file tri_output_direct(struct tri_output *output);
  * with offsets. The caller must write the bytes of the gap. */
 enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error);
 
-enum { TRI_WAITED_FOR = 1 << 23 };
+enum { TRI_SYNC_BYTES = 1 << 23 };
 
 /* Makes sure that all files, once complete, are on the disk, and that their names will be when commit returns. So after
  * a power failure at any time, a name refers to the old file or to the complete new one. Files of less than
- * TRI_WAITED_FOR bytes in total would take longer to sync than to make. Their writing is started but not waited for, as
+ * TRI_SYNC_BYTES bytes in total would take longer to sync than to make. Their writing is started but not waited for, as
  * ext4 does when a file replaces another. Also TRI_STOPPED. */
 enum tri_status tri_outputs_sync(struct tri_output_set *set, struct tri_error *error);
 

@@ -67,7 +67,7 @@ static void accumulate(int64_t *first, int n)
 }
 
 /* Allocates room for n items from a storage; NULL: from malloc. Returns NULL and sets errno if there is no room. */
-static void *find_room(const struct tri_storage *storage, int64_t n, size_t bytes)
+static void *allocate_room(const struct tri_storage *storage, int64_t n, size_t bytes)
 {
     const size_t all = (size_t)n * bytes;
     return storage ? storage->extra(storage->user, all) : malloc(all + 1);
@@ -97,7 +97,7 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
     }
     accumulate(g->first, g->n);
     g->storage = grid->storage;
-    g->order = find_room(g->storage, n, sizeof *g->order);
+    g->order = allocate_room(g->storage, n, sizeof *g->order);
     if (!g->order)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to group %lld items: %s", (long long)n,
                         strerror(errno));
@@ -238,8 +238,8 @@ static bool cut_plane(struct work *w)
     if (!w->sample)
         return false;
     for (int64_t t = 0; t < m; t += step) {
-        if (t % TRI_GRID_ROUNDS < step)
-            tri_grid_let_go(w->grid);
+        if (t % TRI_GRID_PERIOD < step)
+            tri_grid_evict_pages(w->grid);
         w->sample[n++] = site_of(w, t);
     }
     bisect(w, w->sample, n, 0, w->parts->n);
@@ -265,7 +265,7 @@ static int part_at(const struct work *w, const struct site *site)
 
 /* --- parts of points */
 
-static void note(struct work *w, int64_t point, int32_t part)
+static void add_use(struct work *w, int64_t point, int32_t part)
 {
     if (tri_grow_far(&w->use, &w->room, w->n_uses + 1, sizeof *w->use))
         w->use[w->n_uses++] = (struct use){point, part};
@@ -273,15 +273,15 @@ static void note(struct work *w, int64_t point, int32_t part)
         w->no_memory = true;
 }
 
-static void use_point(struct work *w, int64_t point, int32_t part)
+static void note_use(struct work *w, int64_t point, int32_t part)
 {
     const int32_t before = w->user[point];
     if (before == part || before == -part)
         return;
     if (before > 0)
-        note(w, point, before);
+        add_use(w, point, before);
     if (before != 0)
-        note(w, point, part);
+        add_use(w, point, part);
     w->user[point] = before == 0 ? part : -part;
 }
 
@@ -293,7 +293,7 @@ static bool use_corners(struct work *w)
         w->part[t] = (int16_t)(part_at(w, &site) + 1);
         w->grid->triangle(w->grid->user, t, nodes);
         for (int k = 0; k < w->grid->n_nodes; k++)
-            use_point(w, nodes[k], w->part[t]);
+            note_use(w, nodes[k], w->part[t]);
     }
     return !w->no_memory;
 }
@@ -320,7 +320,7 @@ static bool is_between_shared(const struct work *w, const int64_t ends[2])
 }
 
 /* Assigns segments with an end in only one part to that part. */
-static void assign_plain(struct work *w)
+static void assign_inner_segments(struct work *w)
 {
     for (int64_t s = 0; s < w->grid->n_segments; s++) {
         struct tri_grid_edge segment;
@@ -385,13 +385,13 @@ static void assign_loose(struct work *w)
         const int32_t end = abs(w->user[segment.ends[0]]);
         w->segment_part[s] = w->segment_part[s] ? w->segment_part[s] : end ? end : 1;
         for (int k = 0; k < 2; k++)
-            use_point(w, segment.ends[k], w->segment_part[s]);
+            note_use(w, segment.ends[k], w->segment_part[s]);
     }
 }
 
 static bool assign_segments(struct work *w)
 {
-    assign_plain(w);
+    assign_inner_segments(w);
     if (!list_edges(w))
         return false;
     assign_by_triangles(w);
@@ -418,7 +418,7 @@ static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(con
     int64_t next[TRI_MOST_PARTS + 1];
     for (int64_t i = 0; i < n; i++) {
         const int32_t part = part_of(w, i);
-        tri_grid_pass(w->grid, i);
+        tri_grid_evict_periodically(w->grid, i);
         if (part > 0)
             first[part - 1]++;
     }
@@ -426,7 +426,7 @@ static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(con
     memcpy(next, first, sizeof next);
     for (int64_t place = 0; place < n; place++) {
         const int32_t part = part_of(w, tri_grouped(groups, place));
-        tri_grid_pass(w->grid, place);
+        tri_grid_evict_periodically(w->grid, place);
         if (part > 0)
             list[next[part - 1]++] = place;
     }
@@ -504,20 +504,20 @@ static bool make_lists(struct work *w, const struct tri_grouping *surfaces, cons
 
 /* --- the whole division */
 
-static enum tri_status get_room(struct work *w, struct tri_error *error)
+static enum tri_status allocate_lists(struct work *w, struct tri_error *error)
 {
     const struct tri_grid *g = w->grid;
     struct tri_parts *p = w->parts;
-    w->part = find_room(p->storage, g->n_triangles, sizeof *w->part);
-    w->user = find_room(p->storage, g->n_points, sizeof *w->user);
-    w->segment_part = find_room(p->storage, g->n_segments, sizeof *w->segment_part);
-    p->triangle = find_room(p->storage, g->n_triangles, sizeof *p->triangle);
-    p->inner = find_room(p->storage, g->n_points, sizeof *p->inner);
-    p->segment = find_room(p->storage, g->n_segments, sizeof *p->segment);
+    w->part = allocate_room(p->storage, g->n_triangles, sizeof *w->part);
+    w->user = allocate_room(p->storage, g->n_points, sizeof *w->user);
+    w->segment_part = allocate_room(p->storage, g->n_segments, sizeof *w->segment_part);
+    p->triangle = allocate_room(p->storage, g->n_triangles, sizeof *p->triangle);
+    p->inner = allocate_room(p->storage, g->n_points, sizeof *p->inner);
+    p->segment = allocate_room(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
         return tri_fail_system(error, TRI_NO_MEMORY, NULL, "no room to cut a mesh into parts", errno);
     for (int64_t i = 0; i < g->n_points; i++) {
-        tri_grid_pass(g, i);
+        tri_grid_evict_periodically(g, i);
         w->user[i] = 0;
     }
     return TRI_OK;
@@ -530,7 +530,7 @@ enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_
     assert(1 <= n && n <= TRI_MOST_PARTS);
     *parts = (struct tri_parts){.n = n, .storage = grid->storage};
     struct work w = {.parts = parts, .grid = grid};
-    enum tri_status status = get_room(&w, error);
+    enum tri_status status = allocate_lists(&w, error);
     if (!status && !(cut_plane(&w) && use_corners(&w) && assign_segments(&w) && make_lists(&w, surfaces, curves)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
     free_room(parts->storage, w.part);

@@ -51,7 +51,7 @@ static bool read_format(struct reading *r)
     size_t n;
     if (!tri_bytes_line(&r->file, &line, &n) || !is_line(line, n, "4.1 1 8"))
         return FAIL(r, "not a binary file of version 4.1; Gmsh writes these with -format msh41 -bin");
-    if (!tri_bytes_has(&r->file, 1, 4) || tri_take_i32(&r->file) != 1)
+    if (!tri_bytes_has(&r->file, 1, 4) || tri_bytes_i32(&r->file) != 1)
         return FAIL(r, "the file is big-endian; only little-endian files are supported");
     r->has_format = true;
     return true;
@@ -59,12 +59,12 @@ static bool read_format(struct reading *r)
 
 /* Reads the numbers of blocks and items of a section. Returns false if they are missing, or exceed what the file can
  * hold for this item size. */
-static bool take_totals(struct reading *r, uint64_t *blocks, uint64_t *n, uint64_t item)
+static bool read_totals(struct reading *r, uint64_t *blocks, uint64_t *n, uint64_t item)
 {
     if (!tri_bytes_has(&r->file, 4, 8))
         return false;
-    *blocks = tri_take_u64(&r->file);
-    *n = tri_take_u64(&r->file);
+    *blocks = tri_bytes_u64(&r->file);
+    *n = tri_bytes_u64(&r->file);
     r->file.at += 16; /* skip least and greatest tag */
     return tri_bytes_has(&r->file, *n, item) && *n <= INT32_MAX;
 }
@@ -74,19 +74,19 @@ struct block {
     uint64_t n;
 };
 
-static bool take_block(struct reading *r, struct block *block)
+static bool read_block_head(struct reading *r, struct block *block)
 {
     if (!tri_bytes_has(&r->file, 1, 20))
         return false;
     r->file.at += 8; /* skip dimension and tag of the entity */
-    block->kind = tri_take_i32(&r->file);
-    block->n = tri_take_u64(&r->file);
+    block->kind = tri_bytes_i32(&r->file);
+    block->n = tri_bytes_u64(&r->file);
     return true;
 }
 
 /* --- nodes */
 
-static bool take_node(struct reading *r, int64_t i, const char *tag, const char *place)
+static bool read_node(struct reading *r, int64_t i, const char *tag, const char *place)
 {
     const double x = tri_get_f64(place), y = tri_get_f64(place + 8), z = tri_get_f64(place + 16);
     r->nodes.tag[i] = tri_get_i64(tag);
@@ -99,20 +99,20 @@ static bool take_node(struct reading *r, int64_t i, const char *tag, const char 
 static bool read_nodes(struct reading *r)
 {
     uint64_t blocks, n, done = 0;
-    if (r->has_nodes || !take_totals(r, &blocks, &n, 32))
+    if (r->has_nodes || !read_totals(r, &blocks, &n, 32))
         return ends_early(r, "Nodes");
     r->has_nodes = true;
     if (!tri_tags_begin_nodes(&r->nodes, (int64_t)n, &r->to))
         return false;
     for (uint64_t b = 0; b < blocks; b++) {
         struct block block;
-        if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
+        if (!read_block_head(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
             return ends_early(r, "Nodes");
         if (block.kind != 0)
             return FAIL(r, "nodes with parametric coordinates are not supported");
         const char *tags = r->file.at, *places = tags + 8 * block.n;
         for (uint64_t i = 0; i < block.n; i++)
-            if (!take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i))
+            if (!read_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i))
                 return false;
         r->file.at += 32 * block.n;
     }
@@ -133,35 +133,35 @@ static int nodes_of(int32_t kind)
 }
 
 /* Reads a node tag and converts it to a node number. */
-static bool take_place(struct reading *r, const char *at, int32_t *place)
+static bool read_node_number(struct reading *r, const char *at, int32_t *place)
 {
     *place = (int32_t)tri_tags_place(&r->nodes, tri_get_i64(at));
     return *place >= 0 || FAIL(r, "an element refers to node %" PRId64 ", which does not exist", tri_get_i64(at));
 }
 
 /* Gmsh orders the midpoints of edges along the boundary of the triangle; Triangle orders them by opposite corners. */
-static bool take_triangle(struct reading *r, const char *at, int n_nodes)
+static bool read_triangle(struct reading *r, const char *at, int n_nodes)
 {
     static const int opposite[] = {2, 0, 1};
     const int64_t i = r->n_triangles++;
     r->triangles.tag[i] = tri_get_i64(at);
     for (int k = 0; k < n_nodes; k++) {
         int32_t *to = k < 3 ? &r->to.elements->corners[3 * i + k] : &r->to.elements->extra[3 * i + opposite[k - 3]];
-        if (!take_place(r, at + 8 * (k + 1), to))
+        if (!read_node_number(r, at + 8 * (k + 1), to))
             return false;
     }
     return true;
 }
 
-static bool take_segment(struct reading *r, const char *at)
+static bool read_segment(struct reading *r, const char *at)
 {
     const int64_t i = r->n_segments++;
     r->segments.tag[i] = tri_get_i64(at);
     int32_t *to = &r->to.mesh->segments[2 * i];
-    return take_place(r, at + 8, &to[0]) && take_place(r, at + 16, &to[1]);
+    return read_node_number(r, at + 8, &to[0]) && read_node_number(r, at + 16, &to[1]);
 }
 
-static bool take_elements(struct reading *r, const struct block *block)
+static bool read_element_block(struct reading *r, const struct block *block)
 {
     const int n = nodes_of(block->kind);
     const size_t bytes = 8 * (size_t)(n + 1);
@@ -170,7 +170,7 @@ static bool take_elements(struct reading *r, const struct block *block)
     if (n >= 3)
         r->to.elements->n_nodes = n;
     for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
-        if ((n >= 3 && !take_triangle(r, r->file.at, n)) || (n == 2 && !take_segment(r, r->file.at)))
+        if ((n >= 3 && !read_triangle(r, r->file.at, n)) || (n == 2 && !read_segment(r, r->file.at)))
             return false;
     return true;
 }
@@ -200,21 +200,21 @@ static bool end_elements(struct reading *r)
 static bool read_elements(struct reading *r)
 {
     uint64_t blocks, n, done = 0;
-    if (!r->has_nodes || r->has_elements || !take_totals(r, &blocks, &n, 16))
+    if (!r->has_nodes || r->has_elements || !read_totals(r, &blocks, &n, 16))
         return ends_early(r, r->has_nodes ? "Elements" : "Nodes");
     r->has_elements = true;
     if (!begin_elements(r, (int64_t)n))
         return false;
     for (uint64_t b = 0; b < blocks; b++) {
         struct block block;
-        if (!take_block(r, &block) || block.n > n - done)
+        if (!read_block_head(r, &block) || block.n > n - done)
             return ends_early(r, "Elements");
         if (nodes_of(block.kind) == 0)
             return FAIL(r, "an element is of type %" PRId32 "; only triangles, lines and points are supported",
                         block.kind);
         if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
             return ends_early(r, "Elements");
-        if (!take_elements(r, &block))
+        if (!read_element_block(r, &block))
             return false;
         done += block.n;
     }
@@ -224,7 +224,7 @@ static bool read_elements(struct reading *r)
 
 /* --- data */
 
-static bool take_count(struct reading *r, int64_t *n)
+static bool read_count(struct reading *r, int64_t *n)
 {
     const char *line;
     size_t length;
@@ -243,19 +243,19 @@ static bool skip_lines(struct reading *r, int64_t n)
 
 /* Reads the head of a data section: names, reals (times), and numbers, among them the number of components, which must
  * be 1, and of items. Returns false for other forms. */
-static bool take_data_head(struct reading *r, struct data *data)
+static bool read_data_head(struct reading *r, struct data *data)
 {
     const char *line;
     size_t length;
     int64_t names, reals, numbers, components;
-    if (!take_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
+    if (!read_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
         return false;
     snprintf(data->name, sizeof data->name, "%.*s", length < MOST_NAME ? (int)length : 0, line);
     for (char *blank = data->name; (blank = strchr(blank, ' ')) != NULL;) /* older files have blanks */
         *blank = '_';
-    return skip_lines(r, names - 1) && take_count(r, &reals) && skip_lines(r, reals) && take_count(r, &numbers) &&
-           numbers >= 3 && skip_lines(r, 1) && take_count(r, &components) && components == 1 &&
-           take_count(r, &data->n) && skip_lines(r, numbers - 3);
+    return skip_lines(r, names - 1) && read_count(r, &reals) && skip_lines(r, reals) && read_count(r, &numbers) &&
+           numbers >= 3 && skip_lines(r, 1) && read_count(r, &components) && components == 1 &&
+           read_count(r, &data->n) && skip_lines(r, numbers - 3);
 }
 
 /* Appends a column to `*width` existing ones; missing values are 0. tags: of nodes, or of triangles. */
@@ -284,7 +284,7 @@ static bool add_column(struct reading *r, const struct data *data, const struct 
 }
 
 /* Reads markers of nodes, or of segments. */
-static bool take_markers(struct reading *r, const struct data *data, const struct tri_tags *tags,
+static bool read_markers(struct reading *r, const struct data *data, const struct tri_tags *tags,
                                     int32_t **markers)
 {
     free(*markers);
@@ -302,13 +302,13 @@ static bool take_markers(struct reading *r, const struct data *data, const struc
     return true;
 }
 
-static bool take_data(struct reading *r, const struct data *data)
+static bool store_data(struct reading *r, const struct data *data)
 {
     char next[MOST_NAME];
     int32_t *width = data->of_nodes ? &r->to.mesh->n_attributes : &r->to.elements->n_attributes;
     snprintf(next, sizeof next, "\"attribute_%" PRId32 "\"", *width);
     if (strcmp(data->name, "\"marker\"") == 0)
-        return take_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
+        return read_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
                             data->of_nodes ? &r->to.mesh->markers : &r->to.mesh->segment_markers);
     if ((strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES) || (r->any_data && data->of_nodes && *width == 0))
         return add_column(r, data, data->of_nodes ? &r->nodes : &r->triangles,
@@ -321,7 +321,7 @@ static bool read_data(struct reading *r, bool of_nodes)
     struct data data = {.of_nodes = of_nodes};
     if (!r->has_elements)
         return FAIL(r, "a data section comes before the elements");
-    if (!take_data_head(r, &data))
+    if (!read_data_head(r, &data))
         return true; /* data of another form are ignored */
     const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
     if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
@@ -329,7 +329,7 @@ static bool read_data(struct reading *r, bool of_nodes)
                     of_nodes ? "nodes" : "elements");
     data.at = r->file.at;
     r->file.at += (uint64_t)data.n * DATUM_BYTES;
-    return take_data(r, &data);
+    return store_data(r, &data);
 }
 
 /* --- the file */

@@ -32,7 +32,7 @@ static bool begin_nodes(struct reading *r, int64_t n)
 }
 
 /* Reads number, position and elevation of a node. */
-static const char *take_node(void *user, size_t i, struct tri_fields *fields)
+static const char *parse_node(void *user, size_t i, struct tri_fields *fields)
 {
     struct reading *r = user;
     if (tri_fields_integer(fields, &r->nodes.tag[i]) != TRI_FIELD_GOOD)
@@ -44,7 +44,7 @@ static const char *take_node(void *user, size_t i, struct tri_fields *fields)
 }
 
 /* Reads a node tag and returns the node number; -1: there is no such node. */
-static int32_t take_place(const struct reading *r, struct tri_fields *fields)
+static int32_t parse_node_number(const struct reading *r, struct tri_fields *fields)
 {
     int64_t tag;
     return tri_fields_integer(fields, &tag) == TRI_FIELD_GOOD ? (int32_t)tri_tags_place(&r->nodes, tag) : -1;
@@ -65,7 +65,7 @@ static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t mar
 }
 
 /* Stores the elevations as the attribute of the points, unless all are 0. */
-static void hand_over(struct reading *r)
+static void store_elevations(struct reading *r)
 {
     bool any = false;
     for (int32_t i = 0; i < r->to.mesh->n_points; i++)
@@ -83,7 +83,7 @@ static enum tri_status read_with(bool (*read)(struct reading *r), const char *pa
     struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
     r.to.status = tri_text_load(&r.text, path, 0, executor, NULL, error);
     if (!r.to.status && read(&r))
-        hand_over(&r);
+        store_elevations(&r);
     tri_text_free(&r.text);
     tri_tags_free(&r.nodes);
     free(r.z);
@@ -92,7 +92,7 @@ static enum tri_status read_with(bool (*read)(struct reading *r), const char *pa
 
 /* --- fort.14: title, numbers of elements and nodes, nodes, elements, open boundaries, land boundaries */
 
-static const char *take_element(void *user, size_t i, struct tri_fields *fields)
+static const char *parse_element(void *user, size_t i, struct tri_fields *fields)
 {
     struct reading *r = user;
     int64_t n;
@@ -100,20 +100,20 @@ static const char *take_element(void *user, size_t i, struct tri_fields *fields)
     if (tri_fields_integer(fields, &n) != TRI_FIELD_GOOD || n != 3)
         return "is not a triangle";
     for (size_t k = 0; k < 3; k++)
-        if ((r->to.elements->corners[3 * i + k] = take_place(r, fields)) < 0)
+        if ((r->to.elements->corners[3 * i + k] = parse_node_number(r, fields)) < 0)
             return "has a corner that is not a node";
     return NULL;
 }
 
 /* Reads the first one or two numbers of the next record. Returns false if they are missing or negative. */
-static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
+static bool read_counts(struct tri_cursor *cursor, int64_t *a, int64_t *b)
 {
     struct tri_fields fields;
     bool good = tri_cursor_next(cursor, &fields) && tri_fields_integer(&fields, a) == TRI_FIELD_GOOD && *a >= 0;
     return good && (!b || (tri_fields_integer(&fields, b) == TRI_FIELD_GOOD && *b >= 0));
 }
 
-static bool goes_round(int64_t type) { return type == 1 || type == 11 || type == 21; }
+static bool is_closed_type(int64_t type) { return type == 1 || type == 11 || type == 21; }
 
 /* Reads n nodes, one per line. */
 static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
@@ -121,7 +121,7 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
     int32_t first = -1, last = -1;
     for (int64_t i = 0; i < n; i++) {
         struct tri_fields fields;
-        const int32_t node = tri_cursor_next(cursor, &fields) ? take_place(r, &fields) : -1;
+        const int32_t node = tri_cursor_next(cursor, &fields) ? parse_node_number(r, &fields) : -1;
         if (node < 0)
             return FAIL(r, cursor->line, "a node of a boundary is missing or does not exist");
         if (i > 0 && !add_segment(r, last, node, marker))
@@ -136,14 +136,14 @@ static bool read_string(struct reading *r, struct tri_cursor *cursor, int64_t n,
 static bool read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
 {
     int64_t n, n_nodes;
-    if (!take_numbers(cursor, &n, NULL) || !take_numbers(cursor, &n_nodes, NULL))
+    if (!read_counts(cursor, &n, NULL) || !read_counts(cursor, &n_nodes, NULL))
         return FAIL(r, cursor->line, "the numbers of boundaries and of their nodes are missing");
     for (int64_t i = 0; i < n; i++) {
         int64_t type = 0;
-        if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
+        if (!read_counts(cursor, &n_nodes, open ? NULL : &type))
             return FAIL(r, cursor->line, "the number of nodes of a boundary, or its type, is missing");
         const int32_t marker = open ? TRI_OPEN_BOUNDARY : type >= 10 && type < 100 ? (int32_t)type : 1;
-        if (!read_string(r, cursor, n_nodes, !open && goes_round(type), marker))
+        if (!read_string(r, cursor, n_nodes, !open && is_closed_type(type), marker))
             return false;
     }
     return true;
@@ -162,7 +162,7 @@ static bool read_14(struct reading *r)
     int64_t n_elements, n_nodes;
     if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* skip a title with a number */
         (void)tri_cursor_next(&cursor, &fields);
-    if (!take_numbers(&cursor, &n_elements, &n_nodes))
+    if (!read_counts(&cursor, &n_elements, &n_nodes))
         return FAIL(r, cursor.line, "the numbers of elements and nodes are missing");
     const size_t left = tri_cursor_remaining(&cursor);
     if ((uint64_t)n_nodes > left || (uint64_t)n_elements > left - (size_t)n_nodes || n_nodes > INT32_MAX ||
@@ -170,9 +170,9 @@ static bool read_14(struct reading *r)
         return FAIL(r, cursor.line, "%lld nodes and %lld elements are announced, but only %zu records follow",
                     (long long)n_nodes, (long long)n_elements, left);
     return begin_nodes(r, n_nodes) && tri_reading_triangles(&r->to, n_elements, 3) &&
-           read_table(r, &cursor, (struct tri_table){"node", (size_t)n_nodes, 1, take_node, r}) &&
+           read_table(r, &cursor, (struct tri_table){"node", (size_t)n_nodes, 1, parse_node, r}) &&
            tri_tags_order(&r->nodes, "node", &r->to) &&
-           read_table(r, &cursor, (struct tri_table){"element", (size_t)n_elements, 1, take_element, r}) &&
+           read_table(r, &cursor, (struct tri_table){"element", (size_t)n_elements, 1, parse_element, r}) &&
            read_boundaries(r, &cursor, true) && read_boundaries(r, &cursor, false);
 }
 
@@ -254,7 +254,7 @@ static bool read_nodes(struct reading *r)
 {
     size_t i = 0;
     for (struct cards c = all_cards(r); next_card(&c);) {
-        const char *wrong = c.card == CARD_NODE ? take_node(r, i++, &c.fields) : NULL;
+        const char *wrong = c.card == CARD_NODE ? parse_node(r, i++, &c.fields) : NULL;
         if (wrong)
             return FAIL(r, c.line, "node %zu %s", i, wrong);
     }
@@ -263,14 +263,14 @@ static bool read_nodes(struct reading *r)
 
 /* In the file, nodes go around the triangle, starting at a corner. Here, the corners come first, then the midpoints
  * opposite each. */
-static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields)
+static bool parse_corners(struct reading *r, int64_t i, struct tri_fields *fields)
 {
     static const int place_of_three[] = {0, 1, 2}, place_of_six[] = {0, 5, 1, 3, 2, 4};
     struct tri_elements *e = r->to.elements;
     tri_fields_skip(fields);
     for (int k = 0; k < e->n_nodes; k++) {
         const int place = e->n_nodes == 3 ? place_of_three[k] : place_of_six[k];
-        const int32_t node = take_place(r, fields);
+        const int32_t node = parse_node_number(r, fields);
         if (node < 0)
             return false;
         if (place < 3)
@@ -293,7 +293,7 @@ static bool read_triangles(struct reading *r)
     for (struct cards c = all_cards(r); next_card(&c);) {
         if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
             continue;
-        if (!take_corners(r, i, &c.fields))
+        if (!parse_corners(r, i, &c.fields))
             return FAIL(r, c.line, "a triangle has a node that is missing or does not exist");
         if (tri_fields_real(&c.fields, &material[i]) != TRI_FIELD_GOOD)
             material[i] = 1;

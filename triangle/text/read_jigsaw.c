@@ -28,7 +28,7 @@ static bool begin_array(struct jigsaw *j, double **array, int64_t n)
     return *array || tri_reading_no_memory(&j->words->to);
 }
 
-static bool take_coordinates(struct jigsaw *j, double *to, int64_t n)
+static bool read_coordinates(struct jigsaw *j, double *to, int64_t n)
 {
     for (int64_t i = 0; i < n; i++)
         if (!tri_words_real(j->words, "a coordinate", true, &to[i]))
@@ -37,7 +37,7 @@ static bool take_coordinates(struct jigsaw *j, double *to, int64_t n)
 }
 
 /* Coordinates are followed by a group number. */
-static bool take_points(struct jigsaw *j)
+static bool read_points(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
     struct tri_pslg *mesh = w->to.mesh;
@@ -48,13 +48,13 @@ static bool take_points(struct jigsaw *j)
         return false;
     mesh->n_points = (int32_t)n;
     for (int64_t i = 0; i < n; i++)
-        if (!take_coordinates(j, mesh->points + 2 * i, 2) ||
+        if (!read_coordinates(j, mesh->points + 2 * i, 2) ||
             !tri_words_whole(w, "the group of a point", INT64_MIN, INT64_MAX, &group))
             return false;
     return true;
 }
 
-static bool take_triangles(struct jigsaw *j)
+static bool read_triangles(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
     int64_t n, corner;
@@ -73,7 +73,7 @@ static bool take_triangles(struct jigsaw *j)
     return true;
 }
 
-static bool take_values(struct jigsaw *j)
+static bool read_values(struct jigsaw *j)
 {
     int64_t one;
     if (!tri_words_count(j->words, "the number of values", 2, &j->n_values) ||
@@ -86,13 +86,13 @@ static bool take_values(struct jigsaw *j)
     return true;
 }
 
-static bool take_axis(struct jigsaw *j)
+static bool read_axis(struct jigsaw *j)
 {
     int64_t axis, n;
     if (!tri_words_whole(j->words, "the axis of coordinates", 1, 2, &axis) ||
         !tri_words_count(j->words, "the number of coordinates", 2, &n))
         return false;
-    if (!begin_array(j, &j->coord[axis - 1], n) || !take_coordinates(j, j->coord[axis - 1], n))
+    if (!begin_array(j, &j->coord[axis - 1], n) || !read_coordinates(j, j->coord[axis - 1], n))
         return false;
     j->n[axis - 1] = n;
     for (int64_t i = 1; i < n; i++)
@@ -101,7 +101,7 @@ static bool take_axis(struct jigsaw *j)
     return true;
 }
 
-static bool take_head(struct jigsaw *j)
+static bool read_head(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
     int64_t version;
@@ -115,7 +115,7 @@ static bool take_head(struct jigsaw *j)
 }
 
 /* Skips a section. It has one line per item, except "radii", which is a single row. */
-static bool pass_section(struct jigsaw *j)
+static bool skip_section(struct jigsaw *j)
 {
     const bool is_row = tri_words_is(j->words, "radii");
     int64_t n = 0;
@@ -125,19 +125,19 @@ static bool pass_section(struct jigsaw *j)
     return true;
 }
 
-static bool take_section(struct jigsaw *j)
+static bool read_section(struct jigsaw *j)
 {
     struct tri_words *w = j->words;
     int64_t two;
     if (tri_words_is(w, "ndims"))
         return tri_words_whole(w, "ndims", 2, 2, &two);
     if (tri_words_is(w, "point"))
-        return take_points(j);
+        return read_points(j);
     if (tri_words_is(w, "tria3"))
-        return take_triangles(j);
+        return read_triangles(j);
     if (tri_words_is(w, "value"))
-        return take_values(j);
-    return tri_words_is(w, "coord") ? take_axis(j) : pass_section(j);
+        return read_values(j);
+    return tri_words_is(w, "coord") ? read_axis(j) : skip_section(j);
 }
 
 /* --- conversion to a size field */
@@ -211,9 +211,9 @@ bool tri_size_read_jigsaw(struct tri_words *words, struct tri_size_file *file)
     struct jigsaw j = {.words = words};
     words->blanks = ";=";
     words->comment = "#";
-    bool good = take_head(&j);
+    bool good = read_head(&j);
     while (good && tri_words_next(words))
-        good = take_section(&j);
+        good = read_section(&j);
     good = good && make_field(&j, file);
     free(j.values);
     free(j.coord[0]);

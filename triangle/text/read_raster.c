@@ -37,7 +37,7 @@ static enum head head_of(const struct tri_words *w)
     return (enum head)head;
 }
 
-static bool take_head(struct tri_words *w, struct asc *asc)
+static bool read_entry(struct tri_words *w, struct asc *asc)
 {
     const enum head head = head_of(w);
     if (head == HEADS)
@@ -59,10 +59,10 @@ static bool is_head(const struct tri_words *w)
 }
 
 /* Reads the entries, which precede the first number in any order. */
-static bool take_heads(struct tri_words *w, struct asc *asc)
+static bool read_entries(struct tri_words *w, struct asc *asc)
 {
     while (tri_words_seek(w) && is_head(w))
-        if (!tri_words_next(w) || !take_head(w, asc))
+        if (!tri_words_next(w) || !read_entry(w, asc))
             return false;
     for (int k = 0; k < 2 && !asc->has[CELL]; k++)
         if (!asc->has[DX + k])
@@ -81,7 +81,7 @@ static bool take_heads(struct tri_words *w, struct asc *asc)
 bool tri_size_read_asc(struct tri_words *w, struct tri_size_file *file)
 {
     struct asc asc = {.value = {[NO_DATA] = -9999}};
-    if (!take_heads(w, &asc))
+    if (!read_entries(w, &asc))
         return false;
     const int64_t left = w->text.data + w->text.size - w->at;
     if (asc.rows > left / 2 / asc.columns)
@@ -124,7 +124,7 @@ static const char *behind_key(const char *head, const char *key)
     return at ? at + strlen(key) + strspn(at + strlen(key), " :") : NULL;
 }
 
-static bool take_type(struct npy *npy, const char *at)
+static bool parse_type(struct npy *npy, const char *at)
 {
     if (!at || (*at != '\'' && *at != '"') || !at[1] || !strchr("<>=|", at[1]) || !at[2] || !strchr("fiu", at[2]) ||
         !at[3] || at[4] != *at)
@@ -135,7 +135,7 @@ static bool take_type(struct npy *npy, const char *at)
     return npy->bytes == 4 || npy->bytes == 8 || (npy->kind != 'f' && (npy->bytes == 1 || npy->bytes == 2));
 }
 
-static bool take_shape(struct npy *npy, const char *at)
+static bool parse_shape(struct npy *npy, const char *at)
 {
     for (int k = 0; at && k < 2; k++) {
         at += strspn(at, k ? " ," : " (");
@@ -145,7 +145,7 @@ static bool take_shape(struct npy *npy, const char *at)
     return at && at[strspn(at, " ,")] == ')';
 }
 
-static enum tri_status take_npy_head(struct npy *npy, struct tri_bytes *bytes, const char *path,
+static enum tri_status read_npy_header(struct npy *npy, struct tri_bytes *bytes, const char *path,
                                      struct tri_error *error)
 {
     char head[MOST_HEAD + 1] = "";
@@ -160,10 +160,10 @@ static enum tri_status take_npy_head(struct npy *npy, struct tri_bytes *bytes, c
     memcpy(head, bytes->at, (size_t)length);
     bytes->at += length;
     const char *order = behind_key(head, "fortran_order'");
-    if (!take_type(npy, behind_key(head, "descr'")) || !order)
+    if (!parse_type(npy, behind_key(head, "descr'")) || !order)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "not an array of float32, float64 or whole numbers");
     npy->by_columns = *order == 'T';
-    if (!take_shape(npy, behind_key(head, "shape'")))
+    if (!parse_shape(npy, behind_key(head, "shape'")))
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "not an array of two dimensions");
     return TRI_OK;
 }
@@ -192,7 +192,7 @@ static double npy_value(const struct npy *npy, const char *at)
 }
 
 /* Sets origin and step from the positions of the first and the last value. The raster starts with its lowest row. */
-static bool place(struct tri_size_field *field, const double extent[4])
+static bool set_extent(struct tri_size_field *field, const double extent[4])
 {
     const int64_t n[2] = {field->values.width, field->values.n};
     for (int k = 0; k < 2; k++) {
@@ -205,11 +205,11 @@ static bool place(struct tri_size_field *field, const double extent[4])
     return true;
 }
 
-static enum tri_status take_npy(struct tri_size_file *file, struct tri_bytes *bytes, const char *path,
+static enum tri_status read_npy(struct tri_size_file *file, struct tri_bytes *bytes, const char *path,
                                 const double extent[4], struct tri_error *error)
 {
     struct npy npy;
-    const enum tri_status status = take_npy_head(&npy, bytes, path, error);
+    const enum tri_status status = read_npy_header(&npy, bytes, path, error);
     if (status)
         return status;
     const int64_t rows = npy.shape[0], columns = npy.shape[1];
@@ -227,7 +227,7 @@ static enum tri_status take_npy(struct tri_size_file *file, struct tri_bytes *by
             const double value = npy_value(&npy, bytes->at + from * npy.bytes);
             file->values[row * columns + column] = isnan(value) ? 0 : value;
         }
-    return place(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0,
+    return set_extent(&file->field, extent) ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, path, 0,
                                                            "the extent is empty or too large");
 }
 
@@ -239,7 +239,7 @@ enum tri_status tri_size_read_npy(struct tri_size_file *file, const char *path, 
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "a .npy file needs an extent: FILE.npy@XMIN,YMIN,XMAX,YMAX, the "
                         "positions of its first and its last value");
     enum tri_status status = tri_bytes_load(&bytes, path, error);
-    status = status ? status : take_npy(file, &bytes, path, extent, error);
+    status = status ? status : read_npy(file, &bytes, path, extent, error);
     tri_bytes_free(&bytes);
     return status;
 }

@@ -18,12 +18,12 @@ struct gmsh {
     int64_t n_nodes, n_triangles; /* number read so far */
 };
 
-static bool take_any(struct gmsh *g, const char *what, int64_t *value)
+static bool read_int(struct gmsh *g, const char *what, int64_t *value)
 {
     return tri_words_whole(g->words, what, INT64_MIN, INT64_MAX, value);
 }
 
-static bool take_place(struct gmsh *g, double *xy)
+static bool read_position(struct gmsh *g, double *xy)
 {
     double z;
     return tri_words_real(g->words, "a coordinate", true, &xy[0]) &&
@@ -33,33 +33,33 @@ static bool take_place(struct gmsh *g, double *xy)
 
 /* Reads the number of blocks, the number of items, and their least and greatest tags; in version 2.2 only the number of
  * items. */
-static bool take_totals(struct gmsh *g, const char *what, int64_t *blocks, int64_t *n)
+static bool read_totals(struct gmsh *g, const char *what, int64_t *blocks, int64_t *n)
 {
     int64_t tag;
     *blocks = 1;
     if (g->blocks && !tri_words_count(g->words, "the number of blocks", 2, blocks))
         return false;
     return tri_words_count(g->words, what, 2, n) &&
-           (!g->blocks || (take_any(g, "the least tag", &tag) && take_any(g, "the greatest tag", &tag)));
+           (!g->blocks || (read_int(g, "the least tag", &tag) && read_int(g, "the greatest tag", &tag)));
 }
 
 /* Reads the head of a block: its dimension, its tag, a kind, and the number of items. */
-static bool take_block(struct gmsh *g, int64_t *kind, int64_t left, int64_t *n)
+static bool read_block_head(struct gmsh *g, int64_t *kind, int64_t left, int64_t *n)
 {
     int64_t entity;
-    return take_any(g, "a dimension", &entity) && take_any(g, "the tag of a block", &entity) &&
-           take_any(g, "the kind of a block", kind) && tri_words_whole(g->words, "the size of a block", 0, left, n);
+    return read_int(g, "a dimension", &entity) && read_int(g, "the tag of a block", &entity) &&
+           read_int(g, "the kind of a block", kind) && tri_words_whole(g->words, "the size of a block", 0, left, n);
 }
 
-static bool take_nodes(struct gmsh *g, int64_t n)
+static bool read_node_block(struct gmsh *g, int64_t n)
 {
     double *xy = g->words->to.mesh->points + 2 * g->n_nodes;
     for (int64_t i = 0; i < n; i++)
-        if (!take_any(g, "the tag of a node", &g->nodes.tag[g->n_nodes + i]) ||
-            (!g->blocks && !take_place(g, xy + 2 * i)))
+        if (!read_int(g, "the tag of a node", &g->nodes.tag[g->n_nodes + i]) ||
+            (!g->blocks && !read_position(g, xy + 2 * i)))
             return false;
     for (int64_t i = 0; i < n && g->blocks; i++)
-        if (!take_place(g, xy + 2 * i))
+        if (!read_position(g, xy + 2 * i))
             return false;
     g->n_nodes += n;
     return true;
@@ -70,15 +70,15 @@ static bool read_nodes(struct gmsh *g)
     int64_t blocks, n, parametric;
     if (g->nodes.tag)
         return TRI_WORDS_FAIL(g->words, "$Nodes occurs twice");
-    if (!take_totals(g, "the number of nodes", &blocks, &n) || !tri_tags_begin_nodes(&g->nodes, n, &g->words->to))
+    if (!read_totals(g, "the number of nodes", &blocks, &n) || !tri_tags_begin_nodes(&g->nodes, n, &g->words->to))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
         int64_t here = n;
-        if (g->blocks && !take_block(g, &parametric, n - g->n_nodes, &here))
+        if (g->blocks && !read_block_head(g, &parametric, n - g->n_nodes, &here))
             return false;
         if (g->blocks && parametric != 0)
             return TRI_WORDS_FAIL(g->words, "nodes with parametric coordinates are not supported");
-        if (!take_nodes(g, here))
+        if (!read_node_block(g, here))
             return false;
     }
     if (g->n_nodes < n)
@@ -94,7 +94,7 @@ static int nodes_of(int64_t kind)
 }
 
 /* Reads the nodes of an element; corners come first. Elements other than triangles are ignored. */
-static bool take_element(struct gmsh *g, int64_t kind)
+static bool read_element_nodes(struct gmsh *g, int64_t kind)
 {
     const int n = nodes_of(kind);
     const bool is_triangle = kind == 2 || kind == 9;
@@ -103,7 +103,7 @@ static bool take_element(struct gmsh *g, int64_t kind)
         return TRI_WORDS_FAIL(g->words, "an element of type %" PRId64 ": triangles, lines and points are read", kind);
     for (int k = 0; k < n; k++) {
         int64_t tag;
-        if (!take_any(g, "a node of an element", &tag))
+        if (!read_int(g, "a node of an element", &tag))
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
@@ -115,19 +115,19 @@ static bool take_element(struct gmsh *g, int64_t kind)
     return true;
 }
 
-static bool take_elements(struct gmsh *g, int64_t kind, int64_t n)
+static bool read_element_block(struct gmsh *g, int64_t kind, int64_t n)
 {
     for (int64_t i = 0; i < n; i++) {
         int64_t tag, n_tags = 0;
-        if (!take_any(g, "the tag of an element", &tag))
+        if (!read_int(g, "the tag of an element", &tag))
             return false;
-        if (!g->blocks && (!take_any(g, "the type of an element", &kind) ||
+        if (!g->blocks && (!read_int(g, "the type of an element", &kind) ||
                            !tri_words_count(g->words, "the number of tags", 1, &n_tags)))
             return false;
         for (int64_t k = 0; k < n_tags; k++)
-            if (!take_any(g, "a tag", &tag))
+            if (!read_int(g, "a tag", &tag))
                 return false;
-        if (!take_element(g, kind))
+        if (!read_element_nodes(g, kind))
             return false;
     }
     return true;
@@ -138,13 +138,13 @@ static bool read_elements(struct gmsh *g)
     int64_t blocks, n, kind = 0, done = 0;
     if (!g->nodes.tag || g->words->to.elements->corners)
         return TRI_WORDS_FAIL(g->words, "$Elements comes before $Nodes or occurs twice");
-    if (!take_totals(g, "the number of elements", &blocks, &n) || !tri_reading_triangles(&g->words->to, n, 3))
+    if (!read_totals(g, "the number of elements", &blocks, &n) || !tri_reading_triangles(&g->words->to, n, 3))
         return false;
     for (int64_t b = 0; b < blocks; b++) {
         int64_t here = n;
-        if (g->blocks && !take_block(g, &kind, n - done, &here))
+        if (g->blocks && !read_block_head(g, &kind, n - done, &here))
             return false;
-        if (!take_elements(g, kind, here))
+        if (!read_element_block(g, kind, here))
             return false;
         done += here;
     }
@@ -154,7 +154,7 @@ static bool read_elements(struct gmsh *g)
 
 /* Reads the head of a data section: names, one per line, times, and integers, of which the second and third are the
  * numbers of components and nodes. */
-static bool take_data_head(struct gmsh *g, int64_t *components, int64_t *n)
+static bool read_data_head(struct gmsh *g, int64_t *components, int64_t *n)
 {
     int64_t count, other;
     double time;
@@ -166,12 +166,12 @@ static bool take_data_head(struct gmsh *g, int64_t *components, int64_t *n)
     for (int64_t i = 0; i < count; i++)
         if (!tri_words_real(g->words, "a time", false, &time))
             return false;
-    if (!tri_words_whole(g->words, "the number of whole numbers", 3, 100, &count) || !take_any(g, "a step", &other) ||
-        !take_any(g, "the number of components", components) ||
+    if (!tri_words_whole(g->words, "the number of whole numbers", 3, 100, &count) || !read_int(g, "a step", &other) ||
+        !read_int(g, "the number of components", components) ||
         !tri_words_count(g->words, "the number of nodes with data", 4, n))
         return false;
     for (int64_t i = 3; i < count; i++)
-        if (!take_any(g, "a whole number", &other))
+        if (!read_int(g, "a whole number", &other))
             return false;
     return true;
 }
@@ -183,7 +183,7 @@ static bool read_data(struct gmsh *g)
     double value;
     if (!g->nodes.tag)
         return TRI_WORDS_FAIL(g->words, "$NodeData comes before $Nodes");
-    if (!take_data_head(g, &components, &n))
+    if (!read_data_head(g, &components, &n))
         return false;
     if (components != 1 || mesh->attributes)
         return true;
@@ -192,7 +192,7 @@ static bool read_data(struct gmsh *g)
     if (!mesh->attributes)
         return tri_reading_no_memory(&g->words->to);
     for (int64_t i = 0; i < n; i++) {
-        if (!take_any(g, "the tag of a node", &tag) || !tri_words_length(g->words, &value))
+        if (!read_int(g, "the tag of a node", &tag) || !tri_words_length(g->words, &value))
             return false;
         const int64_t place = tri_tags_place(&g->nodes, tag);
         if (place < 0)
@@ -208,8 +208,8 @@ static bool read_format(struct gmsh *g)
     double version;
     if (!tri_words_next(g->words) || !tri_words_is(g->words, "$meshformat"))
         return TRI_WORDS_FAIL(g->words, "not a .msh file");
-    if (!tri_words_real(g->words, "a version", true, &version) || !take_any(g, "a kind of file", &binary) ||
-        !take_any(g, "a size", &bytes))
+    if (!tri_words_real(g->words, "a version", true, &version) || !read_int(g, "a kind of file", &binary) ||
+        !read_int(g, "a size", &bytes))
         return false;
     g->blocks = version == 4.1;
     return ((g->blocks || version == 2.2) && binary == 0) ||
@@ -262,7 +262,7 @@ struct view {
 };
 
 /* Reads a character; fails if it is not `sign`. */
-static bool take_sign(struct view *v, char sign)
+static bool read_character(struct view *v, char sign)
 {
     if (!tri_words_seek(v->words) || *v->words->at != sign)
         return TRI_WORDS_FAIL(v->words, "a \"%c\" is missing", sign);
@@ -271,10 +271,10 @@ static bool take_sign(struct view *v, char sign)
 }
 
 /* Reads numbers between `open` and `close`, and keeps the first n. The others belong to later time steps. */
-static bool take_list(struct view *v, char open, char close, double *to, int n)
+static bool read_list(struct view *v, char open, char close, double *to, int n)
 {
     struct tri_words *w = v->words;
-    if (!take_sign(v, open))
+    if (!read_character(v, open))
         return false;
     for (int i = 0;; i++) {
         double value;
@@ -285,14 +285,14 @@ static bool take_list(struct view *v, char open, char close, double *to, int n)
             to[i] = value;
         w->at = end;
         if (tri_words_seek(w) && *w->at == close && i + 1 >= n)
-            return take_sign(v, close);
-        if (!take_sign(v, ','))
+            return read_character(v, close);
+        if (!read_character(v, ','))
             return false;
     }
 }
 
 /* Skips semicolons; after the last element there may be none. */
-static void pass_end(struct view *v)
+static void skip_semicolons(struct view *v)
 {
     while (tri_words_seek(v->words) && *v->words->at == ';')
         v->words->at++;
@@ -347,9 +347,9 @@ static bool read_element(struct view *v)
     const int n = nodes_of_view(kind, length);
     if (n == 0)
         return TRI_WORDS_FAIL(w, "not a scalar triangle (ST), line (SL) or point (SP)");
-    if (!take_list(v, '(', ')', xyz, 3 * n) || !take_list(v, '{', '}', h, n))
+    if (!read_list(v, '(', ')', xyz, 3 * n) || !read_list(v, '{', '}', h, n))
         return false;
-    pass_end(v);
+    skip_semicolons(v);
     if (n == 3 && w->to.elements->n == 0)
         w->to.mesh->n_points = 0;
     if (n < 3)
@@ -362,12 +362,12 @@ static bool read_view_head(struct view *v)
     struct tri_words *w = v->words;
     if (!tri_words_next(w) || !tri_words_is(w, "view"))
         return TRI_WORDS_FAIL(w, "not a .pos file: it does not begin with View");
-    if (!take_sign(v, '"'))
+    if (!read_character(v, '"'))
         return false;
     const char *quote = memchr(w->at, '"', (size_t)(w->text.data + w->text.size - w->at));
     for (; quote && w->at <= quote; w->at++)
         w->line += *w->at == '\n';
-    return quote ? take_sign(v, '{') : TRI_WORDS_FAIL(w, "the name of the view has no end");
+    return quote ? read_character(v, '{') : TRI_WORDS_FAIL(w, "the name of the view has no end");
 }
 
 bool tri_size_read_pos(struct tri_words *words)
@@ -377,5 +377,5 @@ bool tri_size_read_pos(struct tri_words *words)
     bool good = read_view_head(&v);
     while (good && tri_words_seek(words) && *words->at != '}')
         good = read_element(&v);
-    return good && take_sign(&v, '}');
+    return good && read_character(&v, '}');
 }

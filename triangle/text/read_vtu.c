@@ -123,7 +123,7 @@ static int64_t count_of(struct span tag, const char *name, int64_t missing)
 
 /* --- the head */
 
-static bool take_file_tag(struct reading *r, struct span tag)
+static bool parse_file_tag(struct reading *r, struct span tag)
 {
     r->is_vtk = true;
     if (!is_value(value_of(tag, "type"), "UnstructuredGrid"))
@@ -136,7 +136,7 @@ static bool take_file_tag(struct reading *r, struct span tag)
     return true;
 }
 
-static bool take_piece_tag(struct reading *r, struct span tag)
+static bool parse_piece_tag(struct reading *r, struct span tag)
 {
     r->n_points = count_of(tag, "NumberOfPoints", -1);
     r->n_cells = count_of(tag, "NumberOfCells", -1);
@@ -168,7 +168,7 @@ static int which_array(const struct reading *r, struct span tag)
     return k;
 }
 
-static bool take_array_tag(struct reading *r, struct span tag)
+static bool parse_array_tag(struct reading *r, struct span tag)
 {
     const int k = which_array(r, tag);
     struct array array = {.there = true, .type = type_of(tag), .components = count_of(tag, "NumberOfComponents", 1)};
@@ -193,7 +193,7 @@ static bool take_array_tag(struct reading *r, struct span tag)
     return true;
 }
 
-static bool take_data_tag(struct reading *r, struct span tag)
+static bool parse_data_tag(struct reading *r, struct span tag)
 {
     if (!is_value(value_of(tag, "encoding"), "raw"))
         return FAIL(r, "its data are base64; only raw appended data and text are supported (meshio: binary=False)");
@@ -214,23 +214,23 @@ static void note_section(struct reading *r, struct span tag)
             snprintf(r->section, sizeof r->section, "%s", closing ? "" : sections[i]);
 }
 
-static bool take_tag(struct reading *r, struct span tag)
+static bool parse_tag(struct reading *r, struct span tag)
 {
     note_section(r, tag);
     if (is_tag(tag, "VTKFile"))
-        return take_file_tag(r, tag);
+        return parse_file_tag(r, tag);
     if (is_tag(tag, "Piece"))
-        return take_piece_tag(r, tag);
+        return parse_piece_tag(r, tag);
     if (is_tag(tag, "DataArray"))
-        return take_array_tag(r, tag);
-    return !is_tag(tag, "AppendedData") || take_data_tag(r, tag);
+        return parse_array_tag(r, tag);
+    return !is_tag(tag, "AppendedData") || parse_data_tag(r, tag);
 }
 
 static bool read_head(struct reading *r)
 {
     struct span tag;
     while (!r->data && next_tag(&r->file, &tag))
-        if (!take_tag(r, tag))
+        if (!parse_tag(r, tag))
             return false;
     if (!r->is_vtk || r->n_pieces == 0)
         return FAIL(r, "not a VTK file of an unstructured grid (.vtu)");
@@ -262,7 +262,7 @@ static double number_at(const struct type *type, const char *at)
 }
 
 /* Reads n numbers of appended data. Returns false if they are missing. */
-static bool take_appended(const struct reading *r, const struct array *a, uint64_t n, double *out)
+static bool read_appended(const struct reading *r, const struct array *a, uint64_t n, double *out)
 {
     const uint64_t head = r->wide_sizes ? 8 : 4;
     struct tri_bytes data = {NULL, r->data, r->file.end};
@@ -279,7 +279,7 @@ static bool take_appended(const struct reading *r, const struct array *a, uint64
 }
 
 /* The same for text. */
-static bool take_text(const struct array *a, uint64_t n, double *out)
+static bool parse_text(const struct array *a, uint64_t n, double *out)
 {
     const char *at = a->text.at;
     for (uint64_t i = 0; i < n; i++) {
@@ -305,7 +305,7 @@ static bool are_finite(const double *at, uint64_t n)
 
 /* Reads the numbers of `rows` rows into an array from malloc, which belongs to the caller even after a failure. A file
  * cannot hold more numbers than bytes. */
-static bool take_array(struct reading *r, enum which k, int64_t rows, double **out)
+static bool read_array(struct reading *r, enum which k, int64_t rows, double **out)
 {
     const struct array *a = &r->array[k];
     const uint64_t n = (uint64_t)rows * (uint64_t)a->components;
@@ -314,16 +314,16 @@ static bool take_array(struct reading *r, enum which k, int64_t rows, double **o
     *out = malloc((n + 1) * sizeof **out);
     if (!*out)
         return tri_reading_no_memory(&r->to);
-    if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
+    if ((a->appended ? read_appended(r, a, n, *out) : parse_text(a, n, *out)) && are_finite(*out, n))
         return true;
     return FAIL(r, "the array %s does not have %" PRIu64 " finite numbers", name_of(k), n);
 }
 
 /* --- points */
 
-static bool take_points(struct reading *r)
+static bool read_points(struct reading *r)
 {
-    if (!take_array(r, PLACES, r->n_points, &r->to.mesh->points))
+    if (!read_array(r, PLACES, r->n_points, &r->to.mesh->points))
         return false;
     double *places = r->to.mesh->points;
     for (int64_t i = 0; i < r->n_points; i++) {
@@ -337,10 +337,10 @@ static bool take_points(struct reading *r)
 }
 
 /* Reads an array of 32-bit integers. */
-static bool take_markers(struct reading *r, enum which k, int64_t rows, int32_t **out)
+static bool read_markers(struct reading *r, enum which k, int64_t rows, int32_t **out)
 {
     double *values = NULL;
-    bool good = take_array(r, k, rows, &values);
+    bool good = read_array(r, k, rows, &values);
     *out = malloc(((size_t)rows + 1) * sizeof **out);
     good = good && (*out || tri_reading_no_memory(&r->to));
     for (int64_t i = 0; i < rows && good; i++) {
@@ -354,14 +354,14 @@ static bool take_markers(struct reading *r, enum which k, int64_t rows, int32_t 
     return good;
 }
 
-static bool take_point_data(struct reading *r)
+static bool read_point_data(struct reading *r)
 {
-    if (r->array[POINT_MARKER].there && !take_markers(r, POINT_MARKER, r->n_points, &r->to.mesh->markers))
+    if (r->array[POINT_MARKER].there && !read_markers(r, POINT_MARKER, r->n_points, &r->to.mesh->markers))
         return false;
     if (!r->array[POINT_ATTRIBUTES].there)
         return true;
     r->to.mesh->n_attributes = (int32_t)r->array[POINT_ATTRIBUTES].components;
-    return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
+    return read_array(r, POINT_ATTRIBUTES, r->n_points, &r->to.mesh->attributes);
 }
 
 /* --- cells: all arrays are converted to doubles */
@@ -427,11 +427,11 @@ static void put_cells(struct reading *r, const struct cells *c)
 }
 
 /* Moves the rows of triangles to the front, in place. */
-static bool take_cell_attributes(struct reading *r, const struct cells *c)
+static bool read_cell_attributes(struct reading *r, const struct cells *c)
 {
     const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;
     size_t t = 0;
-    if (!take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->to.elements->attributes))
+    if (!read_array(r, CELL_ATTRIBUTES, r->n_cells, &r->to.elements->attributes))
         return false;
     for (int64_t i = 0; i < r->n_cells; i++)
         if (nodes_of(c->type[i]) > 2)
@@ -441,10 +441,10 @@ static bool take_cell_attributes(struct reading *r, const struct cells *c)
     return true;
 }
 
-static bool take_segment_markers(struct reading *r, const struct cells *c)
+static bool read_segment_markers(struct reading *r, const struct cells *c)
 {
     size_t s = 0;
-    if (!take_markers(r, CELL_MARKER, r->n_cells, &r->to.mesh->segment_markers))
+    if (!read_markers(r, CELL_MARKER, r->n_cells, &r->to.mesh->segment_markers))
         return false;
     for (int64_t i = 0; i < r->n_cells; i++)
         if (nodes_of(c->type[i]) == 2)
@@ -452,18 +452,18 @@ static bool take_segment_markers(struct reading *r, const struct cells *c)
     return true;
 }
 
-static bool take_cells(struct reading *r)
+static bool read_cells(struct reading *r)
 {
     struct cells c = {.n_of_a_triangle = 3};
     int64_t triangles = 0;
-    bool good = take_array(r, TYPES, r->n_cells, &c.type) && take_array(r, OFFSETS, r->n_cells, &c.end) &&
-                check_cells(r, &c, &triangles) && take_array(r, CONNECTIVITY, c.n_nodes, &c.node) &&
+    bool good = read_array(r, TYPES, r->n_cells, &c.type) && read_array(r, OFFSETS, r->n_cells, &c.end) &&
+                check_cells(r, &c, &triangles) && read_array(r, CONNECTIVITY, c.n_nodes, &c.node) &&
                 check_nodes(r, &c) && tri_reading_triangles(&r->to, triangles, c.n_of_a_triangle) &&
                 tri_reading_segments(&r->to, r->n_cells - triangles);
     if (good)
         put_cells(r, &c);
-    good = good && (!r->array[CELL_ATTRIBUTES].there || take_cell_attributes(r, &c)) &&
-           (!r->array[CELL_MARKER].there || take_segment_markers(r, &c));
+    good = good && (!r->array[CELL_ATTRIBUTES].there || read_cell_attributes(r, &c)) &&
+           (!r->array[CELL_MARKER].there || read_segment_markers(r, &c));
     free(c.type);
     free(c.end);
     free(c.node);
@@ -475,7 +475,7 @@ enum tri_status tri_read_vtu(const char *path, struct tri_pslg *mesh, struct tri
 {
     struct reading r = {.to = {path, executor, mesh, elements, error, TRI_OK}};
     r.to.status = tri_bytes_load(&r.file, path, error);
-    (void)(!r.to.status && read_head(&r) && take_points(&r) && take_point_data(&r) && take_cells(&r));
+    (void)(!r.to.status && read_head(&r) && read_points(&r) && read_point_data(&r) && read_cells(&r));
     tri_bytes_free(&r.file);
     return r.to.status;
 }

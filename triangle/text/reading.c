@@ -63,7 +63,7 @@ static int compare(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-static bool are_in_a_row(const struct tri_tags *tags)
+static bool are_consecutive(const struct tri_tags *tags)
 {
     for (int64_t i = 1; i < tags->n; i++)
         if (tags->tag[i - 1] == INT64_MAX || tags->tag[i] != tags->tag[i - 1] + 1)
@@ -73,8 +73,8 @@ static bool are_in_a_row(const struct tri_tags *tags)
 
 bool tri_tags_order(struct tri_tags *tags, const char *what, struct tri_reading *reading)
 {
-    tags->in_a_row = are_in_a_row(tags);
-    if (tags->in_a_row)
+    tags->is_consecutive = are_consecutive(tags);
+    if (tags->is_consecutive)
         return true;
     tags->sorted = malloc((size_t)tags->n * 2 * sizeof *tags->sorted);
     if (!tags->sorted)
@@ -95,7 +95,7 @@ int64_t tri_tags_place(const struct tri_tags *tags, int64_t tag)
 {
     if (tags->n == 0)
         return -1;
-    if (tags->in_a_row) /* the differences below cannot overflow */
+    if (tags->is_consecutive) /* the differences below cannot overflow */
         return tag >= tags->tag[0] && tag <= tags->tag[tags->n - 1] ? tag - tags->tag[0] : -1;
     const int64_t *found = bsearch(&tag, tags->sorted, (size_t)tags->n, 2 * sizeof *tags->sorted, compare);
     return found ? found[1] : -1;
@@ -130,11 +130,11 @@ enum tri_status tri_bytes_load(struct tri_bytes *bytes, const char *path, struct
 {
     struct tri_file_facts facts;
     *bytes = (struct tri_bytes){0};
-    const tri_file file = tri_file_open(path, TRI_OPEN_LOOK); /* opening a pipe without a writer would block */
+    const tri_file file = tri_file_open(path, TRI_OPEN_NO_WAIT); /* opening a pipe without a writer would block */
     if (file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
     enum tri_status status = TRI_OK;
-    if (!tri_file_look(file, &facts) || facts.kind != TRI_REGULAR)
+    if (!tri_file_get_facts(file, &facts) || facts.kind != TRI_REGULAR)
         status = tri_fail(error, TRI_CANNOT_READ, path, 0, "not a regular file");
     status = status ? status : read_all(bytes, file, (size_t)facts.size, path, error);
     (void)tri_file_close(file);

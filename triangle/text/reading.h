@@ -34,7 +34,7 @@ bool tri_reading_segments(struct tri_reading *reading, int64_t n);
 struct tri_tags {
     int64_t n;       /* number of tags */
     int64_t *tag;    /* [n] tags in file order; from malloc */
-    bool in_a_row;   /* tags are consecutive, so no search is needed */
+    bool is_consecutive;   /* tags are consecutive, so no search is needed */
     int64_t *sorted; /* [n][2] otherwise: pairs of tag and position, sorted by tag */
 };
 
@@ -82,13 +82,13 @@ bool tri_bytes_pass(struct tri_bytes *bytes, const char *text);
 
 /* --- numbers; the caller has checked that they are there */
 
-static inline int32_t tri_take_i32(struct tri_bytes *bytes)
+static inline int32_t tri_bytes_i32(struct tri_bytes *bytes)
 {
     bytes->at += 4;
     return tri_get_i32(bytes->at - 4);
 }
 
-static inline uint64_t tri_take_u64(struct tri_bytes *bytes)
+static inline uint64_t tri_bytes_u64(struct tri_bytes *bytes)
 {
     bytes->at += 8;
     return tri_get_u64(bytes->at - 8);

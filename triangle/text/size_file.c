@@ -39,7 +39,7 @@ static bool is_binary_msh(const char *path)
 {
     static const char head[] = "$MeshFormat\n4.1 1";
     char bytes[sizeof head] = "";
-    const tri_file file = tri_file_open(path, TRI_OPEN_LOOK);
+    const tri_file file = tri_file_open(path, TRI_OPEN_NO_WAIT);
     const bool is = file != TRI_NO_FILE && tri_read_at(file, bytes, sizeof head - 1, 0) == (int64_t)sizeof head - 1 &&
                     memcmp(bytes, head, sizeof head - 1) == 0;
     if (file != TRI_NO_FILE)
@@ -75,7 +75,7 @@ static enum tri_status read_with(struct tri_size_file *file, struct tri_words *w
 }
 
 /* Moves the mesh into the file; the first attribute of each point is its edge length. */
-static enum tri_status take_mesh(struct tri_size_file *file, struct tri_reading *to)
+static enum tri_status move_mesh(struct tri_size_file *file, struct tri_reading *to)
 {
     struct tri_pslg *mesh = to->mesh;
     struct tri_elements *elements = to->elements;
@@ -110,7 +110,7 @@ enum tri_status tri_size_file_read(struct tri_size_file *file, const char *path,
         return tri_size_read_npy(file, path, extent, error);
     enum tri_status status = read_with(file, &words);
     if (!status && file->field.kind != TRI_SIZE_RASTER)
-        status = take_mesh(file, &words.to);
+        status = move_mesh(file, &words.to);
     tri_text_free(&words.text);
     tri_pslg_free(&mesh);
     tri_elements_free(&elements);

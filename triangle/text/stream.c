@@ -34,7 +34,7 @@ struct tri_text_stream {
 static const struct tri_tile_grid *at_item(const void *user, int64_t i)
 {
     const struct tri_tile_grid *g = user;
-    tri_grid_pass(&g->grid, i);
+    tri_grid_evict_periodically(&g->grid, i);
     return g;
 }
 
@@ -96,7 +96,7 @@ static enum tri_status begin_tile_grid(struct tri_tile_grid *g, const struct tri
 /* --- tables */
 
 /* Reserves room for the first line, assuming about `rows` rows. */
-static void keep_room(struct table *table, double rows)
+static void reserve_line(struct table *table, double rows)
 {
     char line[TRI_COUNTS_ROOM];
     if (!table->output)
@@ -128,13 +128,13 @@ static enum tri_status conclude_table(struct table *table, struct tri_error *err
     return tri_output_conclude(table->output, tri_output_write_at(table->output, table->place, line, n), error);
 }
 
-static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream *stream)
+static void reserve_lines(struct tri_text_stream *s, const struct tri_stream *stream)
 {
     const double expected[TABLES] = {stream->estimate / 2, stream->estimate, sqrt(stream->estimate)};
     const int64_t *first[TABLES] = {stream->first_vertex, stream->first_triangle, stream->first_segment};
     for (int i = 0; i < TABLES; i++) {
         const int64_t n = s->known ? first[i][stream->n_ranks] : 0;
-        keep_room(&s->table[i], s->known ? (double)n : expected[i]);
+        reserve_line(&s->table[i], s->known ? (double)n : expected[i]);
         s->table[i].counts[0] = n;
     }
 }
@@ -142,7 +142,7 @@ static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream
 /* --- the sink */
 
 /* Discards everything written so far. */
-static enum tri_status begin_again(struct tri_text_stream *s, struct tri_error *error)
+static enum tri_status restart_files(struct tri_text_stream *s, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (int i = 0; i < TABLES && !status; i++)
@@ -155,7 +155,7 @@ static enum tri_status begin_files(void *user, const struct tri_stream *stream, 
     struct tri_text_stream *s = user;
     const struct tri_text_options *o = &s->options;
     const int64_t markers = o->markers, attributes = stream->n_attributes;
-    enum tri_status status = s->rows.columns ? begin_again(s, error) : TRI_OK;
+    enum tri_status status = s->rows.columns ? restart_files(s, error) : TRI_OK;
     status = status ? status : begin_tile_grid(&s->rows, stream, o->markers, error);
     s->rows.grid.base = o->base;
     s->rows.grid.figure = o->figure;
@@ -167,7 +167,7 @@ static enum tri_status begin_files(void *user, const struct tri_stream *stream, 
         return status;
     if (o->poly)
         status = tri_write_counts(o->poly, s->table[POINTS].counts, 4, error); /* the .poly file has no points */
-    keep_room_for_all(s, stream);
+    reserve_lines(s, stream);
     return status;
 }
 
@@ -205,7 +205,7 @@ enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struc
     struct tri_output *files[] = {options->node, options->ele, options->poly};
     *stream = NULL;
     for (int i = 0; i < 3; i++)
-        if (files[i] && !tri_output_has_places(files[i]))
+        if (files[i] && !tri_output_has_offsets(files[i]))
             return tri_fail(error, TRI_CANNOT_WRITE, files[i]->path, 0,
                             "a mesh that is not in memory cannot be written to a device or pipe");
     *stream = malloc(sizeof **stream);
@@ -228,7 +228,7 @@ void tri_text_stream_free(struct tri_text_stream *stream)
  * There is one file for each kind of array. Tiles are appended, and the files are mapped at the end.
  *
  * INVARIANT: only rows read since the last eviction are in memory. Pages are evicted when a row whose number is a
- * multiple of TRI_GRID_ROUNDS is requested, because writers read all rows of a kind once, about in order. Writers that
+ * multiple of TRI_GRID_PERIOD is requested, because writers read all rows of a kind once, about in order. Writers that
  * read in a different order, or only work arrays, trigger the eviction themselves. */
 
 enum sheet { POINT_PLACES, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
@@ -243,7 +243,7 @@ struct tri_tile_store {
 
 /* --- files */
 
-static enum tri_status fail_to_keep(const struct tri_tile_store *s, struct tri_error *error)
+static enum tri_status fail_to_store(const struct tri_tile_store *s, struct tri_error *error)
 {
     return tri_fail(error, TRI_CANNOT_WRITE, s->folder, 0, "cannot keep the mesh there until it can be written: %s",
                     strerror(errno));
@@ -256,7 +256,7 @@ static bool append_sheet(struct tri_tile_store *s, enum sheet kind, const void *
 
 /* --- work arrays */
 
-static void *give_extra(void *user, size_t bytes)
+static void *new_extra(void *user, size_t bytes)
 {
     struct tri_tile_store *s = user;
     for (int k = KINDS; k < SHEETS; k++)
@@ -280,7 +280,7 @@ static void free_extra(void *user, void *extra)
             tri_mapped_file_close(&s->sheet[k]);
 }
 
-static void let_go(const void *user)
+static void evict_pages(const void *user)
 {
     const struct tri_tile_store *s = user;
     for (int k = 0; k < SHEETS; k++)
@@ -297,7 +297,7 @@ static enum tri_status begin_store(void *user, const struct tri_stream *stream, 
     return begin_tile_grid(&s->all, stream, false, error);
 }
 
-static enum tri_status keep_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
+static enum tri_status store_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_tile_store *s = user;
     struct tri_grid *all = &s->all.grid;
@@ -313,7 +313,7 @@ static enum tri_status keep_tile(void *user, const struct tri_tile *tile, struct
     all->n_points += tile->n_vertices;
     all->n_triangles += tile->n_triangles;
     all->n_segments += tile->n_segments;
-    return done ? TRI_OK : fail_to_keep(s, error);
+    return done ? TRI_OK : fail_to_store(s, error);
 }
 
 enum tri_status tri_tile_store_grid(struct tri_tile_store *s, bool markers, struct tri_grid *grid,
@@ -321,7 +321,7 @@ enum tri_status tri_tile_store_grid(struct tri_tile_store *s, bool markers, stru
 {
     for (int k = 0; k < KINDS; k++)
         if (!tri_mapped_file_map(&s->sheet[k]))
-            return fail_to_keep(s, error);
+            return fail_to_store(s, error);
     s->all.tile = (struct tri_tile){.points = s->sheet[POINT_PLACES].at, .point_markers = s->sheet[POINT_MARKERS].at,
                                     .attributes = s->sheet[ATTRIBUTES].at, .corners = s->sheet[CORNERS].at,
                                     .regions = s->sheet[REGIONS].at, .ends = s->sheet[ENDS].at,
@@ -342,11 +342,11 @@ enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *fo
     if (!s)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
     s->folder = folder;
-    s->storage = (struct tri_storage){.extra = give_extra, .extra_free = free_extra, .user = s,
-                                      .let_go = let_go};
+    s->storage = (struct tri_storage){.extra = new_extra, .extra_free = free_extra, .user = s,
+                                      .evict_pages = evict_pages};
     for (int k = 0; k < SHEETS; k++)
         s->sheet[k].file = TRI_NO_FILE;
-    *sink = (struct tri_sink){s, begin_store, keep_tile, NULL};
+    *sink = (struct tri_sink){s, begin_store, store_tile, NULL};
     return TRI_OK;
 }
 

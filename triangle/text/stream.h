@@ -16,7 +16,7 @@
 /* A tile as a grid, from which layouts write the rows of the tile. */
 struct tri_tile_grid {
     struct tri_grid grid;  /* its user is this struct, which must not move; the caller sets counts, base and storage */
-    struct tri_tile tile;  /* the current tile; its rows are requested by their numbers in the mesh */
+    struct tri_tile tile;  /* the current tile; rows are selected by their index in the whole mesh */
     double *columns;       /* [regions][grid.n_columns] from malloc; NULL: not initialised */
 };
 

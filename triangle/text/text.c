@@ -151,7 +151,7 @@ static enum tri_status read_open_file(struct tri_text *text, tri_file file, cons
                                       struct tri_error *error)
 {
     struct tri_file_facts facts;
-    if (!tri_file_look(file, &facts))
+    if (!tri_file_get_facts(file, &facts))
         return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot read", errno);
     if (facts.kind == TRI_FOLDER)
         return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "cannot read: this is a directory");
@@ -444,7 +444,7 @@ static enum tri_status grow_room(struct tri_window *w, struct tri_error *error)
 }
 
 /* Moves the window on; its text is empty at the end of the file. */
-static enum tri_status move_on(struct tri_window *w, struct tri_error *error)
+static enum tri_status advance_window(struct tri_window *w, struct tri_error *error)
 {
     size_t done = w->text.size;
     size_t lines = w->text.chunks ? w->text.chunks[w->text.n_chunks].line : 0;
@@ -478,7 +478,7 @@ enum tri_status tri_window_open(struct tri_window *w, const char *path, size_t b
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory for %zu bytes of text", bytes);
     if (w->file == TRI_NO_FILE)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
-    return move_on(w, error);
+    return advance_window(w, error);
 }
 
 void tri_window_free(struct tri_window *w)
@@ -495,7 +495,7 @@ static enum tri_status seek_record(struct tri_window *w, bool *found, struct tri
 {
     enum tri_status status = TRI_OK;
     while (!status && w->text.size > 0 && tri_cursor_remaining(&w->cursor) == 0)
-        status = move_on(w, error);
+        status = advance_window(w, error);
     *found = !status && w->text.size > 0;
     return status;
 }

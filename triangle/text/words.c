@@ -64,14 +64,14 @@ static bool fail_at_word(struct tri_words *w, const char *what, const char *wron
     return TRI_WORDS_FAIL(w, "%s: \"%.*s\" is %s", what, (int)(w->length < 40 ? w->length : 40), w->word, wrong);
 }
 
-static bool take(struct tri_words *w, const char *what)
+static bool read_word(struct tri_words *w, const char *what)
 {
     return tri_words_next(w) || TRI_WORDS_FAIL(w, "the file ends before %s", what);
 }
 
 bool tri_words_real(struct tri_words *w, const char *what, bool finite, double *value)
 {
-    if (!take(w, what))
+    if (!read_word(w, what))
         return false;
     if (tri_scan_real(w->word, w->at, value) != w->at)
         return fail_at_word(w, what, "not a number");
@@ -86,7 +86,7 @@ bool tri_words_length(struct tri_words *w, double *value)
 
 bool tri_words_whole(struct tri_words *w, const char *what, int64_t least, int64_t most, int64_t *value)
 {
-    if (!take(w, what))
+    if (!read_word(w, what))
         return false;
     if (tri_scan_integer(w->word, w->at, value) != w->at)
         return fail_at_word(w, what, "not an integer");

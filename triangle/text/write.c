@@ -76,7 +76,7 @@ static void format_chunk(struct table *table, size_t i)
 static void table_task(void *context, size_t i)
 {
     struct table *const table = context;
-    if (i < table->n_waiting && tri_output_has_places(table->output))
+    if (i < table->n_waiting && tri_output_has_offsets(table->output))
         write_chunk(table, i);
     if (i < table->n_new)
         format_chunk(table, i);
@@ -97,7 +97,7 @@ static void place_wave(struct table *table)
     int result = 0;
     for (size_t i = 0; i < table->n_new; i++) {
         table->chunks[i].place = tri_output_reserve(table->output, table->chunks[i].length);
-        if (!tri_output_has_places(table->output) && result == 0) {
+        if (!tri_output_has_offsets(table->output) && result == 0) {
             write_chunk(table, i);
             result = table->chunks[i].result;
         }

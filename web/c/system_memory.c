@@ -84,7 +84,7 @@ bool tri_file_close(tri_file file)
     return true;
 }
 
-bool tri_file_look(tri_file file, struct tri_file_facts *facts)
+bool tri_file_get_facts(tri_file file, struct tri_file_facts *facts)
 {
     const struct memory_file *f = &files[file];
     *facts = (struct tri_file_facts){.kind = f->is_open_to_write ? TRI_OTHER_FILE : TRI_REGULAR,
@@ -92,11 +92,11 @@ bool tri_file_look(tri_file file, struct tri_file_facts *facts)
     return true;
 }
 
-bool tri_path_look(const char *path, struct tri_file_facts *facts)
+bool tri_path_get_facts(const char *path, struct tri_file_facts *facts)
 {
     const int i = number_of(path);
     *facts = (struct tri_file_facts){.kind = TRI_OTHER_FILE};
-    return i < 0 || tri_file_look(i, facts);
+    return i < 0 || tri_file_get_facts(i, facts);
 }
 
 int64_t tri_read_at(tri_file file, void *at, size_t n, uint64_t place)
@@ -132,7 +132,7 @@ int64_t tri_write_next(tri_file file, const void *at, size_t n)
 bool tri_path_allows(const char *path, enum tri_access access)
 {
     errno = ENOENT;
-    return access == TRI_TAKES_FILES || access == TRI_WRITABLE || number_of(path) >= 0;
+    return access == TRI_ACCEPTS_FILES || access == TRI_WRITABLE || number_of(path) >= 0;
 }
 
 bool tri_path_remove(const char *path)
@@ -160,10 +160,10 @@ static bool refuse(void)
     return false;
 }
 
-bool tri_file_permit(tri_file file, const struct tri_file_facts *as) { return (void)file, (void)as, refuse(); }
+bool tri_file_set_permissions(tri_file file, const struct tri_file_facts *as) { return (void)file, (void)as, refuse(); }
 bool tri_file_sync(tri_file file) { return (void)file, true; }
-void tri_file_send_off(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
-void tri_file_await(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
+void tri_file_start_sync(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
+void tri_file_finish_sync(tri_file file, uint64_t place, uint64_t n) { (void)file, (void)place, (void)n; }
 enum tri_lock tri_file_lock(tri_file file) { return (void)file, TRI_NO_LOCKS; }
 
 int64_t tri_write_some(tri_file file, const void *at, size_t n, uint64_t place)
@@ -176,7 +176,7 @@ bool tri_path_link(const char *path, const char *second) { return (void)path, (v
 char *tri_path_resolve(const char *path) { return (void)path, refuse(), NULL; }
 
 tri_file tri_folder_open(const char *path, bool make) { return (void)path, (void)make, refuse(), TRI_NO_FILE; }
-bool tri_folder_drop(tri_file folder, const char *name) { return (void)folder, (void)name, refuse(); }
+bool tri_folder_unlink(tri_file folder, const char *name) { return (void)folder, (void)name, refuse(); }
 
 tri_file tri_folder_file(tri_file folder, const char *name, enum tri_folder_opening opening)
 {
