@@ -33,7 +33,7 @@ done
 
 # The checker uses nothing of the mesher except predicates, the order of a sweep line, files without a name and, in the
 # public interface, the checks of arrays.
-foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|order_[a-z]+|scratch_file|file_close|read_again|write_at|(orient2d|dot|incircle|in_circle)_near|api_(figure|struct)_[a-z]+)$')
+foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|order_[a-z]+|scratch_file|file_close|read_back|write_at|(orient2d|dot|incircle|in_circle)_near|api_(figure|struct)_[a-z]+)$')
 [ -z "$foreign" ] || { echo "symbols: the checker uses" $foreign; failed=1; }
 
 # The members that define triangulate define the same names, so that no member of the other library is needed as well.
