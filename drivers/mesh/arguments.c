@@ -160,7 +160,8 @@ static const char *const paragraphs[] = {
     "  --min-size H, --max-size H\n"
     "          raise shorter lengths to H, or reduce longer ones to H. --max-size alone applies everywhere\n"
     "  --optimise N\n"
-    "          run N passes of smoothing, which move new vertices inside regions to improve the triangles\n"
+    "          run N passes of smoothing, which move new vertices inside regions to improve the triangles;\n"
+    "          from the second pass on edges are flipped as well. A resumed run starts the passes again\n"
     "          (default: 1 with lengths, otherwise 0). Cannot be combined with -a, -D or -S\n",
 
     "Output\n"

@@ -292,7 +292,7 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? too_small(sure, &needed) : NULL;
     if (place)
         return tri_fail(run->error, TRI_CANNOT_WRITE, place->path, 0,
-                        "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
+                        "the bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
                         "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
                         tri_size_text(needed).text, tri_size_text(tri_disk_left(place->path)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? too_small(likely, &needed) : NULL;

@@ -232,7 +232,8 @@ struct tri_settings {
     double elements_across; /* > 0: fit this number of edge lengths between boundaries, or borders of regions, that face
                                each other, such as channels and walls */
     double per_circle;  /* > 0: on curved boundaries, fit this number of lengths around a circle of that curvature */
-    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions. 0: one if
+    int optimise;       /* passes of smoothing, at most 1000, which move new points inside regions and, from the
+                           second pass on, flip edges to improve the triangles. 0: one if
                            edge lengths are requested, otherwise none; < 0: none. Not with max_area, areas of regions,
                            unsuitable, conforming, most_new_points, a gate or a fence */
 };

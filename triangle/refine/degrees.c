@@ -139,49 +139,39 @@ static bool flips_well(const struct tri_smooth *s, struct tri_flips *flips, tri_
     return false;
 }
 
-/* Flips the first edge at the vertex for which that is better. */
-static bool flip_one(const struct tri_smooth *s, struct tri_flips *flips, tri_vertex_id v, const struct tri_star *star)
+/* Flips the first edge at the vertex for which that is better; *p is its patch. Returns false if there is none. */
+static bool flip_one(const struct tri_smooth *s, struct tri_flips *flips, tri_vertex_id v, const struct tri_star *star,
+                     struct patch *p)
 {
     const struct tri_point at = s->mesh->xy[v];
     for (int i = 0; i < star->n; i++) {
         const int l = (i + star->n - 1) % star->n, r = (i + 1) % star->n;
         const tri_triangle_id t = star->triangle[i];
-        struct patch p = {.v = {v, star->id[i], star->id[l], star->id[r]}};
-        if (gain_of(s, p.v, p.v + 2) > 0 && tri_orient2d(star->rim[r], at, star->rim[l]) > 0 &&
+        *p = (struct patch){.v = {v, star->id[i], star->id[l], star->id[r]}};
+        if (gain_of(s, p->v, p->v + 2) > 0 && tri_orient2d(star->rim[r], at, star->rim[l]) > 0 &&
             tri_orient2d(star->rim[r], star->rim[l], star->rim[i]) > 0 &&
-            flips_well(s, flips, t, tri_corner_of(&s->mesh->tri[t], star->id[r]), &p))
+            flips_well(s, flips, t, tri_corner_of(&s->mesh->tri[t], star->id[r]), p))
             return true;
     }
     return false;
 }
 
-static bool has_one_region(const struct tri_mesh *mesh, const struct tri_star *star)
+/* Pushes the triangles around the corners of the patch, which may have moved, for Lawson's flips. */
+static bool touch_around(const struct tri_smooth *s, struct tri_flips *flips, const struct patch *p)
 {
-    for (int i = 1; i < star->n; i++)
-        if (mesh->tri[star->triangle[i]].region != mesh->tri[star->triangle[0]].region)
-            return false;
-    return true;
-}
-
-/* Pushes the triangles around a vertex and around its neighbours, which may have moved, for Lawson's flips. */
-static bool touch_around(const struct tri_smooth *s, struct tri_flips *flips, tri_vertex_id v)
-{
-    struct tri_star around, star;
+    struct tri_star star;
     bool is_here, room = true;
-    if (!tri_star_find(s, v, flips->block, &around, &is_here))
-        return true;
-    for (int i = 0; room && i < around.n; i++) {
-        room = tri_flip_touch(flips, around.triangle[i]);
-        if (tri_star_find(s, around.id[i], flips->block, &star, &is_here))
-            for (int k = 0; room && k < star.n; k++)
-                room = tri_flip_touch(flips, star.triangle[k]);
-    }
+    for (int k = 0; k < 4; k++)
+        if (p->moves[k] && tri_star_find(s, p->v[k], flips->block, &star, &is_here))
+            for (int i = 0; room && i < star.n; i++)
+                room = tri_flip_touch(flips, star.triangle[i]);
     return room;
 }
 
 bool tri_degrees_improve(const struct tri_smooth *s, struct tri_flips *flips, tri_vertex_id v,
                          const struct tri_star *star)
 {
-    const bool changed = star->n > s->ideal[v] && has_one_region(s->mesh, star) && flip_one(s, flips, v, star);
-    return !changed || (touch_around(s, flips, v) && tri_flip_legalise(flips));
+    struct patch patch;
+    const bool changed = star->n > s->ideal[v] && flip_one(s, flips, v, star, &patch);
+    return !changed || (touch_around(s, flips, &patch) && tri_flip_legalise(flips));
 }

@@ -21,7 +21,8 @@ bool tri_star_find(const struct tri_smooth *r, tri_vertex_id v, int32_t block, s
         if (!*is_here)
             return false;
         const tri_link out = at->n[k], on = at->n[tri_next[k]];
-        if (s->n == TRI_MOST_RIM || on < 0 || (out >= 0 && mesh->tri[tri_of(out)].region != at->region))
+        if (s->n == TRI_MOST_RIM || on < 0 || at->region != mesh->tri[first].region ||
+            (out >= 0 && mesh->tri[tri_of(out)].region != at->region))
             return false;
         s->triangle[s->n] = t;
         s->id[s->n] = q;

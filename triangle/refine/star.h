@@ -39,7 +39,7 @@ struct tri_worth {
     int n_bad;    /* triangles with an angle below the bound */
 };
 
-/* Collects the star of a vertex. Returns false if the vertex must not move: it touches a subsegment, another region, or
+/* Collects the star of a vertex. Returns false if the vertex must not move: it touches a subsegment, two regions, or
  * too many triangles. Also returns false, with *is_here false, if a vertex of the star belongs to another block. */
 bool tri_star_find(const struct tri_smooth *smooth, tri_vertex_id v, int32_t block, struct tri_star *star,
                    bool *is_here);
