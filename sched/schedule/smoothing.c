@@ -19,7 +19,6 @@ struct smoothing {
     struct par_deal deal;      /* counts and places, with blocks of the phase as tiles */
     struct tri_smooth_count *count; /* [blocks] how many vertices each block moved and left */
     enum tri_status *status;   /* [blocks] result of each block */
-    int32_t *home;             /* [n_vertices] the block of each vertex in this phase */
     int64_t moved;             /* vertices moved so far in this pass */
 };
 
@@ -103,22 +102,14 @@ static enum tri_status smooth_phase(struct smoothing *s, struct tri_error *error
  * call. */
 static enum tri_status smooth_pass(struct smoothing *s, enum tri_smooth_pass pass, struct tri_error *error)
 {
-    const struct tri_mesh *mesh = s->run->mesh;
     enum tri_status status = TRI_OK;
     struct tri_smooth_count last = {0};
-    s->n = 0;
     s->moved = 0;
     s->pass = pass;
-    s->smooth->home = s->home;
-    /* List the movable vertices in ascending order. The mesh has been numbered, so this order depends on the mesh
-     * alone. */
-    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
-        if (tri_is_movable(mesh, v))
-            s->vertex[s->n++] = v;
+    s->n = tri_list_movable(s->run->mesh, s->vertex); /* the mesh has been numbered: this order depends on it alone */
     for (s->phase = 0; !status && s->phase < PAR_PHASES; s->phase++)
         status = smooth_phase(s, error);
-    s->smooth->home = NULL; /* remaining vertices in one sequential call */
-    status = status ? status : tri_smooth_some(s->smooth, pass, s->vertex, s->n, 0, &last, error);
+    status = status ? status : tri_smooth_some(s->smooth, pass, s->vertex, s->n, -1, &last, error);
     s->moved += last.moved;
     return status;
 }
@@ -130,15 +121,17 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     const size_t list = ((size_t)mesh->n_vertices + 1) * sizeof(tri_vertex_id);
     const size_t blocks = (size_t)par_blocks(&run->cells);
     struct smoothing s = {.run = run, .vertex = tri_mesh_extra(mesh, list), .dealt = tri_mesh_extra(mesh, list),
-                          .home = tri_mesh_extra(mesh, list),
                           .count = malloc(blocks * sizeof *s.count), .status = malloc(blocks * sizeof *s.status),
                           .moved = 1};
     /* The lists are as large as the mesh, so they are kept with it, in memory or in files. */
-    enum tri_status status = s.vertex && s.dealt && s.home && s.count && s.status
+    int32_t *home = tri_mesh_extra(mesh, list);
+    enum tri_status status = s.vertex && s.dealt && home && s.count && s.status
                                  ? tri_smooth_new(&s.smooth, mesh, run->asked.quality, error)
                                  : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
+    if (!status)
+        s.smooth->home = home;
     for (int pass = 0; !status && s.moved > 0 && pass < run->asked.quality->passes; pass++) {
-        if (tri_flips_degrees(run->asked.quality, pass))
+        if (pass > 0)
             status = smooth_pass(&s, TRI_SMOOTH_FLIP, error);
         status = status ? status : smooth_pass(&s, TRI_SMOOTH_MOVE, error);
     }
@@ -146,7 +139,7 @@ static enum tri_status smooth_by_blocks(struct par_run *run, struct tri_error *e
     tri_smooth_free(s.smooth);
     tri_mesh_extra_free(mesh, s.vertex);
     tri_mesh_extra_free(mesh, s.dealt);
-    tri_mesh_extra_free(mesh, s.home);
+    tri_mesh_extra_free(mesh, home);
     free(s.count);
     free(s.status);
     return status;

@@ -9,7 +9,6 @@
  * counter-clockwise (exactly). Fixed vertices stay; no subsegment and no border of regions is crossed. */
 #include "triangle/refine/degrees.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "triangle/geometry/predicates.h"
@@ -109,8 +108,7 @@ static void settle(const struct tri_smooth *s, int32_t block, struct patch *p)
             struct tri_star star;
             bool is_here;
             if (p->moves[k] && tri_star_find(s, p->v[k], block, &star, &is_here) &&
-                tri_star_find_place(s, &star, TRI_MOST_RIM, &x) &&
-                tri_star_is_oriented(&star, x))
+                tri_star_find_place(s, &star, TRI_MOST_RIM, &x) && tri_star_is_oriented(&star, x))
                 s->mesh->xy[p->v[k]] = x;
         }
 }
@@ -160,12 +158,11 @@ static bool flip_one(const struct tri_smooth *s, struct tri_flips *flips, tri_ve
 static bool touch_around(const struct tri_smooth *s, struct tri_flips *flips, const struct patch *p)
 {
     struct tri_star star;
-    bool is_here, room = true;
+    bool is_here;
     for (int k = 0; k < 4; k++)
-        if (p->moves[k] && tri_star_find(s, p->v[k], flips->block, &star, &is_here))
-            for (int i = 0; room && i < star.n; i++)
-                room = tri_flip_touch(flips, star.triangle[i]);
-    return room;
+        if (p->moves[k] && tri_star_find(s, p->v[k], flips->block, &star, &is_here) && !tri_star_touch(&star, flips))
+            return false;
+    return true;
 }
 
 bool tri_degrees_improve(const struct tri_smooth *s, struct tri_flips *flips, tri_vertex_id v,

@@ -37,7 +37,7 @@ enum tri_status tri_smooth_new(struct tri_smooth **smooth, struct tri_mesh *mesh
 {
     struct tri_smooth *r = malloc(sizeof *r);
     const size_t n = (size_t)mesh->n_vertices + 1;
-    const bool flips = tri_flips_degrees(quality, 1);
+    const bool flips = quality->passes > 1;
     bool room = r != NULL;
     if (room) {
         *r = (struct tri_smooth){mesh, tri_bounds_of(quality, tri_worked_angle(quality)).sin2, NULL,
@@ -65,52 +65,40 @@ void tri_smooth_free(struct tri_smooth *smooth)
     free(smooth);
 }
 
-bool tri_flips_degrees(const struct tri_quality *quality, int pass) { return quality->passes > 1 && pass > 0; }
-
-/* Smooths one vertex and counts the outcome. Returns false if memory ran out. */
-static bool smooth_one(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here,
-                       struct tri_smooth_count *count)
+/* Moves one vertex to a better place and counts the move. Returns false if memory ran out. */
+static bool move_vertex(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v,
+                        const struct tri_star *star, struct tri_smooth_count *count)
 {
-    struct tri_star s;
-    if (!tri_star_find(r, v, flips->block, &s, is_here))
-        return true;
     struct tri_point x = r->mesh->xy[v];
-    if (!tri_star_find_place(r, &s, 0, &x) || !tri_star_is_oriented(&s, x))
+    if (!tri_star_find_place(r, star, 0, &x) || !tri_star_is_oriented(star, x))
         return true;
     r->mesh->xy[v] = x;
     count->moved++;
-    for (int i = 0; i < s.n; i++)
-        if (!tri_flip_touch(flips, s.triangle[i]))
-            return false;
-    return tri_flip_legalise(flips);
-}
-
-/* Improves the degrees around one vertex. Returns false if memory ran out. */
-static bool flip_at(const struct tri_smooth *r, struct tri_flips *flips, tri_vertex_id v, bool *is_here)
-{
-    struct tri_star star;
-    return !tri_star_find(r, v, flips->block, &star, is_here) || tri_degrees_improve(r, flips, v, &star);
+    return tri_star_touch(star, flips) && tri_flip_legalise(flips);
 }
 
 enum tri_status tri_smooth_some(struct tri_smooth *r, enum tri_smooth_pass pass, tri_vertex_id *vertex, int32_t n,
-                                int32_t block, struct tri_smooth_count *count,
-                                struct tri_error *error)
+                                int32_t block, struct tri_smooth_count *count, struct tri_error *error)
 {
     struct tri_flips flips = {.mesh = r->mesh, .corner = r->corner, .degree = r->degree, .ties_stay = true,
-                              .home = r->home, .block = block};
+                              .home = block < 0 ? NULL : r->home, .block = block};
     enum tri_status status = TRI_OK;
     uint32_t step = 0;
     *count = (struct tri_smooth_count){0};
     for (int32_t i = 0; !status && i < n; i++) {
-        bool is_here;
-        assert(tri_is_movable(r->mesh, vertex[i]));
+        const tri_vertex_id v = vertex[i];
+        struct tri_star star;
+        bool is_here, room = true;
+        assert(tri_is_movable(r->mesh, v));
         if (tri_stop_is_due(r->mesh->stop, &step))
             status = tri_fail_stopped(error);
-        else if (!(pass == TRI_SMOOTH_MOVE ? smooth_one(r, &flips, vertex[i], &is_here, count)
-                                           : flip_at(r, &flips, vertex[i], &is_here)))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+        else if (tri_star_find(r, v, block, &star, &is_here))
+            room = pass == TRI_SMOOTH_MOVE ? move_vertex(r, &flips, v, &star, count)
+                                           : tri_degrees_improve(r, &flips, v, &star);
         else if (!is_here)
-            vertex[count->left++] = vertex[i];
+            vertex[count->left++] = v;
+        if (!room)
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
     }
     tri_flips_free(&flips);
     return status;
@@ -121,7 +109,7 @@ enum tri_status tri_smooth_end(struct tri_smooth *r, const struct tri_executor *
     return tri_flip_to_delaunay(r->mesh, executor, error);
 }
 
-static int32_t list_movable(const struct tri_mesh *mesh, tri_vertex_id *vertex)
+int32_t tri_list_movable(const struct tri_mesh *mesh, tri_vertex_id *vertex)
 {
     int32_t n = 0;
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
@@ -138,10 +126,10 @@ enum tri_status tri_smooth_all(struct tri_mesh *mesh, const struct tri_quality *
                                     : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for smoothing");
     struct tri_smooth_count count = {.moved = 1};
     for (int pass = 0; !status && count.moved > 0 && pass < quality->passes; pass++) {
-        if (tri_flips_degrees(quality, pass))
-            status = tri_smooth_some(r, TRI_SMOOTH_FLIP, vertex, list_movable(mesh, vertex), 0, &count, error);
+        if (pass > 0)
+            status = tri_smooth_some(r, TRI_SMOOTH_FLIP, vertex, tri_list_movable(mesh, vertex), -1, &count, error);
         if (!status)
-            status = tri_smooth_some(r, TRI_SMOOTH_MOVE, vertex, list_movable(mesh, vertex), 0, &count, error);
+            status = tri_smooth_some(r, TRI_SMOOTH_MOVE, vertex, tri_list_movable(mesh, vertex), -1, &count, error);
     }
     status = status ? status : tri_smooth_end(r, NULL, error);
     tri_smooth_free(r);

@@ -23,16 +23,13 @@ struct tri_smooth_count {
 
 enum tri_smooth_pass {
     TRI_SMOOTH_MOVE, /* moves vertices to better places */
-    TRI_SMOOTH_FLIP  /* flips edges to bring degrees near six (degrees.h) */
+    TRI_SMOOTH_FLIP  /* flips edges to bring degrees near six (degrees.h); before each pass of moves but the first */
 };
-
-/* Does a pass of flips come before this pass of moves (0, 1, ..)? */
-bool tri_flips_degrees(const struct tri_quality *quality, int pass);
 
 /* Treats n vertices in the given order, and flips the edges around them until they are Delaunay. On return, vertex[]
  * starts with the count->left vertices left for later. A call changes only vertices of this block, and flips only edges
- * whose four corners belong to it (smooth->home), so calls for different blocks may run at the same time. After
- * TRI_NO_MEMORY or TRI_STOPPED the mesh is valid. */
+ * whose four corners belong to it (smooth->home), so calls for different blocks may run at the same time. block < 0:
+ * there is no limit. After TRI_NO_MEMORY or TRI_STOPPED the mesh is valid. */
 enum tri_status tri_smooth_some(struct tri_smooth *smooth, enum tri_smooth_pass pass, tri_vertex_id *vertex, int32_t n,
                                 int32_t block, struct tri_smooth_count *count, struct tri_error *error);
 
@@ -44,6 +41,9 @@ static inline bool tri_is_movable(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     return mesh->on[v] == TRI_VERTEX_FREE;
 }
+
+/* Lists the vertices that may be moved, in ascending order; vertex[] has room for all. Returns how many there are. */
+int32_t tri_list_movable(const struct tri_mesh *mesh, tri_vertex_id *vertex);
 
 /* Smooths all vertices of a mesh, in at most quality->passes passes or until no vertex moves. */
 enum tri_status tri_smooth_all(struct tri_mesh *mesh, const struct tri_quality *quality, struct tri_error *error);

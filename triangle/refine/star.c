@@ -3,12 +3,11 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/tunables.h"
 
-bool tri_star_find(const struct tri_smooth *r, tri_vertex_id v, int32_t block, struct tri_star *s,
-                   bool *is_here)
+bool tri_star_find(const struct tri_smooth *r, tri_vertex_id v, int32_t block, struct tri_star *s, bool *is_here)
 {
     const struct tri_mesh *mesh = r->mesh;
     const tri_triangle_id first = r->corner[v];
-    *is_here = !r->home || r->home[v] == block;
+    *is_here = block < 0 || r->home[v] == block;
     s->n = 0;
     if (first == TRI_NONE || !*is_here)
         return false;
@@ -17,7 +16,7 @@ bool tri_star_find(const struct tri_smooth *r, tri_vertex_id v, int32_t block, s
         const struct tri_triangle *at = &mesh->tri[t];
         const int k = tri_corner_of(at, v);
         const tri_vertex_id q = at->v[tri_next[k]];
-        *is_here = !r->home || r->home[q] == block;
+        *is_here = block < 0 || r->home[q] == block;
         if (!*is_here)
             return false;
         const tri_link out = at->n[k], on = at->n[tri_next[k]];
@@ -30,6 +29,14 @@ bool tri_star_find(const struct tri_smooth *r, tri_vertex_id v, int32_t block, s
         t = tri_of(on);
     } while (t != first);
     s->rim[s->n] = s->rim[0];
+    return true;
+}
+
+bool tri_star_touch(const struct tri_star *s, struct tri_flips *flips)
+{
+    for (int i = 0; i < s->n; i++)
+        if (!tri_flip_touch(flips, s->triangle[i]))
+            return false;
     return true;
 }
 

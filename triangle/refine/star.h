@@ -10,13 +10,14 @@
 #ifndef TRIANGLE_REFINE_STAR_H
 #define TRIANGLE_REFINE_STAR_H
 
+#include "triangle/cdt/flip.h"
 #include "triangle/mesh/mesh.h"
 
 /* The state of smoothing, shared by its passes (smooth.h, degrees.h). */
 struct tri_smooth {
     struct tri_mesh *mesh;   /* borrowed */
     double sin2;             /* squared sine of the angle bound */
-    int32_t *home;           /* [n_vertices] the block of each vertex; borrowed; NULL: there are no blocks */
+    int32_t *home;           /* [n_vertices] the block of each vertex; owned by the schedule; NULL: no blocks */
     tri_triangle_id *corner; /* [n_vertices] a triangle that has the vertex as a corner; TRI_NONE: none */
     int32_t *degree;         /* [n_vertices] triangles at the vertex; NULL: no pass improves degrees */
     int32_t *ideal;          /* [n_vertices] the best degree: one triangle per 60 degrees; NULL with degree */
@@ -40,9 +41,13 @@ struct tri_worth {
 };
 
 /* Collects the star of a vertex. Returns false if the vertex must not move: it touches a subsegment, two regions, or
- * too many triangles. Also returns false, with *is_here false, if a vertex of the star belongs to another block. */
+ * too many triangles. Also returns false, with *is_here false, if a vertex of the star belongs to another block; block
+ * < 0: there is no limit. */
 bool tri_star_find(const struct tri_smooth *smooth, tri_vertex_id v, int32_t block, struct tri_star *star,
                    bool *is_here);
+
+/* Pushes the triangles of a star to be tested by Lawson's flips. Returns false if out of memory. */
+bool tri_star_touch(const struct tri_star *star, struct tri_flips *flips);
 
 /* Evaluates the star with its vertex at x. */
 struct tri_worth tri_star_worth(const struct tri_smooth *smooth, const struct tri_star *star, struct tri_point x);
