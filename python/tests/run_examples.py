@@ -1,7 +1,7 @@
-"""Runs the examples of a document as they are written, one after the other, in a folder where `data` is that of the
-repository: blocks ```python in this process, and blocks whose first line names a file (```text plate.poly) are written
-to that file. If a block ```text follows a block ```python, each of its lines must occur in what the example prints, in
-this order, except lines `...`.
+"""Runs the examples of a document as they are written, one after the other, in a folder that holds the figures of the
+repository's `data` and a link to it: blocks ```python in this process, and blocks whose first line names a file
+(```text plate.poly) are written to that file. If a block ```text follows a block ```python, each of its lines must
+occur in what the example prints, in this order, except lines `...`.
 
 Usage: run_examples.py DOCUMENT FOLDER     an example whose module cannot be imported is skipped, with a line
 """
@@ -9,6 +9,7 @@ import contextlib
 import io
 import os
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -56,9 +57,12 @@ if __name__ == "__main__":
     document = Path(sys.argv[1]).resolve()
     os.makedirs(sys.argv[2], exist_ok=True)
     os.chdir(sys.argv[2])
+    root = document.parent if (document.parent / "data").exists() else document.parent.parent
     if not os.path.exists("data"):
-        root = document.parent if (document.parent / "data").exists() else document.parent.parent
         os.symlink(root / "data", "data")
+    for figure in (root / "data").glob("*.poly"):
+        if not os.path.exists(figure.name):
+            shutil.copy(figure, ".")
     n_run, skipped = run(document)
     print("%s: %d examples run as they are written, %d skipped" % (document.name, n_run, len(skipped)))
     for text in skipped:
