@@ -35,9 +35,6 @@
 #define PAR_LEAST_RANGE 64
 /* Minimum share of the new points that lie on segments. Guess. */
 #define PAR_LEAST_ON_SEGMENTS 0.125
-/* Runs of free ids shorter than this are discarded after a column is finished, because a run takes the space of two
- * ids. Guess. */
-#define PAR_SHORTEST_RUN 8
 
 /* --- memory */
 

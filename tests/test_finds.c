@@ -1,4 +1,4 @@
-/* Lists of ids that shares have found, row by row, compared with a naive list; and runs of ids. */
+/* Lists of ids that shares have found, row by row, compared with a naive list; and ranges of free ids. */
 #include "sched/tiles/finds.h"
 
 #include <setjmp.h>
@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include <cmocka.h>
+
+#include "sched/tunables.h"
 
 enum { IDS = 5000, ROWS = 7, EMPTY_ROW = 4 };
 
@@ -63,29 +65,49 @@ static void test_rows_equal_naive_lists(void **state)
     par_finds_free(&finds);
 }
 
-/* Ids 0 .. 7, 20 .. 22, 30 .. 39: the second run is too short and is discarded. */
-static void test_runs(void **state)
+static bool is_free(int32_t id) { return row_of(id) < 0 || (id >= 1000 && id < 1400); }
+static bool is_removed(int32_t id) { return id % 500 < 100 || id % 7 == 2; }
+
+/* Each id that a search met as free, or that was removed afterwards, is in exactly one range. Long ranges are last. */
+static void test_gaps_have_all_free_ids(void **state)
 {
     (void)state;
-    struct par_ids list = {0};
+    static int32_t times[IDS];
+    struct par_finds finds;
     struct par_ranges ranges = {0};
-    for (int32_t id = 0; id < 40; id++)
-        if (id < 8 || (id >= 20 && id < 23) || id >= 30)
-            assert_true(par_ids_add(&list, id));
-    par_finds_to_runs(&list);
-    assert_true(par_finds_add_runs(&list, &ranges));
-    assert_int_equal(ranges.n, 2);
-    assert_true(ranges.item[0].next == 0 && ranges.item[0].end == 8);
-    assert_true(ranges.item[1].next == 30 && ranges.item[1].end == 40);
-    free(list.item);
+    memset(times, 0, sizeof times);
+    assert_true(par_finds_begin(&finds, ROWS));
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++) {
+        struct par_finder finder = par_finder_of(&finds, share);
+        struct par_ids removed = {0};
+        const struct tri_range range = par_finds_share(share, IDS);
+        for (int32_t id = range.first; id < range.last; id++)
+            if (is_free(id))
+                par_find_gap(&finder, id);
+            else if (is_removed(id))
+                assert_true(par_ids_add(&removed, id));
+        assert_true(par_finder_end(&finder) && par_finds_add_gaps(&finds, share, &removed));
+        free(removed.item);
+    }
+    assert_true(par_finds_give(&finds, &ranges));
+    for (int32_t i = 0, longest = 0; i < ranges.n; i++) {
+        const int32_t length = ranges.item[i].end - ranges.item[i].next;
+        assert_true(length > 0 && (length >= PAR_LEAST_RANGE || longest < PAR_LEAST_RANGE));
+        longest = length > longest ? length : longest;
+        for (int32_t id = ranges.item[i].next; id < ranges.item[i].end; id++)
+            times[id]++;
+    }
+    for (int32_t id = 0; id < IDS; id++)
+        assert_int_equal(times[id], is_free(id) || is_removed(id));
     free(ranges.item);
+    par_finds_free(&finds);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows_equal_naive_lists),
-        cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_gaps_have_all_free_ids),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -296,19 +296,21 @@ struct marking {
     enum par_kind kind;            /* of the items */
 };
 
-/* A task: marks the places of one gap. */
-static void mark_gap(void *context, size_t gap)
+/* A task: marks the places of one share of the gaps. */
+static void mark_share(void *context, size_t share)
 {
     const struct marking *m = context;
-    for (int32_t at = m->gaps->item[gap].next; at < m->gaps->item[gap].end; at++)
-        mark_free(m->mesh, m->kind, at);
+    const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, m->gaps->n);
+    for (int32_t gap = range.first; gap < range.last; gap++)
+        for (int32_t at = m->gaps->item[gap].next; at < m->gaps->item[gap].end; at++)
+            mark_free(m->mesh, m->kind, at);
 }
 
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
 {
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         struct marking marking = {&spare->ranges[kind], shared, kind};
-        tri_execute(executor, (size_t)spare->ranges[kind].n, mark_gap, &marking);
+        tri_execute(executor, TRI_MOST_SHARES, mark_share, &marking);
     }
 }
 

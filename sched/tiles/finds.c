@@ -23,6 +23,7 @@ void par_finds_forget(struct par_finds *finds)
         free(finds->found[s].item);
         free(finds->notes[s].item);
         free(finds->runs[s].item);
+        free(finds->gaps[s].item);
     }
     free(finds->count);
     free(finds->item);
@@ -71,36 +72,36 @@ bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor
     return true;
 }
 
-void par_finds_to_runs(struct par_ids *list)
+bool par_finds_add_gaps(struct par_finds *finds, size_t share, const struct par_ids *list)
 {
-    int32_t n = 0;
-    for (int32_t i = 0, first = 0; i < list->n; i++) {
+    struct par_ranges *to = &finds->gaps[share];
+    bool memory = true;
+    for (int32_t i = 0, first = 0; memory && i < list->n; i++) {
         if (i + 1 < list->n && list->item[i + 1] == list->item[i] + 1)
             continue;
-        if (i + 1 - first >= PAR_SHORTEST_RUN) {
-            int32_t begin = list->item[first], end = list->item[i] + 1;
-            assert(n + 2 <= i + 1);
-            list->item[n++] = begin;
-            list->item[n++] = end;
-        }
+        memory = par_ranges_reserve(to, to->n + 1);
+        if (memory)
+            to->item[to->n++] = (struct par_range){list->item[first], list->item[i] + 1};
         first = i + 1;
     }
-    list->n = n;
-}
-
-bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to)
-{
-    if (!par_ranges_reserve(to, to->n + to->dealt + runs->n / 2))
-        return false;
-    for (int32_t i = 0; i < runs->n; i += 2)
-        to->item[to->n++] = (struct par_range){runs->item[i], runs->item[i + 1]};
-    return true;
+    return memory;
 }
 
 bool par_finds_give(const struct par_finds *finds, struct par_ranges *to)
 {
-    bool memory = true;
-    for (int s = 0; memory && s < PAR_FIND_SHARES; s++)
-        memory = par_finds_add_runs(&finds->found[s], to);
-    return memory;
+    int32_t n = 0;
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        n += finds->gaps[s].n;
+    assert(to->dealt == 0);
+    if (!par_ranges_reserve(to, n))
+        return false;
+    to->n = 0;
+    for (int is_long = 0; is_long < 2; is_long++) /* the last ranges are dealt first, and long ones are faster */
+        for (int s = 0; s < PAR_FIND_SHARES; s++)
+            for (int32_t i = 0; i < finds->gaps[s].n; i++) {
+                const struct par_range gap = finds->gaps[s].item[i];
+                if (is_long == (gap.end - gap.next >= PAR_LEAST_RANGE))
+                    to->item[to->n++] = gap;
+            }
+    return true;
 }

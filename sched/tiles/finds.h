@@ -1,7 +1,8 @@
 /* Finds the vertices, triangles or subsegments of a column of tiles in parallel.
  *
  * Each task searches one share of the mesh and collects ids in ascending order, optionally with a number (a note) for
- * each. The ids are then sorted by tile. After their tiles have been handed out, they become ranges of free ids. */
+ * each. The ids are then sorted by tile. After their tiles have been handed out, they become ranges of free ids. The
+ * task also lists the free ids that it meets, so that free ids of several columns join into long ranges. */
 #ifndef SCHED_TILES_FINDS_H
 #define SCHED_TILES_FINDS_H
 
@@ -27,6 +28,7 @@ struct par_finds {
     struct par_ids found[PAR_FIND_SHARES]; /* ids found by each share, ascending */
     struct par_ids notes[PAR_FIND_SHARES]; /* the note of each id in `found`; empty: the ids have no notes */
     struct par_runs runs[PAR_FIND_SHARES]; /* the rows of the ids in `found` */
+    struct par_ranges gaps[PAR_FIND_SHARES]; /* ranges of free ids that each share met */
     int32_t n_rows; /* tiles of the column */
     int32_t *count; /* [shares][n_rows] ids that a share found in a row; in par_finds_deal: the next index in `item` */
     int32_t *item;  /* [n] all ids, row by row, ascending in each row; NULL: not sorted yet */
@@ -56,6 +58,8 @@ struct par_finder {
     struct par_ids notes;    /* the note of each id; empty: the ids have no notes */
     struct par_runs runs;    /* completed spans of `list` */
     struct par_span last;    /* the current span, which is not yet in `runs`; n 0: there is none */
+    struct par_ranges gaps;  /* completed ranges of free ids */
+    struct par_range gap;    /* the current range of free ids, which is not yet in `gaps`; empty: there is none */
     bool no_memory;          /* an allocation has failed */
 };
 
@@ -104,10 +108,33 @@ static inline void par_find_noted(struct par_finder *f, int32_t item, int32_t ro
     par_finder_add(f, &f->notes, note);
 }
 
+/* Completes the current range of free ids. */
+static inline void par_finder_close_gap(struct par_finder *f)
+{
+    if (f->gap.next == f->gap.end)
+        return;
+    if (par_ranges_reserve(&f->gaps, f->gaps.n + 1))
+        f->gaps.item[f->gaps.n++] = f->gap;
+    else
+        f->no_memory = true;
+}
+
+/* Adds a free id. */
+static inline void par_find_gap(struct par_finder *f, int32_t item)
+{
+    if (item != f->gap.end) {
+        par_finder_close_gap(f);
+        f->gap.next = item;
+    }
+    f->gap.end = item + 1;
+}
+
 /* Ends the search and moves the lists to f->finds. False: no memory. */
 static inline bool par_finder_end(struct par_finder *f)
 {
     par_finder_count(f);
+    par_finder_close_gap(f);
+    f->finds->gaps[f->share] = f->gaps;
     f->finds->found[f->share] = f->list;
     f->finds->notes[f->share] = f->notes;
     f->finds->runs[f->share] = f->runs;
@@ -117,14 +144,10 @@ static inline bool par_finder_end(struct par_finder *f)
 /* Sorts all ids that were found by row: sets item, note, start and n. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
 
-/* Replaces an ascending list of ids by its runs of consecutive ids. Each run takes two items: first id, last id + 1.
- * Short runs are left out. The runs therefore fit into the memory of the list, and nothing is allocated. */
-void par_finds_to_runs(struct par_ids *list);
+/* Appends the runs of consecutive ids of an ascending list to the gaps of a share. False: no memory. */
+bool par_finds_add_gaps(struct par_finds *finds, size_t share, const struct par_ids *list);
 
-/* Adds runs made by par_finds_to_runs to ranges. False: no memory. */
-bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to);
-
-/* Calls par_finds_add_runs for the list of each share. False: no memory. */
+/* Replaces the ranges by the gaps of all shares. No range is dealt out. False: no memory. */
 bool par_finds_give(const struct par_finds *finds, struct par_ranges *to);
 
 #endif

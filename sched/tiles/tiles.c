@@ -46,10 +46,10 @@ static void find_vertices(void *context, size_t share)
     struct par_locator place = PAR_LOST;
     struct par_finder finder = par_finder_of(&c->vertices, share);
     for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
-        if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
-            mesh->xy[v].x < c->begin)
-            continue;
-        par_find(&finder, v, par_locate(&place, tiles->partition, 0, mesh->xy[v]) - c->first_tile);
+        if (mesh->on[v] == TRI_VERTEX_NONE)
+            par_find_gap(&finder, v);
+        else if (tiles->number[v] == NO_NUMBER && mesh->xy[v].x < c->end && mesh->xy[v].x >= c->begin)
+            par_find(&finder, v, par_locate(&place, tiles->partition, 0, mesh->xy[v]) - c->first_tile);
     }
     c->no_memory[share] = !par_finder_end(&finder);
 }
@@ -155,8 +155,10 @@ static void find_triangles(void *context, size_t share)
         __builtin_prefetch(&mesh->tri[t + 4 * PAR_FOUND_AHEAD < range.last ? t + 4 * PAR_FOUND_AHEAD : t]);
         if (t + PAR_FOUND_AHEAD < range.last)
             fetch_numbers(numbers, mesh->tri[t + PAR_FOUND_AHEAD].v);
-        if (v[0] == TRI_NONE)
+        if (v[0] == TRI_NONE) {
+            par_find_gap(&finder, t);
             continue;
+        }
         const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
         int32_t row = last_row(c, &hint, v, number, 3);
         if (row >= 0) {
@@ -186,8 +188,11 @@ static void find_subs(void *context, size_t share)
     struct tri_range range = par_finds_share(share, mesh->n_subs);
     struct par_finder finder = par_finder_of(&c->subs, share);
     for (tri_sub_id s = range.first; s < range.last; s++) {
-        int32_t row = mesh->sub[s].v[0] == TRI_NONE ? EARLIER : row_of_sub(c, s);
-        if (row >= 0)
+        const bool is_free = mesh->sub[s].v[0] == TRI_NONE;
+        const int32_t row = is_free ? EARLIER : row_of_sub(c, s);
+        if (is_free)
+            par_find_gap(&finder, s);
+        else if (row >= 0)
             par_find(&finder, s, row);
     }
     c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
@@ -380,7 +385,7 @@ struct column_removal {
     const struct par_ids *stay; /* vertices that stay in the mesh, ascending */
 };
 
-/* Removes the vertices and subsegments of one share from the mesh, and converts all its lists to runs of free ids.
+/* Removes the vertices and subsegments of one share from the mesh, and adds the ids of all its lists to the gaps.
  * Triangles were removed when their tiles were filled. */
 static void remove_share(void *context, size_t share)
 {
@@ -390,9 +395,9 @@ static void remove_share(void *context, size_t share)
     remove_listed_vertices(c->tiles, l->stay, &c->vertices.found[share]);
     for (int32_t i = 0; i < subs->n; i++)
         par_room_mark_sub(c->tiles->mesh, subs->item[i]);
-    par_finds_to_runs(&c->vertices.found[share]);
-    par_finds_to_runs(&c->triangles.found[share]);
-    par_finds_to_runs(subs);
+    c->no_memory[share] = !par_finds_add_gaps(&c->vertices, share, &c->vertices.found[share]) ||
+                          !par_finds_add_gaps(&c->triangles, share, &c->triangles.found[share]) ||
+                          !par_finds_add_gaps(&c->subs, share, subs);
 }
 
 /* Removes the column from the mesh and adds its ids to *spare. False: no memory. */
@@ -406,8 +411,7 @@ static bool remove_column(struct par_column *c, struct par_room *spare)
     struct column_removal column_removal = {c, &stay};
     tri_execute(c->tiles->executor, PAR_FIND_SHARES, remove_share, &column_removal);
     remove_listed_vertices(c->tiles, &stay, held);
-    par_finds_to_runs(held);
-    bool memory = par_finds_add_runs(held, &spare->ranges[PAR_VERTICES]) &&
+    bool memory = memory_has_lasted(c) && par_finds_add_gaps(&c->vertices, 0, held) &&
                   par_finds_give(&c->vertices, &spare->ranges[PAR_VERTICES]) &&
                   par_finds_give(&c->triangles, &spare->ranges[PAR_TRIANGLES]) &&
                   par_finds_give(&c->subs, &spare->ranges[PAR_SUBS]);

@@ -78,13 +78,29 @@ static bool is_in(const struct tri_fill *f, struct place at)
     return f->sites.at[site_at(f, at)] != TRI_SITE_OUT;
 }
 
-/* Returns a bit mask: bit k is set if neighbour k is not TRI_SITE_OUT. */
-static unsigned neighbours_in(const struct tri_fill *f, struct place at)
+/* Where the neighbours of the sites of a row are stored, as differences between indices. */
+struct around {
+    int32_t up, down; /* from a site to its upper right and lower right neighbours; each upper left and lower left
+                         neighbour is stored directly before */
+    int32_t up2;      /* from a site to the one two rows above, in the same column */
+};
+
+/* Computes the differences for a row. The row has a site that is not TRI_SITE_OUT. */
+static struct around around_row(const struct tri_sites *s, int32_t row)
 {
-    unsigned in = 0;
-    for (int k = 0; k < AROUND; k++)
-        in |= is_in(f, next_to(at, k)) ? 1u << k : 0;
-    return in;
+    const int32_t shift = row & 1, base = s->row[row].base;
+    return (struct around){s->row[row + 1].base + shift - base, s->row[row - 1].base + shift - base,
+                           s->row[row + 2].base - base};
+}
+
+/* Returns a bit mask: bit k is set if neighbour k is not TRI_SITE_OUT. site: index of a site that is not
+ * TRI_SITE_OUT. */
+static unsigned neighbours_in(const struct tri_sites *s, struct around to, int32_t site)
+{
+    const int32_t *at = s->at + site;
+    return (unsigned)(at[1] != TRI_SITE_OUT) | (unsigned)(at[to.up] != TRI_SITE_OUT) << 1 |
+           (unsigned)(at[to.up - 1] != TRI_SITE_OUT) << 2 | (unsigned)(at[-1] != TRI_SITE_OUT) << 3 |
+           (unsigned)(at[to.down - 1] != TRI_SITE_OUT) << 4 | (unsigned)(at[to.down] != TRI_SITE_OUT) << 5;
 }
 
 enum { ALL_IN = (1 << AROUND) - 1 };
@@ -94,40 +110,45 @@ static bool has_cell(unsigned in) { return in & (in >> 1 | in << (AROUND - 1)); 
 
 /* A cell: its sites counter-clockwise. across[k] is the third site of the cell across the edge opposite to site k. */
 struct cell {
-    struct place at[3]; /* positions of the sites */
     int32_t site[3], across[3]; /* indices of sites */
+    struct place at; /* position of site 0 */
+    bool by_edge;    /* the cell stands on its lower edge; false: on its lowest corner */
 };
+
+/* Returns the positions of the sites of a cell. */
+static struct place place_in_cell(const struct cell *c, int k)
+{
+    return k == 0 ? c->at : next_to(c->at, c->by_edge ? (k == 1 ? RIGHT : UP_RIGHT) : (k == 1 ? UP_RIGHT : UP_LEFT));
+}
 
 /* Finds the cell whose lower edge starts at this site (by_edge), or the cell whose lowest corner is this site.
  * Returns false if it does not exist. */
-static bool find_cell(const struct tri_fill *f, struct place at, bool by_edge, struct cell *c)
+static bool find_cell(const struct tri_sites *s, struct around to, struct place at, bool by_edge, struct cell *c)
 {
-    const struct place right = next_to(at, RIGHT), up_right = next_to(at, UP_RIGHT), up_left = next_to(at, UP_LEFT);
-    if (!is_in(f, up_right) || !is_in(f, by_edge ? right : up_left))
+    const int32_t site = tri_site(s, at.row, at.column), up = site + to.up;
+    if (s->at[up] == TRI_SITE_OUT || s->at[by_edge ? site + 1 : up - 1] == TRI_SITE_OUT)
         return false;
-    *c = by_edge ? (struct cell){{at, right, up_right}, {0}, {0}} : (struct cell){{at, up_right, up_left}, {0}, {0}};
-    for (int k = 0; k < 3; k++) {
-        const int across = ((by_edge ? UP_RIGHT : UP_LEFT) + 2 * k) % AROUND;
-        c->site[k] = site_at(f, c->at[k]);
-        c->across[k] = site_at(f, next_to(c->at[tri_next[k]], across));
-    }
+    *c = by_edge ? (struct cell){{site, site + 1, up}, {up + 1, up - 1, site + to.down}, at, true}
+                 : (struct cell){{site, up, up - 1}, {site + to.up2, site - 1, site + 1}, at, false};
     return true;
 }
 
 /* Calls `visit` for each cell, row by row from left to right, until a call does not return DONE. */
-static enum tri_outcome each_cell(struct tri_refiner *r,
-                                  enum tri_outcome (*visit)(struct tri_refiner *r, const struct cell *c, bool by_edge))
+static inline enum tri_outcome each_cell(struct tri_refiner *r,
+                                         enum tri_outcome (*visit)(struct tri_refiner *r, const struct cell *c))
 {
-    const struct tri_fill *f = r->fill;
+    const struct tri_sites *s = &r->fill->sites;
     struct cell c;
-    for (struct place at = {0, 0}; at.row < f->sites.n_rows; at.row++)
-        for (at.column = f->sites.row[at.row].first; at.column <= f->sites.row[at.row].last; at.column++)
-            for (int by_edge = 0; by_edge < 2 && is_in(f, at); by_edge++)
-                if (find_cell(f, at, by_edge, &c)) {
-                    const enum tri_outcome outcome = visit(r, &c, by_edge);
+    for (struct place at = {TRI_SITE_MARGIN, 0}; at.row < s->n_rows - TRI_SITE_MARGIN; at.row++) {
+        const struct around to = around_row(s, at.row);
+        for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++)
+            for (int by_edge = 0; by_edge < 2 && s->at[tri_site(s, at.row, at.column)] != TRI_SITE_OUT; by_edge++)
+                if (find_cell(s, to, at, by_edge, &c)) {
+                    const enum tri_outcome outcome = visit(r, &c);
                     if (outcome != DONE)
                         return outcome;
                 }
+    }
     return DONE;
 }
 
@@ -221,7 +242,7 @@ static enum tri_outcome look_at_site(struct tri_refiner *r, struct place at)
     struct tri_fill *f = r->fill;
     if (!is_in(f, at))
         return DONE;
-    const unsigned in = neighbours_in(f, at);
+    const unsigned in = neighbours_in(&f->sites, around_row(&f->sites, at.row), site_at(f, at));
     if (in == ALL_IN)
         return DONE;
     if (!has_cell(in))
@@ -287,17 +308,16 @@ static bool is_delaunay(const struct tri_refiner *r, const struct cell *c, tri_h
     const struct tri_sites *s = &r->fill->sites;
     struct tri_point p[3];
     for (int k = 0; k < 3; k++)
-        p[k] = tri_site_place(s, c->at[k].row, c->at[k].column);
+        p[k] = tri_site_place(s, place_in_cell(c, k).row, place_in_cell(c, k).column);
     return tri_incircle(p[0], p[1], p[2], r->mesh->xy[tri_apex(r->mesh, outside)]) <= 0;
 }
 
 /* Lists the border edges of a cell. If an edge is missing or does not qualify, its two sites are left out. */
-static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c, bool by_edge)
+static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c)
 {
     struct tri_fill *f = r->fill;
     const struct tri_sites *s = &f->sites;
     const tri_vertex_id v[3] = {s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]};
-    (void)by_edge; /* parameter of the callback, used by make_cell only */
     f->n_cells++;
     for (int e = 0; e < 3; e++) {
         const int a = tri_next[e], b = tri_prev[e];
@@ -313,7 +333,7 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c,
         if (border.outside == TRI_BEYOND)
             return tri_request_beyond(r, (tri_vertex_id[]){v[a], v[b]});
         if (border.outside < 0 || !is_delaunay(r, c, border.outside)) {
-            if (drop_site(f, c->at[a]) == FAILED || drop_site(f, c->at[b]) == FAILED)
+            if (drop_site(f, place_in_cell(c, a)) == FAILED || drop_site(f, place_in_cell(c, b)) == FAILED)
                 return FAILED;
             continue;
         }
@@ -432,7 +452,7 @@ static void join(const struct tri_mesh *m, tri_halfedge a, tri_halfedge b)
 /* Makes a cell and links it across the border and to the cells that already exist: across edge 1 the previous cell
  * in the row, and across edge 2 of a cell that stands on an edge the cell below, which `near` of the left site
  * holds. */
-static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, bool by_edge)
+static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c)
 {
     struct tri_fill *f = r->fill;
     struct tri_sites *s = &f->sites;
@@ -450,10 +470,10 @@ static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c, b
             t->region = border->region;
         }
     if (!at_border)
-        join(r->mesh, tri_code(own, 1), tri_code(before, by_edge ? 2 : 0));
-    if (by_edge && t->n[2] == CUT)
+        join(r->mesh, tri_code(own, 1), tri_code(before, c->by_edge ? 2 : 0));
+    if (c->by_edge && t->n[2] == CUT)
         join(r->mesh, tri_code(own, 2), tri_code(s->near[c->site[0]], 0));
-    if (!by_edge)
+    if (!c->by_edge)
         s->near[c->site[2]] = own;
     return DONE;
 }
@@ -562,12 +582,15 @@ static bool check_all(struct tri_fill *f)
 {
     struct tri_sites *s = &f->sites;
     int32_t n_in = 0;
-    for (struct place at = {0, 0}; s->n > 0 && at.row < s->n_rows; at.row++)
+    for (struct place at = {TRI_SITE_MARGIN, 0}; s->n > 0 && at.row < s->n_rows - TRI_SITE_MARGIN; at.row++) {
+        const struct around to = around_row(s, at.row);
         for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++) {
-            n_in += is_in(f, at);
-            if (is_in(f, at) && neighbours_in(f, at) != ALL_IN && !check(f, at))
+            const int32_t site = site_at(f, at);
+            n_in += s->at[site] != TRI_SITE_OUT;
+            if (s->at[site] != TRI_SITE_OUT && neighbours_in(s, to, site) != ALL_IN && !check(f, at))
                 return false;
         }
+    }
     if (f->n_check > TRI_LATTICE_RIM * n_in)
         s->n = f->n_check = 0;
     return true;
