@@ -164,7 +164,12 @@ static enum tri_status extend_kind(struct par_room *room, struct par_room *spare
     while (need > 0 && from->n > 0) {
         if (!reserve_deal(to, from))
             return no_memory(error);
-        struct par_range range = from->item[--from->n];
+        struct par_range *last = &from->item[from->n - 1], range = *last;
+        const int32_t wanted = (need < PAR_LEAST_RANGE ? PAR_LEAST_RANGE : need) + 1; /* one may be left over */
+        if (range.end - range.next < wanted + PAR_LEAST_RANGE)
+            from->n--;
+        else
+            last->next = range.end = range.next + wanted; /* the rest stays spare */
         need -= usable(range, kind);
         deal_range(to, from, range);
     }
