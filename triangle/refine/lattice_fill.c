@@ -319,6 +319,9 @@ static enum tri_outcome list_border(struct tri_refiner *r, const struct cell *c)
     const struct tri_sites *s = &f->sites;
     const tri_vertex_id v[3] = {s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]};
     f->n_cells++;
+    if (s->at[c->across[0]] != TRI_SITE_OUT && s->at[c->across[1]] != TRI_SITE_OUT &&
+        s->at[c->across[2]] != TRI_SITE_OUT)
+        return DONE;
     for (int e = 0; e < 3; e++) {
         const int a = tri_next[e], b = tri_prev[e];
         if (s->at[c->across[e]] != TRI_SITE_OUT || v[a] < 0 || v[b] < 0)
