@@ -54,7 +54,7 @@ def _lines(m):
 
 @dataclass
 class Bounded:
-    """A mesh that is swept or, without a bound, in memory. It is written and checked, or counted and discarded."""
+    """A mesh that is swept or, without a bound, in memory. It is written and checked, or judged and discarded."""
     domain: Domain
     memory: float  # bytes; 0: no bound
     disk: float    # bytes that must be free; 0: no file
@@ -93,12 +93,13 @@ def _stream_program(settings):
     return program
 
 
-def _counted(settings, run):
+def _streamed(settings, run):
     d = run.domain
     ended = execute([_stream_program(settings), d.path, repr(d.angle), repr(d.area), str(int(run.memory)),
                      str(settings.threads), settings.scratch], LIMIT, settings.scratch)
     found = re.match(r"(\d+) triangles", ended.output)
-    return ended, int(found.group(1)) if ended.code == 0 and found else None, 0, "counted alone"
+    verdict = "no fault, as it is streamed" if ", edges in pairs" in ended.output else "edges are not in pairs"
+    return ended, int(found.group(1)) if ended.code == 0 and found else None, 0, verdict
 
 
 REASONS = {"input_angle": "at small angles of the input", "narrow_gap": "between segments too near to each other",
@@ -150,14 +151,14 @@ def _measure_bounded(settings, run):
     lacking = _lacks(settings, run)
     if lacking:
         return (f"{d.name} `-{d.switches}`", "", bound, "left out: " + lacking, "", "", "", ""), {}
-    ended, triangles, size, verdict = (_judged if run.disk else _counted)(settings, run)
-    if triangles is None or not verdict.startswith(("no fault", "counted alone")):
+    ended, triangles, size, verdict = (_judged if run.disk else _streamed)(settings, run)
+    if triangles is None or not verdict.startswith("no fault"):
         settings.fail(f"{d.name} -{d.switches} within {bound}: {verdict or ended.errors}")
     say(f"  {d.name} -{d.switches}, {bound}: {triangles} triangles, {ended.wall:.1f} s, {verdict}")
     line = (f"{d.name} `-{d.switches}`", f"{triangles or 0:,}", bound, f"{ended.wall:.1f} s",
             f"{ended.processor:.1f} s", f"{ended.peak / 1e9:.2f} GB", f"{size / 1e9:.1f} GB" if size else "", verdict)
     row = {"part": "large", "input": d.name, "switches": d.switches, "program": "bounded by " + bound,
-           "threads": settings.threads, "stage": "with file" if run.disk else "counted", "runs": 1,
+           "threads": settings.threads, "stage": "with file" if run.disk else "streamed", "runs": 1,
            "median_seconds": ended.wall, "min_seconds": ended.wall, "max_seconds": ended.wall, "triangles": triangles,
            "peak_bytes": ended.peak, "judged": verdict}
     return line, row

@@ -62,7 +62,7 @@
 #define PAR_SWEEP_AWAY 290.0
 #define PAR_SWEEP_WORK 140.0
 #define PAR_SWEEP_STATES 520.0
-#define PAR_SWEEP_COARSE 1.3
+#define PAR_SWEEP_COARSE 0.4
 /* Bytes for each triangle: of a parked mesh in memory, and on disk; of the two states of a mesh that stays whole; of
  * the tiles in a checkpoint. */
 #define PAR_PARKED_WORK 6.0
