@@ -199,7 +199,8 @@ set(PTRIANGLE_MAIN_ptriangle drivers/mesh/ptriangle.c)
 set(PTRIANGLE_MAIN_trianglecheck drivers/judge/trianglecheck.c)
 set(PTRIANGLE_MAIN_meshplot drivers/plot/meshplot.c)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c sched/schedule/team.c)
+set(PTRIANGLE_JUDGE_SOURCES sched/schedule/threads.c sched/schedule/team.c drivers/mesh/size_options.c
+    drivers/judge/judged_sizes.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
     ${PTRIANGLE_SYSTEM_PROCESS_SOURCES}
     drivers/words.c

@@ -111,6 +111,7 @@ static enum words_end take_option(const struct program_words *words, int option,
         bool help = option == words->help_option;
         fputs(help ? words->usage : words->version, stdout);
         fputs(help ? words->help : "", stdout);
+        fputs(help && words->more ? words->more : "", stdout);
         return WORDS_ANSWERED;
     }
     if (option == '?' || option == ':') {

@@ -42,6 +42,7 @@ struct program_words {
     const struct option *options;          /* long options, as for getopt_long */
     int version_option, help_option;
     bool (*apply)(void *settings, int option); /* applies an option with value optarg; false: the value is invalid */
+    const char *more;                      /* printed after help; NULL: nothing. C guarantees 4095 characters a text */
 };
 
 enum words_end {

@@ -23,11 +23,13 @@ for program in triangle ptriangle trianglecheck meshplot; do
     case $program in
     ptriangle) source="$root/drivers/mesh/long_options.c $root/drivers/mesh/size_options.c" ;;
     triangle) source=$root/drivers/mesh/size_options.c ;;
+    trianglecheck) source="$root/drivers/judge/trianglecheck.c $root/drivers/mesh/size_options.c" ;;
     *) source=$(echo "$root"/drivers/*/"$program.c") ;;
     esac
     # shellcheck disable=SC2086 # one word a file
     taken=$(grep -ohE '\{"[a-z-]+", *([A-Z]|(required|no)_argument)' $source | sed 's/{"\([a-z-]*\)".*/--\1/')
     [ $program = triangle ] || [ "$(echo "$taken" | wc -l)" -gt 10 ] || fault "$program: no options found in $source"
+    [ $program != trianglecheck ] || taken=$(echo "$taken" | grep -vxe --placement -e --optimise)
     told=$(grep -E '^ {2,8}-' help.txt | grep -oE -e '--[a-z-]+')
     for option in $taken; do
         echo "$told" | grep -qxe "$option" || fault "$program: $option is not documented"

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "drivers/judge/judged_files.h"
+#include "drivers/judge/judged_sizes.h"
 #include "drivers/start.h"
 #include "drivers/words.h"
 #include "sched/schedule/threads.h"
@@ -53,6 +54,15 @@ static const char help[] = /* cmake/help.awk turns it into a manual page */
     "                       are no fault, and the mesh may end anywhere\n"
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
     "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
+    "      --size, --size-near, --gradation, --min-size, --max-size, --elements-across, --per-circle\n"
+    "                       the options of ptriangle that the mesh was made with, and --poly. The report then has\n"
+    "                       the share of edges that are 0.7 to 1.4 times as long as the length at their midpoint,\n"
+    "                       the triangles divided by the number that the lengths request, and the mean quality: 4\n"
+    "                       sqrt(3) area / sum of squared edges. Area bounds of regions do not change lengths here.\n"
+    "                       This takes 16 bytes of memory per vertex and 48 per triangle, beyond --memory\n"
+    "      --min-fitting S  a smaller share of such edges (0.95) is a fault\n";
+
+static const char more_help[] =
     "      --threads N      use at most N threads (default: OMP_NUM_THREADS, otherwise all cores). The result is the\n"
     "                       same\n"
     "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1000), or 60% of the free memory\n"
@@ -78,6 +88,13 @@ struct settings {
     int64_t threads; /* 0: not given */
     double memory, memory_share; /* bytes, or a share of the free memory; 0: not given */
     const char *scratch;         /* folder; NULL: not given */
+    struct size_options sizes;
+    double min_fitting; /* share of edges; 0: not given */
+};
+
+struct verdict {
+    struct tri_check_report report;
+    struct judged_sizes sizes; /* n_edges is 0: not measured */
 };
 
 /* --- checking */
@@ -133,6 +150,28 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
 
 /* --- the report as lines or JSON */
 
+/* Returns true if the lengths were measured and too few edges fit. */
+static bool fails_sizes(const struct settings *s, const struct judged_sizes *sizes)
+{
+    return sizes->n_edges > 0 && judged_sizes_fitting(sizes) < s->min_fitting;
+}
+
+static bool passes(const struct settings *s, const struct verdict *v)
+{
+    return tri_check_passed(&v->report) && !fails_sizes(s, &v->sizes);
+}
+
+static void print_sizes(const struct settings *s, const struct judged_sizes *sizes)
+{
+    if (fails_sizes(s, sizes))
+        printf("FAIL  lengths: %" PRId64 " of %" PRId64 " edges are not %g to %g times as long as wanted\n",
+               sizes->n_edges - sizes->n_fitting, sizes->n_edges, JUDGED_SHORTEST, JUDGED_LONGEST);
+    else if (!s->quiet && sizes->n_edges > 0 && s->min_fitting > 0)
+        puts("ok    lengths");
+    if (!s->quiet && sizes->note[0])
+        printf("warn  %s\n", sizes->note);
+}
+
 static void print_items(const struct tri_check_report *r, bool quiet)
 {
     for (int k = 0; k < TRI_N_CHECKS; k++) {
@@ -176,15 +215,20 @@ static int64_t unused_points(const struct judged_files *f, const struct tri_chec
     return r->n_used_points > 0 ? f->source.n_points - r->n_used_points : 0;
 }
 
-static void print_lines(const struct settings *s, const struct judged_files *f, const struct tri_check_report *r)
+static void print_lines(const struct settings *s, const struct judged_files *f, const struct verdict *v)
 {
+    const struct tri_check_report *r = &v->report;
     print_items(r, s->quiet);
+    print_sizes(s, &v->sizes);
     if (!s->quiet) {
         if (unused_points(f, r) > 0)
             printf("warn  vertices in no triangle: %" PRId64 " (-j of ptriangle leaves them out)\n",
                    unused_points(f, r));
         print_summary(s, f, r);
-        puts(tri_check_passed(r) ? "no fault" : "FAULTS");
+        if (v->sizes.n_edges > 0)
+            printf("lengths: %.4f of the edges fit, %.4f times the wanted number of triangles, mean quality %.4f\n",
+                   judged_sizes_fitting(&v->sizes), v->sizes.number, v->sizes.quality);
+        puts(passes(s, v) ? "no fault" : "FAULTS");
     }
 }
 
@@ -206,10 +250,11 @@ static void print_json_real(const char *key, double value)
     printf(isfinite(value) ? ", \"%s\": %.17g" : ", \"%s\": null", key, value);
 }
 
-static void print_json(const struct settings *s, const struct judged_files *f, const struct tri_check_report *r)
+static void print_json(const struct settings *s, const struct judged_files *f, const struct verdict *v)
 {
+    const struct tri_check_report *r = &v->report;
     static const char *const states[] = {"skipped", "ok", "failed"};
-    printf("{\"passed\": %s, \"base\": ", tri_check_passed(r) ? "true" : "false");
+    printf("{\"passed\": %s, \"base\": ", passes(s, v) ? "true" : "false");
     print_json_string(s->base);
     printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"unused_vertices\": %" PRId64
            ", \"triangles\": %" PRId64 ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64
@@ -221,6 +266,11 @@ static void print_json(const struct settings *s, const struct judged_files *f, c
     print_json_real("smallest_area", r->smallest_area);
     print_json_real("largest_area", r->largest_area);
     print_json_real("total_area", r->total_area);
+    if (v->sizes.n_edges > 0) {
+        print_json_real("fitting", judged_sizes_fitting(&v->sizes));
+        print_json_real("triangles_per_wanted", v->sizes.number);
+        print_json_real("mean_quality", v->sizes.quality);
+    }
     printf(", \"below_min_angle\": %" PRId64 ", \"below_min_angle_explained\": %" PRId64 ", \"checks\": [", r->n_small,
            r->n_small_explained);
     for (int k = 0; k < TRI_N_CHECKS; k++) {
@@ -245,6 +295,7 @@ enum long_option {
     THREADS,
     MEMORY,
     SCRATCH,
+    MIN_FITTING,
     JSON,
     QUIET,
     VERSION,
@@ -270,6 +321,7 @@ static const struct option long_options[] = {
     {"no-regions", no_argument, NULL, NO_REGIONS},
     {"memory", required_argument, NULL, MEMORY},
     {"scratch", required_argument, NULL, SCRATCH},
+    {"min-fitting", required_argument, NULL, MIN_FITTING},
     {"json", no_argument, NULL, JSON},
     {"quiet", no_argument, NULL, QUIET},
     {"version", no_argument, NULL, VERSION},
@@ -323,6 +375,7 @@ static bool apply(void *settings, int option)
     case 'b': return take_count(optarg, &s->check.max_bad);
     case 'a': return take_real(optarg, &s->check.max_area);
     case SMALL_INPUT_ANGLE: return take_real(optarg, &s->check.small_input_angle);
+    case MIN_FITTING: return words_take_real(optarg, "", NULL, 0, 1, &s->min_fitting);
     case THREADS: return take_count(optarg, &s->threads) && s->threads > 0;
     case MEMORY: return words_take_size(optarg, 1, &s->memory, &s->memory_share);
     case SCRATCH: s->scratch = optarg; return true;
@@ -330,24 +383,52 @@ static bool apply(void *settings, int option)
     }
 }
 
+/* Removes the size options from the arguments. Returns the number of arguments that remain; 0: *error is set. */
+static int take_sizes(int argc, char **argv, struct size_options *sizes, struct tri_error *error)
+{
+    int n = 0;
+    bool ended = false; /* by -- */
+    for (int i = 0; i < argc; i++) {
+        ended = ended || strcmp(argv[i], "--") == 0;
+        if (ended || !size_options_take(sizes, NULL, argc, argv, &i, error))
+            argv[n++] = argv[i];
+        if (error->status)
+            return 0;
+    }
+    argv[n] = NULL;
+    return size_options_end(sizes, NULL, error) ? 0 : n;
+}
+
 /* Returns 0 to go on, < 0 if the program is done, > 0: the exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
-                                              "-:p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
+                                              "-:p:q:b:a:Dcjr", long_options, VERSION, HELP, apply, more_help};
     char *mesh = NULL;
+    struct tri_error error = {0};
+    argc = take_sizes(argc, argv, &s->sizes, &error);
+    if (argc == 0) {
+        one_line_error(stderr, PTRIANGLE_NAME ": ", &error);
+        return TROUBLE;
+    }
     enum words_end end = words_take_all(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)
         return end == WORDS_ANSWERED ? -1 : TROUBLE;
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
+    const bool measures = size_options_any(&s->sizes);
+    if ((measures && !s->input) || (s->min_fitting > 0 && !measures)) {
+        fputs(measures ? PTRIANGLE_NAME ": lengths follow from the input of the mesh: --poly is needed\n"
+                       : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
+        return TROUBLE;
+    }
     return 0;
 }
 
 static int run(const struct settings *s, struct par_team *team, struct judged_files *f)
 {
     struct tri_error error = {0};
-    struct tri_check_report report;
+    struct verdict verdict = {0};
     const int threads = team->threads;
     const struct tri_executor executor = par_executor(team);
     const char *scratch = s->scratch != NULL ? s->scratch : tri_scratch_folder();
@@ -360,14 +441,16 @@ static int run(const struct settings *s, struct par_team *team, struct judged_fi
         fputs(".neigh is of another mesh than .ele, by their numbers of triangles: it is not judged\n", stderr);
     }
     if (status == TRI_OK)
-        status = judge(s, f, &executor, threads, &report, &error);
+        status = judge(s, f, &executor, threads, &verdict.report, &error);
+    if (status == TRI_OK && size_options_any(&s->sizes) && verdict.report.item[TRI_CHECK_ARRAYS].state == TRI_CHECK_OK)
+        status = judged_sizes_measure(&verdict.sizes, &s->sizes, f, &s->check, &executor, &error);
     if (status != TRI_OK) {
         one_line_error(stderr, PTRIANGLE_NAME ": ", &error);
         return TROUBLE;
     }
-    (s->json ? print_json : print_lines)(s, f, &report);
+    (s->json ? print_json : print_lines)(s, f, &verdict);
     if (fflush(stdout) == 0 && !ferror(stdout))
-        return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
+        return passes(s, &verdict) ? EXIT_SUCCESS : FAULTS;
     fputs(PTRIANGLE_NAME ": cannot write to standard output\n", stderr);
     return TROUBLE;
 }
@@ -380,12 +463,15 @@ int program_main(int argc, char **argv)
     struct settings settings = {.check = {.max_bad = -1}};
     struct judged_files files = {0};
     int code = parse_arguments(argc, argv, &settings);
-    if (code != 0)
+    if (code != 0) {
+        size_options_free(&settings.sizes);
         return code < 0 ? EXIT_SUCCESS : code;
+    }
     const int most = PAR_MOST_THREADS;
     struct par_team team = {.threads = par_threads(settings.threads < most ? (int)settings.threads : most, false)};
     code = run(&settings, &team, &files);
     par_team_end(&team);
     judged_files_free(&files);
+    size_options_free(&settings.sizes);
     return code;
 }

@@ -149,7 +149,7 @@ bool size_options_take(struct size_options *options, struct tri_switches *switch
                        int *at, struct tri_error *error)
 {
     const struct kind *kind = find_kind(argv[*at]);
-    if (!kind)
+    if (!kind || (!switches && kind->id >= PLACEMENT))
         return false;
     const char *equals = argv[*at] + 2 + strlen(kind->name);
     const char *value = *equals ? equals + 1 : *at + 1 < argc ? argv[++*at] : NULL;
@@ -176,6 +176,8 @@ enum tri_status size_options_end(const struct size_options *options, struct tri_
     if (options->max_size > 0 && options->min_size > options->max_size)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-size %g is above --max-size %g", options->min_size,
                         options->max_size);
+    if (!switches)
+        return TRI_OK;
     if (switches->passes > 0 &&
         (switches->area || switches->area_lists || switches->conforming || switches->max_steiner >= 0))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--optimise moves vertices, and cannot keep -a, -D or -S");

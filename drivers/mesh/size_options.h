@@ -26,12 +26,13 @@ struct size_options {
 };
 
 /* Reads the option in argument *at, like long_options_take. Returns false if it is another argument. Sets *error if the
- * value is invalid. */
+ * value is invalid. switches: receives --placement and --optimise; NULL: these are other arguments. */
 bool size_options_take(struct size_options *options, struct tri_switches *switches, int argc, char *const *argv,
                        int *at, struct tri_error *error);
 
-/* Completes the options after all arguments. Lengths set -q and --optimise 1, unless these are given. TRI_BAD_INPUT:
- * limits without lengths, or limits that exclude each other; --optimise with bounds that it cannot keep. */
+/* Completes the options after all arguments. Lengths set -q and --optimise 1, unless these are given, or switches is
+ * NULL. TRI_BAD_INPUT: limits without lengths, or limits that exclude each other; --optimise with bounds that it cannot
+ * keep. */
 enum tri_status size_options_end(const struct size_options *options, struct tri_switches *switches,
                                  struct tri_error *error);
 void size_options_free(struct size_options *options);

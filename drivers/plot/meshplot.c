@@ -398,7 +398,7 @@ static bool apply(void *settings, int option)
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct program_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
-                                              "-:o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
+                                              "-:o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply, NULL};
     char *mesh = NULL;
     enum words_end end = words_take_all(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)

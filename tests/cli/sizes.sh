@@ -111,6 +111,20 @@ for mesher in triangle ptriangle; do
     mesher 0 $mesher -pq30 letter --max-size=0.5
     judge letter.1 --poly letter.poly --min-angle 30
     sizes_ratio letter.1 0.5
+    # trianglecheck compares them, and fails below a share of edges that fit
+    judge letter.1 --poly letter.poly --size 0.5 --min-fitting 0.8
+    judge letter.1 --poly letter.poly --size 1.5
+    "$bin/trianglecheck" letter.1 --poly letter.poly --size 1.5 --min-fitting 0.8 --json >.out 2>.err
+    check "exit code of edges that are too short" test $? -eq 1
+    matches '"passed": false.*"fitting": 0, "triangles_per_wanted": [0-9.]*, "mean_quality": 0\.[6-9]'
+    "$bin/trianglecheck" letter.1 --poly letter.poly --size 1.5 --min-fitting 0.8 >.out 2>.err
+    matches "^FAIL  lengths: [0-9]* of [0-9]* edges are not 0.7 to 1.4 times as long as wanted$"
+    for words in "--size 1" "--poly letter.poly --min-fitting 0.5" "--poly letter.poly --size 0" \
+        "--poly letter.poly --min-size 1" "--poly letter.poly --size 1 --optimise 1"; do
+        # shellcheck disable=SC2086 # several words
+        "$bin/trianglecheck" letter.1 $words >.out 2>.err
+        check "trianglecheck $words: exit code" test $? -eq 2
+    done
     # of an existing mesh
     mesher 0 $mesher -rp letter.1 --size 0.25
     sizes_ratio letter.2 0.25
