@@ -1004,7 +1004,7 @@ static void markers_at_forks(void **state)
         trial.markers[0] = marker;
         expect(TRI_CHECK_MARKERS, 1, -1);
     }
-    begin_lens(false); /* a segment that certainly runs there and comes first takes precedence over a possible one */
+    begin_lens(false); /* the first input segment certainly runs from 1 to 2, so its marker is required there */
     expect_good();
     trial.markers[1] = 5;
     expect(TRI_CHECK_MARKERS, 1, -1);

@@ -80,8 +80,8 @@ static int record_call(void *user, const double a[2], const double b[2], const d
     return area > 1;
 }
 
-/* A size test is called in the caller's units. With another scale, it receives a triangle that is smaller by the
- * scale. */
+/* A size test is called in the caller's units. With an area scale, it receives a smaller triangle, of 1 / area_scale of
+ * the area. */
 static void test_size_tests(void **state)
 {
     (void)state;

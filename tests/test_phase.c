@@ -95,7 +95,7 @@ static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_quality *q
     return inserted;
 }
 
-/* The block of the phase whose fence contains all three corners, or TRI_NONE. */
+/* Returns the block whose fence contains all three corners in this phase; TRI_NONE: no block. */
 static int32_t block_of_triangle(const struct par_partition *p, int phase, const struct tri_mesh *mesh,
                                  const int32_t v[3])
 {

@@ -691,7 +691,7 @@ static void test_a_long_gap_costs_no_triangles(void **state)
     }
 }
 
-/* If the schedule continues after a first trial call, that call has given up no triangle. */
+/* A first call on trial gives up no triangle if the schedule continues after it. */
 static void test_a_trial_call_gives_nothing_up(void **state)
 {
     (void)state;

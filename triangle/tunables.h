@@ -58,9 +58,9 @@
 /* The size of features around a lattice point is at most this, in lattice edges. Measured: with 1, soho_ran_away keeps
  * 18 bad triangles, with 0.25 it keeps 4. Coasts and letters are unchanged. */
 #define TRI_LATTICE_FEATURE 0.25
-/* Maximum squared distance of a lattice point from a corner over the squared longest edge. Beyond it the triangle is
- * flatter than 172 degrees and the cavity would be large. Measured: without it, two borders that were drawn twice take
- * minutes. */
+/* Maximum squared distance of a lattice point from a corner, divided by the squared longest edge. Beyond it the
+ * triangle is flatter than 172 degrees and the cavity would be large. Measured: without it, two borders that were drawn
+ * twice take minutes. */
 #define TRI_LATTICE_REACH 16.0
 /* Whole cells of the lattice are inserted if at least about TRI_LATTICE_LEAST cells are expected, with at most
  * TRI_LATTICE_SPARSE sites for each cell, because rows also cross areas outside the mesh. Guess. */

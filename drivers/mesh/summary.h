@@ -11,8 +11,8 @@ void summary_input(const struct run *run);
 /* Prints on standard error why the mesh is empty (also if quiet), and that segments were skipped. */
 void summary_notes(const struct run *run);
 
-/* Prints one line with the number of triangles that violate the bounds, by reason. They are counted unless the mesh has
- * gone, or the line is not printed. */
+/* Prints one line with the number of triangles that violate the bounds, by reason. They are counted here, except
+ * after a sweep and in quiet runs. */
 void summary_bounds(struct run *run);
 
 /* Returns the number of triangles, for all reasons. */

@@ -92,7 +92,7 @@ enum { PAR_SHARINGS = 7 }; /* one entry for each power of two of shares up to TR
 
 enum par_way { /* how the mesh was stored during the run */
     PAR_IN_MEMORY,
-    PAR_SWEPT,  /* column by column; finished tiles left memory */
+    PAR_SWEPT,  /* column by column; finished tiles were removed from memory */
     PAR_PARKED  /* the whole mesh, in files mapped into memory */
 };
 

@@ -9,7 +9,8 @@
 #ifdef _OPENMP
 #include <omp.h>
 
-/* Return the number of threads if the caller did not request one, and whether to test that the system allows it. */
+/* default_threads returns the number of threads for callers that request none. must_try returns whether to test that
+ * the system allows `threads` threads. */
 static int default_threads(void) { return omp_in_parallel() ? 1 : omp_get_max_threads(); }
 static bool must_try(int threads, bool wary) { return wary || threads > omp_get_num_procs(); }
 

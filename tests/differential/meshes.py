@@ -63,7 +63,7 @@ class Mesh:
                 if len(beside) == 2 and side not in constrained and self.is_tie(side, beside)}
 
     def cells(self, ties, name):
-        """{sorted vertices of each cell, by their common names name[v]: its attributes}"""
+        """Maps each cell to its attributes. The key is the sorted tuple of the names name[v] of its vertices v."""
         group = list(range(len(self.triangles)))
 
         def root(t):

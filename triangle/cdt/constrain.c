@@ -30,7 +30,8 @@
 #include "triangle/mesh/surface.h"
 #include "triangle/tunables.h"
 
-enum { WINDOW = 64 }; /* number of further triangles searched for a nearer vertex after one beside the piece is found */
+/* Minimum number of further triangles searched for a nearer vertex, once a vertex beside the piece is found. */
+enum { WINDOW = 64 };
 
 static const struct tri_course NO_SEGMENT = {TRI_NONE, TRI_NONE, false};
 

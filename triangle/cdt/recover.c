@@ -388,8 +388,8 @@ static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, st
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* State of a search that goes round a vertex, one triangle per step, for the triangle that the ray from the vertex to q
- * enters first. */
+/* State of a search around a vertex, one triangle per step. The result is the triangle that the ray from the vertex to
+ * q enters first. */
 struct rotation {
     tri_vertex_id vertex;
     tri_triangle_id start, t;

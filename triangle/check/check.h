@@ -85,12 +85,12 @@ struct tri_check_source {
 /* Measured peak memory without a limit, in bytes per triangle and per subsegment. */
 enum { TRI_CHECK_BYTES = 72, TRI_CHECK_SUB_BYTES = 400 };
 
-/* Returns that fraction of the bytes that the check needs regardless of its limit: one byte per vertex, up to 370
- * per subsegment, and the input (NULL: none). If no subsegments are listed, the mesh is assumed to have no holes. If
- * that is wrong and the limit does not suffice, the check returns TRI_NO_MEMORY with a message. */
+/* Returns the memory in bytes that the check needs under any limit: one byte per vertex, up to 370 per subsegment, and
+ * the input (NULL: none). If no subsegments are listed, the mesh is assumed to have no holes. If that is wrong and the
+ * limit does not suffice, the check returns TRI_NO_MEMORY with a message. */
 double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
 
-/* Returns the memory limit to use if tri_check_least_bytes returned `least`; 0: so little that no limit is needed. */
+/* Returns the memory limit to use if tri_check_least_bytes returned `least`; 0: none, since little memory is needed. */
 double tri_check_bound(const struct tri_check_source *source, double least);
 
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };

@@ -215,7 +215,7 @@ static bool find_division(const struct tri_refiner *r, const struct tri_subsegme
     return *fraction > 0.01 && *fraction < 0.99;
 }
 
-/* Divides the waiting subsegments and their parts. */
+/* Divides the waiting subsegments, and then their parts, until no part needs to be divided. */
 static bool divide(struct tri_refiner *r)
 {
     while (r->n_encroached > 0) {

@@ -27,8 +27,8 @@ typedef void tri_deferred(void *user, tri_triangle_id triangle);
 
 /* Makes room for the given number of points in a mesh that is a view of shared arrays. Moves the view's counts and
  * capacities to an unused range that has room for at least one point, and guarantees that later calls for one point
- * each find room for the rest. A point needs at most one vertex, two triangles and one subsegment. If `points` is
- * above 1, only the first point may need a subsegment. Returns TRI_NO_ROOM if there is no room now. */
+ * each find room for the rest. A point adds at most one vertex, two triangles and one subsegment. If `points` is
+ * above 1, only the first point may add a subsegment. Returns TRI_NO_ROOM if there is no room now. */
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, int32_t points, struct tri_error *error);
 
 /* Callbacks of a caller that holds only part of a mesh (TRI_BEYOND).

@@ -64,7 +64,7 @@ static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const t
                        int32_t most)
 {
     struct span rows = {HUGE_VAL, -HUGE_VAL}, columns = rows;
-    double painted = 0; /* rows summed over all triangles */
+    double painted = 0; /* number of rows, summed over all triangles */
     for (int32_t i = 0; i < n; i++) {
         struct tri_point p[3];
         corners_of(mesh, triangle[i], p);

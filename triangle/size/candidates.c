@@ -38,7 +38,7 @@ struct making {
     const struct tri_contest *contest; /* borrowed */
     const struct tri_stop *stop;       /* borrowed; NULL: cannot be stopped */
     int32_t *stack; /* lists of the cells on the path from the root to the current cell */
-    int64_t n, capacity; /* numbers on the stack; allocated */
+    int64_t n, capacity; /* entries of the stack: used; allocated */
     struct sight *sight; /* [QUARTERS] keys for each item of a list */
     struct portion *portion; /* [n_portions] cells left to tasks, in the order of the tree; NULL: no tasks */
     size_t n_portions;       /* number of cells left to tasks */

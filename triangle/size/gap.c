@@ -195,7 +195,7 @@ static int octave_of(double cost)
     return octave < OCTAVES ? octave : OCTAVES - 1;
 }
 
-/* Costs and numbers of the triangles that are not cheap in a share of the mesh, by octave of their cost. */
+/* Sums over the expensive triangles in one share of the mesh, by octave of their cost. */
 struct demand {
     double cost[OCTAVES], count[OCTAVES]; /* sum of costs; number of triangles */
 };

@@ -59,7 +59,7 @@ static char *temporary_name(const char *path, int i)
     return path_beside(path, name);
 }
 
-/* Returns the process number in a temporary name of this host; 0: another host, or not a temporary name. */
+/* Returns the number of the process that made a temporary file of this host; 0: the name is not of this kind. */
 static long process_of(const char *name, const char *prefix)
 {
     size_t length = strlen(prefix);

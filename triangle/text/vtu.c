@@ -14,13 +14,13 @@
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_QUADRATIC_TRIANGLE = 22 };
 enum { MOST_ARRAYS = 8, HEAD_BYTES = 4096 };
 
-/* An array has a row for each point, or for each triangle and then for each segment. Rows of segments are not
- * longer. */
+/* An array describes points or cells. Arrays of cells list the triangles first, then the segments. Rows of segments are
+ * not longer than rows of triangles. */
 struct array {
     const char *section, *type, *name;
     int32_t components;
-    int64_t n[2]; /* number of rows of each kind */
-    size_t bytes[2];
+    int64_t n[2];    /* number of rows: [0] of points or triangles, [1] of segments */
+    size_t bytes[2]; /* bytes of a row of each kind */
     tri_row_call *row;
 };
 
