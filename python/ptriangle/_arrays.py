@@ -75,9 +75,8 @@ def from_numpy(kind: Union[Type[Reals], Type[Ints]], given: Any, name: str,
         rows = rows.reshape(-1, 1)
     if rows.ndim != 2 or (width is not None and rows.shape[1] != width):
         raise InputError("%s: shape %s instead of (n, %s)" % (name, rows.shape, "any" if width is None else width))
-    item = rows.dtype.itemsize
-    plain = rows.strides[1] == item and rows.strides[0] % item == 0 and rows.strides[0] >= rows.shape[1] * item
-    if not plain or not rows.flags.aligned:
-        rows = np.ascontiguousarray(rows)
-    stride = rows.strides[0] // item if rows.shape[0] > 1 else rows.shape[1]
-    return kind(rows.ctypes.data, rows.shape[0], rows.shape[1], max(stride, rows.shape[1])), rows
+    step, item = rows.strides
+    n, width = rows.shape
+    if item != rows.itemsize or step % item or step < width * item or not rows.flags.aligned:
+        rows, step = np.ascontiguousarray(rows), width * rows.itemsize
+    return kind(rows.ctypes.data, n, width, step // rows.itemsize), rows

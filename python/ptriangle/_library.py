@@ -148,10 +148,6 @@ for _way in ("tri", "par"):
     _declare(_way + "_mesh_new", c_int, POINTER(_mesh), POINTER(Figure), POINTER(Settings), _error)
     _declare(_way + "_mesh_refine", c_int, _mesh, POINTER(Settings), _error)
 _declare("tri_mesh_delete", None, _mesh)
-for _name in ("points", "point_attributes", "triangle_attributes"):
-    _declare("tri_mesh_" + _name, Reals, _mesh)
-for _name in ("point_markers", "triangles", "segments", "segment_markers"):
-    _declare("tri_mesh_" + _name, Ints, _mesh)
 _declare("tri_mesh_neighbors", c_int, _mesh, POINTER(Ints), _error)
 _declare("tri_mesh_edges", c_int, _mesh, POINTER(Ints), POINTER(Ints), _error)
 _declare("tri_mesh_figure", None, _mesh, POINTER(Figure))

@@ -48,21 +48,30 @@ def made(figure: Figure, settings: Settings, calls: Calls) -> Handle:
     return handle
 
 
-def _arrays_of(handle: Handle) -> Dict[str, Array]:
-    arrays = {name: to_numpy(getattr(library, "tri_mesh_" + name)(handle.mesh), handle) for name in _NAMES}
-    for kind in ("point", "triangle"):  # no attributes: one row without columns for each
-        if len(arrays[kind + "_attributes"]) == 0:
-            arrays[kind + "_attributes"] = np.empty((len(arrays[kind + "s"]), 0))
-    for kind in ("point", "segment"):
-        arrays[kind + "_markers"] = arrays[kind + "_markers"][:, 0]
-    return arrays
+class _Arrays(Dict[str, Array]):
+    """The arrays of a mesh of the library by name. Each is made when it is first read."""
+
+    def __init__(self, handle: Handle) -> None:
+        super().__init__()
+        self._handle, self._figure = handle, Figure()
+        library.tri_mesh_figure(handle.mesh, byref(self._figure))
+
+    def __missing__(self, name: str) -> Array:
+        rows = to_numpy(getattr(self._figure, name), self._handle)
+        if name.endswith("_markers"):
+            rows = rows[:, 0]
+        elif name.endswith("_attributes") and len(rows) == 0:  # no attributes: one row without columns for each
+            rows = np.empty((getattr(self._figure, name[:-len("_attributes")] + "s").n, 0))
+        self[name] = rows
+        return rows
 
 
 def _used(arrays: Mapping[str, Array], n_input: int, crossings: int) -> Array:
     """Marks the points that are corners of triangles or ends of segments. All new points are, except crossings."""
     corners, n = arrays["triangles"].ravel(), len(arrays["points"])
     first_new = n if crossings else n_input
-    used = np.arange(n) >= first_new
+    used = np.zeros(n, bool)
+    used[first_new:] = True
     used[corners[corners < first_new] if first_new < n else corners] = True
     used[arrays["segments"].ravel()] = True
     return used
@@ -88,15 +97,14 @@ class Mesh:
         self._input_points: Array = np.empty(0, np.int32)
         self._polygons: Optional[Array] = None  # the polygon of each triangle; None without overlay
         self._order = order
-        self._arrays = _arrays_of(handle)
-        self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
+        self._arrays: Dict[str, Array] = _Arrays(handle)
 
     def _settle_points(self, n_input: int, n_told: Optional[int], keep_unused: bool) -> None:
         """Finds the new numbers of the first n_told of the n_input points (None: all), and removes points that no
         triangle uses. A mesh without triangles keeps its points."""
         arrays = self._arrays
         self._input_points = np.arange(n_input, dtype=np.int32)[:n_told]
-        used = _used(arrays, n_input, self._counts["crossings"])
+        used = _used(arrays, n_input, library.tri_mesh_count(self._library_mesh().mesh, _COUNTS.index("crossings")))
         if len(arrays["triangles"]) > 0 and not used.all():
             kept = np.ones(len(used), bool) if keep_unused else used
             numbers = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
@@ -230,6 +238,14 @@ class Mesh:
 
     # --- construction
 
+    def _all_arrays(self) -> Dict[str, Array]:
+        return {name: self._arrays[name] for name in _NAMES}
+
+    @cached_property
+    def _counts(self) -> Dict[str, int]:
+        mesh = self._library_mesh().mesh
+        return {name: int(library.tri_mesh_count(mesh, k)) for k, name in enumerate(_COUNTS)}
+
     @cached_property
     def _nodes(self) -> Tuple[Array, Array, Array]:
         points, attributes, markers = (self._arrays[name] for name in _NAMES[:3])
@@ -281,13 +297,13 @@ class Mesh:
         """The mesh of the library. After unpickling it is rebuilt with the same numbers."""
         if self._handle is None:
             calls = Calls("Mesh")
-            figure, kept = figure_of(self._arrays, calls.who)
+            figure, kept = figure_of(self._all_arrays(), calls.who)
             self._handle = made(figure, Settings(), calls)
             del kept
         return self._handle
 
     def __getstate__(self) -> Mapping[str, Any]:
-        return {"order": self._order, "arrays": {name: np.array(rows) for name, rows in self._arrays.items()},
+        return {"order": self._order, "arrays": {name: np.array(rows) for name, rows in self._all_arrays().items()},
                 "counts": self._counts, "input_points": self._input_points, "polygons": self._polygons}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
@@ -324,7 +340,7 @@ class Mesh:
                                                          protect, max_new_points, gate, fence, threads, stop, progress,
                                                          placement, size_near, gradation, min_size, max_size,
                                                          optimise, elements_across, per_circle))
-        arrays: Dict[str, Any] = dict(self._arrays, triangle_areas=triangle_areas)
+        arrays: Dict[str, Any] = dict(self._all_arrays(), triangle_areas=triangle_areas)
         if self._polygons is not None:  # it comes back with the finer triangles
             arrays["triangle_attributes"] = np.column_stack([self.triangle_attributes, self._polygons + 1])
         figure, kept = figure_of(arrays, calls.who)
@@ -392,7 +408,7 @@ class Mesh:
         Points that no triangle uses are not a fault. They give an InputWarning."""
         detail, calls = VerdictDetail(), Calls("check()")
         demands = Demands(min_angle=float(min_angle or 0), max_area=float(max_area or 0), delaunay=int(conforming))
-        figure, kept = figure_of(self._arrays, calls.who)
+        figure, kept = figure_of(self._all_arrays(), calls.who)
         calls.run_checked(library.tri_check_figure, byref(figure), None, byref(demands), byref(detail))
         del kept
         found, n = Verdict(detail), len(self._arrays["points"])
@@ -407,7 +423,7 @@ class Mesh:
         h5py), x.2dm (SMS), x.14 or x.grd (ADCIRC). x.poly, x.ele, x.node, and x without suffix write x.node, x.ele and
         x.poly, with numbers that count from `first`, 0 or 1. All formats except .h5, .vtkhdf and .14 support order
         2."""
-        arrays = dict(self._arrays)
+        arrays = self._all_arrays()
         if self._order == 2:
             arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))
         _files.write_arrays(path, arrays, first, "write()")

@@ -43,8 +43,9 @@ def _refuse(who: str, name: str, given: Any) -> None:
 
 
 def _take_sizes(settings: Settings, calls: Calls, wanted: "Wanted") -> None:
-    found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: the library uses these arrays
-    settings.sizes, settings.n_sizes = found, len(found)
+    if wanted.size is not None or wanted.size_near is not None:
+        found, settings.kept = fields(calls, wanted.size, wanted.size_near)  # kept: the library uses these arrays
+        settings.sizes, settings.n_sizes = found, len(found)
     for name in ("gradation", "min_size", "max_size", "elements_across", "per_circle"):
         if getattr(wanted, name) is not None:
             setattr(settings, name, length(calls.who, name, getattr(wanted, name)))

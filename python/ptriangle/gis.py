@@ -253,7 +253,7 @@ def write(mesh: Mesh, path: Any, depths: Optional[npt.ArrayLike] = None,
     """Writes a mesh with depths at its points: x.14 or x.grd (ADCIRC, SCHISM), x.2dm (SMS, QGIS), x.msh (Gmsh), x.nc
     (UGRID), and all formats of Mesh.write(). points: other coordinates [n, 2], such as longitudes and latitudes."""
     who = "gis.write()"
-    path, arrays = os.fspath(path), dict(mesh._arrays)
+    path, arrays = os.fspath(path), mesh._all_arrays()
     if mesh.order != 1:
         raise InputError("%s: a mesh of second order" % who)
     for name, key, given, shape in (("points", "points", points, (len(mesh.points), 2)),
