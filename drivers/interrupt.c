@@ -35,7 +35,7 @@ enum {
     GOING_ON = 16, /* the remaining work is done in spite of a request */
     TOLD = 32,     /* the program has reported why it ends */
     DONE = 64,     /* all files have their names: the program ends by itself, with success */
-    WHO = 256      /* factor of the request in the state */
+    WHO = 256      /* the state is the sum of these bits and WHO times the request */
 };
 enum { NOBODY = 0, TIME_UP = 255 }; /* values of the request; all others are numbers of signals */
 

@@ -547,7 +547,7 @@ static void resume_until_done(const struct way *way, const struct whole_run *wan
         open_it(&c, rounds > 0);
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
-        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* making it again is reported */
+        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* making the coarse mesh again is reported */
         r.max_reported = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)

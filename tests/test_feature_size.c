@@ -1,5 +1,4 @@
-/* Sizes of features that vertices store, which make refinement end. tests/corpus/ lists the numbers of triangles that
- * result. */
+/* The feature sizes of vertices, which make refinement end. tests/corpus/ lists the resulting numbers of triangles. */
 #include "support.h"
 
 #include "triangle/mesh/parents.h"

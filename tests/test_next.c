@@ -243,7 +243,7 @@ static const struct trial easy = {"letter.poly", 20, 15000, 500, false, false, 0
 static const struct trial stubborn = {"cracked_plate.poly", 20, 5000, 256, false, false, 1};
 static const struct trial expensive = {"letter.poly", 33, 15000, 500, false, false, 0};
 static const struct trial both = {"cracked_plate.poly", 33, 5000, 256, false, false, 1};
-/* Sizes without cells of their own. */
+/* Refinement for sizes has no cells of its own. */
 static const struct trial few_cells = {"cracked_plate.poly", 36, 15000, 2000, false, false, 1};
 static const struct trial no_cells = {"letter.poly", 33, 15000, 1e6, false, false, 0};
 

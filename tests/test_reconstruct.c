@@ -905,8 +905,8 @@ static double max_distance_from_parents(const struct tri_mesh *mesh)
     return most;
 }
 
-/* Boundaries far higher than wide, read again. Vertices must stay inside the domain that was read, within units of the
-   finer coordinate. Units of the larger coordinate would leave no position for a split. The chains of the first input
+/* Boundaries far higher than wide, read again. Vertices may leave the domain that was read only by units of the finer
+   coordinate. Units of the larger coordinate would leave no position for a split. The chains of the first input
    follow their lines. The second has corners about five units inside, and still its pieces are recognised as chains. */
 static void boundaries_that_are_read_can_be_split(void **state)
 {

@@ -1,4 +1,4 @@
-/* Points are sorted along the curve and restored. The internal order leaves no trace in a mesh. */
+/* Points are sorted along the curve, then their order is restored. The internal order leaves no trace in a mesh. */
 #include "support.h"
 #include "triangle/cdt/delaunay.h"
 #include "triangle/geometry/hilbert.h"

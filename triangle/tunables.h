@@ -26,8 +26,8 @@
 /* The new point for a triangle that is only too large makes an equilateral triangle with this share of the area bound.
  * Measured: the mean area is 0.663 of the bound; with circumcentres it is 0.645. */
 #define TRI_IDEAL 0.85
-/* Height of an off-centre, relative to the exact height at which its edge is seen under the angle bound, 0.5. Measured:
- * 0.475 makes up to 2% more triangles. At 0.5 rounding makes bad triangles, and 9% to 110% more of them in total. */
+/* Height of an off-centre. At 0.5, its edge is seen exactly under the angle bound. Measured: 0.475 makes up to 2% more
+ * triangles. At 0.5 rounding makes bad triangles, and 9% to 110% more of them in total. */
 #define TRI_OFF_CENTRE 0.499
 /* Another cavity is searched for a point of the petal if its squared distance is larger by this factor. Guess, to cover
  * rounding. */

@@ -31,8 +31,8 @@ struct estimate {
 /* Estimates the needs for the mesh and the bounds. Accuracy: docs/performance.md. O(triangles). */
 struct estimate estimate_make(const struct run *run, bool with_seconds);
 
-/* Finds what a schedule needs for a mesh that grows by this number of triangles: all of *needs except triangles and
- * files. demand: how many of them the areas require; < 0: needs->whole is already known. For run_settings. */
+/* Sets what a schedule needs for a mesh that grows by `grown` triangles: all members of *needs except triangles and
+ * files. demand: number of triangles that areas require; < 0: needs->whole is already known. For run_settings. */
 void schedule_needs(const struct run *run, bool sweeps, double grown, double demand, struct needs *needs);
 
 /* Bytes per triangle of the mesh and of the data that refinement or writing needs beside it. */

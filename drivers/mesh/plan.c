@@ -71,14 +71,14 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     return TRI_OK;
 }
 
-/* Bytes to write HDF5 of a mesh without refinement, beside half of the peak, which the mesh itself needs. */
+/* Returns the memory for writing HDF5 if the mesh is not refined, in addition to the mesh itself; otherwise 0. */
 static double unrefined_streams(const struct run *run)
 {
     const double triangles = run->input.elements.n > 0 ? run->input.elements.n : 2.0 * run->input.pslg.n_points;
     return run->options.refine ? 0 : estimate_streams(run, triangles);
 }
 
-/* Returns the peak memory, with the input that has been read. */
+/* Returns the peak memory, with the input that has been read. After its construction, the mesh takes half of `made`. */
 static double input_bytes(const struct run *run)
 {
     const struct run_input *input = &run->input;

@@ -238,7 +238,8 @@ static void follow_stage(void *user, enum tri_stage begins)
     }
 }
 
-/* A stop that was not noticed counts as one until now, unless the mesh is finished and not kept elsewhere. */
+/* Returns TRI_STOPPED instead of TRI_OK if a stop was requested but not noticed. If the run keeps its state
+ * (long_options_state), a finished mesh is written nevertheless. */
 static enum tri_status notice_stop(struct run *r, enum tri_status status)
 {
     if (r->built && long_options_state(r->settings.options))

@@ -1,7 +1,7 @@
 """Runs the examples of a document as they are written, one after the other, in a folder that holds the figures of the
-repository's `data` and a link to it: blocks ```python in this process, and blocks whose first line names a file
-(```text plate.poly) are written to that file. If a block ```text follows a block ```python, each of its lines must
-occur in what the example prints, in this order, except lines `...`.
+repository's `data` and a link to it. Blocks ```python run in this process. Blocks whose first line names a file
+(```text plate.poly) are written to that file. If a block ```text follows a block ```python, the example must print all
+of its lines in this order; lines `...` are skipped.
 
 Usage: run_examples.py DOCUMENT FOLDER     an example whose module cannot be imported is skipped, with a line
 """

@@ -1,7 +1,7 @@
 /* The state of a run that a checkpoint holds, and when states are written.
  *
- * A state holds the position of the run (sched/schedule/next.h). Of a sweep it also holds the part of the mesh that is
- * in memory. Of a mesh that is kept as a whole, in memory or parked, it holds all of the mesh. A run that gives up its
+ * A state holds the position of the run (sched/schedule/next.h). In a sweep it also holds the part of the mesh that is
+ * in memory. If the mesh is kept as a whole, in memory or parked, it holds the whole mesh. A run that gives up its
  * sweep goes on with states of the second kind.
  *
  * THEOREM. A resumed run makes the same bytes as a run that was never stopped. The rest of a run depends only on the

@@ -126,7 +126,7 @@ enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);
 
 /* --- paste.c: shared by lenders and borrowers; not collective */
 
-/* Returns [n_ranks] messages that will hold what is added to the talks from now on. NULL: no memory. */
+/* Returns [n_ranks] messages, to be filled with the items that the talks gain after this call. NULL: no memory. */
 struct par_message *par_messages_begin(const struct par_ranks *ranks, const struct par_talk *talk);
 /* Calls par_message_fill for each message. False: no memory. */
 bool par_messages_fill(const struct par_ranks *ranks, struct par_talk *talk, struct par_message *message);

@@ -41,7 +41,7 @@ enum par_next {
                          given up, or resumed from the state of a whole mesh */
     PAR_COLUMN,       /* the beginning of column `column` of a sweep */
     PAR_COLUMN_PHASE, /* phase `phase` of this column, except for the blocks in `done` */
-    PAR_BOUNDS_PHASE, /* as PAR_SIZES_PHASE, of the schedule for all bounds */
+    PAR_BOUNDS_PHASE, /* as PAR_SIZES_PHASE, but in the schedule for all bounds */
     PAR_BOUNDS_REST,  /* as PAR_SIZES_REST, but in the schedule for all bounds */
     PAR_HAND_OUT,     /* refinement is complete. A mesh with cells has been numbered by them, unless by_block. If
                          smoothing is requested, this step begins with it */

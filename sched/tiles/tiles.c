@@ -447,8 +447,8 @@ static enum tri_status number_column(struct par_column *c, struct tri_error *err
     return par_pipeline_run(&pipeline, executor, error);
 }
 
-/* Frees the column's lists of vertices until it is handed out. If all columns are numbered first, their lists would
- * otherwise contain all vertices of the mesh. */
+/* Frees the column's lists of vertices. They are restored when the column is handed out. If all columns are numbered
+ * first, their lists would otherwise contain all vertices of the mesh. */
 static void free_vertex_lists(struct par_column *c)
 {
     par_finds_forget(&c->vertices);

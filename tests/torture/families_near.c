@@ -149,7 +149,7 @@ static void make_crossings(struct figure *f)
     enclose(f);
 }
 
-/* Bars across bars, without vertices at their crossings, which sometimes fall onto one place. */
+/* Bars across bars, without vertices at their crossings. Sometimes several crossings fall onto one place. */
 static void make_crossing_grid(struct figure *f)
 {
     int32_t n = figure_size(f, 2, 15), m = figure_size(f, 2, 15);

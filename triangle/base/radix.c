@@ -7,8 +7,8 @@
 #include <string.h>
 
 enum {
-    DIGIT = 10,           /* maximum number of bits in a pass of the sort from the lowest digit */
-    WIDE_DIGIT = 8,       /* bits in a pass by the highest digit */
+    DIGIT = 10,           /* maximum number of bits in a pass that sorts a bucket */
+    WIDE_DIGIT = 8,       /* bits in a pass that makes buckets */
     BUCKETS = 1 << WIDE_DIGIT,
     SHARES = 16,          /* number of shares in such a pass; small, since their counts are on the stack */
     FEW = 64,             /* up to this many items are sorted by insertion */

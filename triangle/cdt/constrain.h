@@ -7,7 +7,7 @@
 
 struct tri_constrain_report {
     int32_t crossings; /* vertices inserted where segments cross */
-    int32_t bent;      /* how often a segment was routed through a vertex within rounding of it, or of a crossing */
+    int32_t bent;      /* how often a segment was led through a vertex within rounding of the segment or a crossing */
     int32_t skipped;   /* segments with an end out of range, or two equal ends */
     int64_t looked_at; /* triangles visited in search of obstacles */
 };

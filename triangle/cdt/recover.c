@@ -28,7 +28,7 @@ struct tri_recovery_place {
     tri_link outer;     /* border: link of the mesh on its outer side */
     union {
         tri_halfedge code; /* border, until the triangles are freed: half-edge of its triangle */
-        int32_t twin;      /* later: the other border that is the same edge, or TRI_NONE */
+        int32_t twin;      /* border, afterwards: another border along the same edge, or TRI_NONE */
     };
     int32_t inner;      /* border: link on its inner side */
     int32_t prev, next; /* string: neighbouring places */

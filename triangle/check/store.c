@@ -156,7 +156,7 @@ static enum tri_status drain(struct checker *c,
     return status;
 }
 
-/* Matches the half-edges without a twin in their part, after the last part.
+/* After the last part, matches the half-edges that have no twin within their own part.
  *
  * Sorted by edge, the two half-edges of an edge are adjacent. A single one is a boundary edge. More than two, or two
  * with the same direction, are faults and also count as boundary edges. */

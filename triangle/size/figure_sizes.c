@@ -114,7 +114,7 @@ enum { MOST_SHRINKINGS = 40, DEEPEST = 12, MOST_UNSEEN = 2 };
 struct along {
     int32_t chain; /* number of the chain */
     double place; /* of its first end, along the chain */
-    double sign;  /* 1; -1: the wall runs against the chain */
+    double sign;  /* 1: the wall runs along the chain; -1: against it */
 };
 
 struct channels {
