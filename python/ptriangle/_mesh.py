@@ -132,7 +132,7 @@ class Mesh:
     def points(self) -> Reals:
         """Coordinates, [n, 2]: the input points in their order, then new points, then with order 2 the midpoints of the
         edges. Input points that no triangle uses are left out, unless mesh() was called with keep_unused."""
-        return self._nodes[0]
+        return self._nodes["points"]
 
     @property
     def input_points(self) -> Integers:
@@ -145,19 +145,19 @@ class Mesh:
     def point_attributes(self) -> Reals:
         """Attributes of the points, [n, k]; k is 0 if none were given. At new points they are interpolated linearly in
         the triangulation of the input."""
-        return self._nodes[1]
+        return self._nodes["point_attributes"]
 
     @property
     def point_markers(self) -> Integers:
         """Markers of the points, [n]: as given, otherwise that of a segment at the point, otherwise 1 on the boundary
         and 0 inside."""
-        return self._nodes[2]
+        return self._nodes["point_markers"]
 
     @property
     def triangles(self) -> Integers:
         """Points of the triangles, counter-clockwise, [m, 3]; with order 2 [m, 6]: corners a, b, c, then the midpoints
         of ab, bc and ca, in the order of VTK, Gmsh and meshio."""
-        return self._triangles
+        return self._nodes["triangles"]
 
     @property
     def triangle_attributes(self) -> Reals:
@@ -246,23 +246,18 @@ class Mesh:
         mesh = self._library_mesh().mesh
         return {name: int(library.tri_mesh_count(mesh, k)) for k, name in enumerate(_COUNTS)}
 
-    @cached_property
-    def _nodes(self) -> Tuple[Array, Array, Array]:
-        points, attributes, markers = (self._arrays[name] for name in _NAMES[:3])
-        if self._order == 1:
-            return points, attributes, markers
-        found = _second_order.points_of(points, attributes, markers, self.edges, self.edge_markers)
-        freeze(found)
-        return found
+    @property
+    def _nodes(self) -> Dict[str, Array]:
+        """Arrays of points and triangles, with order 2 with the midpoints of edges."""
+        return self._arrays if self._order == 1 else self._with_midpoints
 
     @cached_property
-    def _triangles(self) -> Array:
-        triangles = self._arrays["triangles"]
-        if self._order == 1:
-            return triangles
-        found = _second_order.triangles_of(triangles, self.edges, len(self._arrays["points"]))
-        freeze([found])
-        return found
+    def _with_midpoints(self) -> Dict[str, Array]:
+        points, attributes, markers, triangles = (self._arrays[name] for name in _NAMES[:4])
+        found = (*_second_order.points_of(points, attributes, markers, self.edges, self.edge_markers),
+                 _second_order.triangles_of(triangles, self.edges, len(points)))
+        freeze(found)
+        return dict(zip(_NAMES, found))
 
     def _with_middles(self, ends: Array) -> Array:
         if self._order == 1:
@@ -425,7 +420,7 @@ class Mesh:
         2."""
         arrays = self._all_arrays()
         if self._order == 2:
-            arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))
+            arrays.update(self._nodes)
         _files.write_arrays(path, arrays, first, "write()")
 
     def to_meshio(self) -> Any:

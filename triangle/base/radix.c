@@ -11,7 +11,7 @@ enum {
     WIDE_DIGIT = 8,       /* bits in a pass that makes buckets */
     BUCKETS = 1 << WIDE_DIGIT,
     SHARES = 16,          /* number of shares in such a pass; small, since their counts are on the stack */
-    FEW = 64,             /* up to this many items are sorted by insertion */
+    FEW = 16,             /* up to this many items for each pass saved are sorted by insertion */
     MANY = 1 << 18,       /* more items than this do not fit the cache, and are worth several tasks */
     LARGE_SHARE = 8       /* a bucket with more than 1 / LARGE_SHARE of the items is also sorted by several tasks */
 };
@@ -58,9 +58,10 @@ static void stable_pass(struct run *run, int shift, int digit)
 static void sort_run(struct run run)
 {
     int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
-    if (run.n <= FEW)
+    const bool is_short = run.n <= FEW * passes;
+    if (is_short)
         insertion_sort(&run);
-    for (int pass = 0; run.n > FEW && pass < passes; pass++) {
+    for (int pass = 0; !is_short && pass < passes; pass++) {
         int first = bits * pass / passes, end = bits * (pass + 1) / passes;
         stable_pass(&run, run.low + first, end - first);
     }

@@ -447,9 +447,10 @@ static void consider_beside(const struct builder *l, const struct tri_piece *pie
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
     double x = b.x - a.x, y = b.y - a.y, length2 = x * x + y * y, at = x * (q.x - a.x) + y * (q.y - a.y);
+    if (v == piece->from || v == piece->to || !(at > 0 && at < length2))
+        return;
     double far = fmax(tri_resolution(q), fmax(tri_resolution(a), tri_resolution(b)));
-    if (v == piece->from || v == piece->to || !(at > 0 && at < length2) ||
-        fabs(det) > 8 * far * (fabs(x) + fabs(y)))
+    if (fabs(det) > 8 * far * (fabs(x) + fabs(y)))
         return;
     double distance = tri_line_distance(a, b, q), near = TRI_ON_SEGMENT * tri_resolution(q);
     if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
@@ -470,7 +471,8 @@ static struct hit find_hit(const struct builder *l, const struct tri_piece *piec
         return met;
     int e = tri_corner_of(&mesh->tri[t], piece->from);
     tri_vertex_id right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
-    double at_right = tri_orient2d(pa, pb, mesh->xy[right]), at_left = tri_orient2d(pa, pb, mesh->xy[left]);
+    double at_right = right == piece->to ? 0 : tri_orient2d(pa, pb, mesh->xy[right]);
+    double at_left = at_right == 0 || left == piece->to ? 0 : tri_orient2d(pa, pb, mesh->xy[left]);
     if (at_right == 0 || at_left == 0) {
         met.end = at_right == 0 ? right : left;
         return met;

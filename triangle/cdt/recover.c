@@ -369,48 +369,47 @@ static tri_triangle_id next_around(const struct tri_mesh *mesh, tri_triangle_id 
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
-/* Does the ray from a (corner k of t) to q leave through t? The right edge counts as part of t, the left edge does
- * not. */
-static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
+/* Is q, which lies on the line through a and b, on the side of b? */
+static bool is_ahead(struct tri_point a, struct tri_point b, struct tri_point q)
 {
-    const struct tri_triangle *at = &mesh->tri[t];
-    struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
-    double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
-    if (r == 0) /* on the line of the right edge: is q ahead of a? */
-        return (right.x - a.x) * (q.x - a.x) + (right.y - a.y) * (q.y - a.y) > 0;
-    return r > 0 && s < 0;
+    return (b.x - a.x) * (q.x - a.x) + (b.y - a.y) * (q.y - a.y) > 0;
 }
 
-static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
+/* Does the ray from corner k of t to vertex `to` leave through t? Both edges count as parts of t, because there may be
+ * no triangle beyond the left edge. */
+static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, tri_vertex_id to)
 {
-    const struct tri_triangle *at = &mesh->tri[t];
-    struct tri_point a = mesh->xy[at->v[k]], left = mesh->xy[at->v[tri_prev[k]]];
-    return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
+    const tri_vertex_id *v = mesh->tri[t].v;
+    if (v[tri_next[k]] == to || v[tri_prev[k]] == to)
+        return true;
+    struct tri_point a = mesh->xy[v[k]], right = mesh->xy[v[tri_next[k]]], left = mesh->xy[v[tri_prev[k]]];
+    struct tri_point q = mesh->xy[to];
+    double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
+    return (r > 0 && s < 0) || (r == 0 && is_ahead(a, right, q)) || (s == 0 && is_ahead(a, left, q));
 }
 
 /* State of a search around a vertex, one triangle per step. The result is the triangle that the ray from the vertex to
- * q enters first. */
+ * vertex `to` enters first. */
 struct rotation {
     tri_vertex_id vertex;
     tri_triangle_id start, t;
-    struct tri_point q;
+    tri_vertex_id to;
     bool clockwise;
 };
 
-static struct rotation rotate_from(const tri_triangle_id *corner, tri_vertex_id a, struct tri_point q)
+static struct rotation rotate_from(const tri_triangle_id *corner, tri_vertex_id a, tri_vertex_id to)
 {
     assert(corner[a] != TRI_NONE);
-    return (struct rotation){a, corner[a], corner[a], q, false};
+    return (struct rotation){a, corner[a], corner[a], to, false};
 }
 
-/* Returns the current triangle if the ray leaves through it (its left edge is tested as well, since there may be no
- * triangle beyond it). Otherwise moves on to the next triangle and returns TRI_NONE. After the last one r->t is
- * TRI_NONE. */
+/* Returns the current triangle if the ray leaves through it. Otherwise moves on to the next triangle and returns
+ * TRI_NONE. After the last one r->t is TRI_NONE. */
 static tri_triangle_id rotate_step(const struct tri_mesh *mesh, struct rotation *r)
 {
     tri_triangle_id t = r->t;
     int k = tri_corner_of(&mesh->tri[t], r->vertex);
-    if (leaves_through(mesh, t, k, r->q) || along_left(mesh, t, k, r->q))
+    if (leaves_through(mesh, t, k, r->to))
         return t;
     r->t = next_around(mesh, t, r->vertex, !r->clockwise);
     if (r->t == TRI_NONE && !r->clockwise) { /* continue clockwise, from the neighbour of the first one */
@@ -426,7 +425,7 @@ tri_triangle_id tri_find_exit(const struct tri_mesh *mesh, tri_triangle_id *corn
 {
     const tri_vertex_id from = *a, to = *b;
     tri_triangle_id found = TRI_NONE;
-    struct rotation at[2] = {rotate_from(corner, from, mesh->xy[to]), rotate_from(corner, to, mesh->xy[from])};
+    struct rotation at[2] = {rotate_from(corner, from, to), rotate_from(corner, to, from)};
     int end = 0;
     for (int n = 0; at[end].t != TRI_NONE && (found = rotate_step(mesh, &at[end])) == TRI_NONE;)
         end = n < HUB ? (n++, 0) : 1 - end;

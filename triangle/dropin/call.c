@@ -90,9 +90,10 @@ static void tell_notes(const struct io_run *run)
 static void warn_number(const struct io_run *run, int n, const char *one, const char *several)
 {
     char text[160];
+    if (n <= 0)
+        return;
     snprintf(text, sizeof text, "%d %s", n, n == 1 ? one : several);
-    if (n > 0)
-        warn_client(run, text);
+    warn_client(run, text);
 }
 
 static void warn_of_switch(void *user, const char *text, bool misread)
