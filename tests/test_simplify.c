@@ -355,6 +355,9 @@ static void test_nothing_is_left(void **state)
     assert_non_null(strstr(error.text, "no segment remains"));
     assert_memory_equal(copy.segments, p.segments, 2 * (size_t)p.n_segments * sizeof *p.segments);
     assert_int_equal(copy.n_points, p.n_points);
+    copy.n_segments = 0; /* there is nothing to do */
+    assert_int_equal(tri_simplify(&copy, 100, NULL, NULL, &report, NULL), TRI_OK);
+    assert_int_equal(report.corners + report.islands, 0);
     tri_pslg_free(&copy);
     tri_pslg_free(&p);
 }

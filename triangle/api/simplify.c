@@ -521,6 +521,9 @@ static enum tri_status run_passes(struct simplifying *s, struct ring *ring, cons
 enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struct tri_executor *executor,
                              const struct tri_stop *stop, struct tri_simplify_report *report, struct tri_error *error)
 {
+    *report = (struct tri_simplify_report){0};
+    if (pslg->n_segments <= 0 || pslg->n_points <= 0)
+        return TRI_OK;
     const size_t points = (size_t)pslg->n_points + 1, segments = (size_t)pslg->n_segments + 1;
     const size_t items = points + (size_t)pslg->n_holes + (size_t)pslg->n_regions;
     struct simplifying s = {.pslg = pslg, .least = min_edge, .n_items = (int32_t)(items - 1)};

@@ -28,8 +28,8 @@ struct tri_simplify_report {
 
 /* Simplifies the PSLG. min_edge: L, above 0, in its units. The remaining points, segments, holes and regions keep their
  * order. Segments that a mesh skips are removed. The PSLG is changed only if TRI_OK is returned. TRI_BAD_INPUT: as for
- * tri_generate, or no segment remains; TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_STOPPED. Expected O(n log n) for n points that
- * are spread evenly. */
+ * tri_generate, or none of its segments remains; TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_STOPPED. Expected O(n log n) for n
+ * points that are spread evenly. */
 enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struct tri_executor *executor,
                              const struct tri_stop *stop, struct tri_simplify_report *report, struct tri_error *error);
 
