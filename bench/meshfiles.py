@@ -29,9 +29,10 @@ def rows(path):
 
 class Pslg:
     """points: x and y alternating; segments, triangles: point numbers from 0; holes: x and y alternating; regions: x,
-    y, attribute, area bound, one region after the other."""
+    y, attribute, area bound, one region after the other; first: the number of the first point in the files."""
 
     def __init__(self):
+        self.first = 0
         self.points, self.segments, self.holes, self.triangles = array("d"), array("i"), array("d"), array("i")
         self.regions = array("d")
 
@@ -56,6 +57,7 @@ def read(path):
     else:
         nodes = rows(path[:-len(".poly")] + ".node")
         pslg.points, first = _read_points(nodes, next(nodes))
+    pslg.first = first
     if path.endswith(".poly"):
         for _ in range(int(next(source)[0])):
             pslg.segments.extend(int(w) - first for w in next(source)[1:3])
@@ -65,10 +67,10 @@ def read(path):
 
 
 def read_mesh(path):
-    """A mesh numbered from 0: a .poly file with .node and .ele file beside it."""
-    pslg, source = read(path), rows(path[:-len(".poly")] + ".ele")
+    """A mesh: a .poly or .node file with .ele file beside it."""
+    pslg, source = read(path), rows(os.path.splitext(path)[0] + ".ele")
     for _ in range(int(next(source)[0])):
-        pslg.triangles.extend(map(int, next(source)[1:4]))
+        pslg.triangles.extend(int(w) - pslg.first for w in next(source)[1:4])
     return pslg
 
 

@@ -67,6 +67,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/quality.c
     triangle/size/estimate.c
     triangle/api/generate.c
+    triangle/api/simplify.c
     triangle/api/figure.c
     triangle/api/figure_mesh.c
     triangle/api/arrays.c

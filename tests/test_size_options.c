@@ -54,6 +54,7 @@ static void test_valid_values_are_parsed(void **state)
     assert_true(parse_option(&t, "--max-size", "30") && t.options.max_size == 30);
     assert_true(parse_option(&t, "--elements-across", "2.5") && t.options.elements_across == 2.5);
     assert_true(parse_option(&t, "--per-circle=40", NULL) && t.options.per_circle == 40);
+    assert_true(parse_option(&t, "--min-edge", "1e3") && t.options.min_edge == 1000);
     assert_true(parse_option(&t, "--placement", "classic") && t.switches.placement == TRI_PLACEMENT_CLASSIC);
     assert_true(parse_option(&t, "--placement=front", NULL) && t.switches.placement == TRI_PLACEMENT_FRONT);
     assert_true(parse_option(&t, "--placement=lattice", NULL) && t.switches.placement == TRI_PLACEMENT_LATTICE);
@@ -73,7 +74,8 @@ static void test_invalid_values_are_refused(void **state)
         {"--size", "coast.tif"}, {"--size", "a.npy@1,2,3"}, {"--size", "a.npy@1,2,3,4,5"}, {"--size", "a.npy@1,2,3,x"},
         {"--size", "a.asc@0,0,1,1"}, {"--size-near", "500"}, {"--size-near", "2:"}, {"--size-near", "2:0"},
         {"--size-near", "2:5,"}, {"--size-near", "2:5,-1"}, {"--size-near", "2:5,0.1,3"}, {"--size-near", "x:5"},
-        {"--size-near", "99999999999:5"}, {"--gradation", "0"}, {"--gradation", "-1"}, {"--gradation", "nan"},
+        {"--size-near", "99999999999:5"}, {"--min-edge", "0"}, {"--min-edge", "5m"}, {"--gradation", "0"},
+        {"--gradation", "-1"}, {"--gradation", "nan"},
         {"--min-size", "0"}, {"--max-size", "inf"}, {"--max-size", "x"}, {"--placement", "Classic"},
         {"--elements-across", "0"}, {"--per-circle", "2"}, {"--per-circle", "nan"},
     };

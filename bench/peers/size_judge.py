@@ -61,7 +61,9 @@ def poisson(points, triangles, areas):
 
 def main():
     base, poly, h, growth = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
-    mesh, pslg = meshfiles.read_mesh(base + ".poly"), meshfiles.read(poly)
+    mesh, pslg = meshfiles.read_mesh(base + ".node"), meshfiles.read(poly)
+    if growth > 0 and not len(pslg.segments):
+        sys.exit(f"{poly}: no segments, from which lengths could grow")
     triangles = np.array(mesh.triangles).reshape(-1, 3)
     used, triangles = np.unique(triangles, return_inverse=True)
     points, triangles = np.array(mesh.points).reshape(-1, 2)[used], triangles.reshape(-1, 3)

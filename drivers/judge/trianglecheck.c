@@ -54,12 +54,13 @@ static const char help[] = /* cmake/help.awk turns it into a manual page */
     "                       are no fault, and the mesh may end anywhere\n"
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
     "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
-    "      --size, --size-near, --gradation, --min-size, --max-size, --elements-across, --per-circle\n"
+    "      --size, --size-near, --gradation, --min-size, --max-size, --elements-across, --per-circle, --min-edge\n"
     "                       the options of ptriangle that the mesh was made with, and --poly. The report then has\n"
     "                       the share of edges that are 0.7 to 1.4 times as long as the length at their midpoint,\n"
     "                       the triangles divided by the number that the lengths request, and the mean quality: 4\n"
     "                       sqrt(3) area / sum of squared edges. Area bounds of regions do not change lengths here.\n"
-    "                       This takes 16 bytes of memory per vertex and 48 per triangle, beyond --memory\n"
+    "                       This takes 16 bytes of memory per vertex and 48 per triangle, beyond --memory.\n"
+    "                       With --min-edge the mesh is compared with the simplified input\n"
     "      --min-fitting S  a smaller share of such edges (0.95) is a fault\n";
 
 static const char more_help[] =
@@ -417,8 +418,8 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     const bool measures = size_options_any(&s->sizes);
-    if ((measures && !s->input) || (s->min_fitting > 0 && !measures)) {
-        fputs(measures ? PTRIANGLE_NAME ": lengths follow from the input of the mesh: --poly is needed\n"
+    if (((measures || s->sizes.min_edge > 0) && !s->input) || (s->min_fitting > 0 && !measures)) {
+        fputs(!s->input ? PTRIANGLE_NAME ": lengths follow from the input of the mesh: --poly is needed\n"
                        : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
         return TROUBLE;
     }
@@ -440,6 +441,11 @@ static int run(const struct settings *s, struct par_team *team, struct judged_fi
         one_line_put(stderr, s->base);
         fputs(".neigh is of another mesh than .ele, by their numbers of triangles: it is not judged\n", stderr);
     }
+    char changes[SIMPLIFIED_TEXT] = "";
+    if (status == TRI_OK && s->input)
+        status = size_options_simplify(&s->sizes, &f->input, &executor, NULL, changes, &error);
+    if (status == TRI_OK && changes[0] && !s->json && !s->quiet)
+        printf("input: %s\n", changes);
     if (status == TRI_OK)
         status = judge(s, f, &executor, threads, &verdict.report, &error);
     if (status == TRI_OK && size_options_any(&s->sizes) && verdict.report.item[TRI_CHECK_ARRAYS].state == TRI_CHECK_OK)

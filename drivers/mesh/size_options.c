@@ -7,12 +7,14 @@
 #include <string.h>
 
 #include "drivers/words.h"
+#include "triangle/api/simplify.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/names.h"
 
 static const double USUAL_GRADATION = 0.2; /* struct tri_sizes */
 
-enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, PLACEMENT, OPTIMISE };
+enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, MIN_EDGE, PLACEMENT,
+          OPTIMISE };
 
 static const struct kind {
     const char *name;
@@ -26,6 +28,7 @@ static const struct kind {
     {"max-size", MAX_SIZE, "not a length above 0"},
     {"elements-across", ELEMENTS_ACROSS, "not a number from 0.1 to 1000"},
     {"per-circle", PER_CIRCLE, "not a number from 3 to 100000"},
+    {"min-edge", MIN_EDGE, "not a length above 0"},
     {"placement", PLACEMENT, "neither front, lattice nor classic"},
     {"optimise", OPTIMISE, "not a whole number from 0 to 1000"},
 };
@@ -139,6 +142,7 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case MAX_SIZE: return read_length(text, &options->max_size);
     case ELEMENTS_ACROSS: return words_take_real(text, "", NULL, 0.1, 1000, &options->elements_across);
     case PER_CIRCLE: return words_take_real(text, "", NULL, 3, 1e5, &options->per_circle);
+    case MIN_EDGE: return read_length(text, &options->min_edge);
     case PLACEMENT: return take_placement(switches, text);
     case OPTIMISE: return take_passes(switches, text);
     default: return false;
@@ -259,6 +263,25 @@ void size_options_name(const struct size_options *options, const char *sentence,
                  source->given, at + 1);
     else
         snprintf(text, SIZE_OPTIONS_TEXT, "%s", sentence);
+}
+
+/* --- the input */
+
+enum tri_status size_options_simplify(const struct size_options *options, struct tri_pslg *pslg,
+                                      const struct tri_executor *executor, const struct tri_stop *stop,
+                                      char text[SIMPLIFIED_TEXT], struct tri_error *error)
+{
+    *text = 0;
+    if (!(options->min_edge > 0))
+        return TRI_OK;
+    struct tri_simplify_report r;
+    const int32_t points = pslg->n_points;
+    const enum tri_status status = tri_simplify(pslg, options->min_edge, executor, stop, &r, error);
+    snprintf(text, SIMPLIFIED_TEXT, "Simplified by --min-edge %g: %ld of %ld points are gone, with %ld islands, "
+             "%ld holes, %ld regions; %ld short segments remain", options->min_edge,
+             (long)(r.corners + r.island_points), (long)points, (long)r.islands, (long)r.holes, (long)r.regions,
+             (long)r.shorter);
+    return status;
 }
 
 /* --- the fields */

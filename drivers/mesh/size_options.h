@@ -23,6 +23,7 @@ struct size_options {
     struct size_source source[SIZE_OPTIONS_MOST]; /* [n] in the order of the arguments */
     double gradation, min_size, max_size;         /* as in struct tri_sizes; 0: not given */
     double elements_across, per_circle;           /* likewise; 0: not given */
+    double min_edge; /* shorter details of the input are removed (triangle/api/simplify.h); 0: not given */
 };
 
 /* Reads the option in argument *at, like long_options_take. Returns false if it is another argument. Sets *error if the
@@ -49,6 +50,16 @@ void size_options_print(const struct size_options *options, char text[SIZE_OPTIO
 
 /* Replaces "sizes[2]" (counted from 0) at the begin of a message of lengths.h by the option that the user wrote. */
 void size_options_name(const struct size_options *options, const char *sentence, char text[SIZE_OPTIONS_TEXT]);
+
+/* --- the input, after the files have been read */
+
+enum { SIMPLIFIED_TEXT = 320 };
+
+/* Removes details below min_edge, if it is given, and writes one sentence about the changes. Otherwise the text is
+ * "". Errors: as for tri_simplify. */
+enum tri_status size_options_simplify(const struct size_options *options, struct tri_pslg *pslg,
+                                      const struct tri_executor *executor, const struct tri_stop *stop,
+                                      char text[SIMPLIFIED_TEXT], struct tri_error *error);
 
 /* --- the fields, after the files have been read */
 

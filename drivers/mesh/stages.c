@@ -155,10 +155,29 @@ static enum tri_status read_input(struct run *r)
     return status;
 }
 
+/* Applies --min-edge and prints what it has changed, also if quiet. */
+static enum tri_status simplify_input(struct run *r)
+{
+    const struct tri_switches *s = &r->arguments->switches;
+    const struct size_options *options = &r->arguments->sizes;
+    char text[SIMPLIFIED_TEXT];
+    if (options->min_edge > 0 && (s->mesh || !s->segments))
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--min-edge simplifies segments: it needs -p, without -r");
+    const enum tri_status status = size_options_simplify(options, &r->input.pslg, r->settings.executor,
+                                                         interrupt_stop(), text, r->error);
+    if (!status && text[0] && r->console.quiet)
+        console_remark(&r->console, "%s.\n", text);
+    else if (!status && text[0])
+        console_say(&r->console, "%s.\n", text);
+    return status;
+}
+
 enum tri_status run_read(struct run *r)
 {
     interrupt_stage("reading");
     enum tri_status status = r->settings.written_elsewhere ? TRI_OK : read_input(r);
+    if (!status && !r->settings.written_elsewhere)
+        status = simplify_input(r);
     if (!status && !r->settings.written_elsewhere)
         status = size_fields_read(&r->sizes, &r->arguments->sizes, r->settings.executor, r->error);
     return status || r->settings.n_ranks > 0 ? status : plan_check_input(r);

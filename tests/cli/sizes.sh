@@ -151,6 +151,24 @@ for mesher in triangle ptriangle; do
     more thin_channel --elements-across 2 4 8
     more gear --per-circle 20 100 400
 
+    # --- details of the input are removed, and a line says how many, also with -Q
+    fresh koch_lake.poly letter.poly
+    mesher 0 $mesher -p koch_lake --min-edge 0.02 --size 0.05
+    matches "^Simplified by --min-edge 0.02: [1-9][0-9]* of [0-9]+ points are gone, .* [0-9]+ short segments remain\.\$"
+    judge koch_lake.1 --poly koch_lake.poly --min-edge 0.02 --min-angle 20
+    denies_simplified() {
+        "$bin/trianglecheck" koch_lake.1 --poly koch_lake.poly "$@" >.out 2>.err
+        check "the checker compares with another input: exit code" test $? -eq 1
+    }
+    denies_simplified
+    denies_simplified --min-edge 0.1
+    mesher 0 $mesher -pQ koch_lake --min-edge 0.02
+    complains "^$mesher: Simplified by --min-edge 0.02: "
+    mesher 1 $mesher -p letter --min-edge 1000
+    complains ": no segment remains"
+    mesher 1 $mesher -rp koch_lake.1 --min-edge 0.02
+    complains "^$mesher: --min-edge simplifies segments"
+
     # --- one field in all formats: rasters give the same bytes, meshes as well, and both agree up to a few triangles
     fresh letter.poly
     fields
