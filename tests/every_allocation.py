@@ -22,6 +22,8 @@ FEW = [
     ("trianglecheck", "square.1 --poly square.poly --quiet", ["square.poly", "mesh:square -pq"]),
 ]
 ALL = FEW + [
+    ("triangle", "-p letter --min-edge 0.5", ["letter.poly"]),
+    ("trianglecheck", "square.1 --poly square.poly --quiet --size 0.3", ["square.poly", "mesh:square -pq"]),
     ("triangle", "letter.node", ["letter.poly", "mesh:letter -p", "rename:letter.1.node:letter.node"]),
     ("triangle", "-pqaAenvgo2 section", ["section.poly"]),
     ("triangle", "-pqDjC letter", ["letter.poly"]),

@@ -44,17 +44,33 @@ def area_of(loop, pslg):
     return total / 2
 
 
+def has_inside(loop, pslg, v):
+    """Does the loop enclose the point?"""
+    x, y = pslg.points[2 * v:2 * v + 2]
+    inside = False
+    for signed in loop:
+        a, b = pslg.segments[2 * abs(signed) - 2:2 * abs(signed)]
+        (ax, ay), (bx, by) = pslg.points[2 * a:2 * a + 2], pslg.points[2 * b:2 * b + 2]
+        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
+            inside = not inside
+    return inside
+
+
 def build(pslg, size):
-    """The outline is the loop with the largest area, all others are holes. Free points are embedded."""
+    """The outline is the loop with the largest area. Loops inside are holes, others further parts without holes. Free
+    points are embedded."""
     geo = gmsh.model.geo
     for i in range(len(pslg.points) // 2):
         geo.addPoint(pslg.points[2 * i], pslg.points[2 * i + 1], 0, size, i + 1)
     for i in range(len(pslg.segments) // 2):
         geo.addLine(pslg.segments[2 * i] + 1, pslg.segments[2 * i + 1] + 1, i + 1)
     loops = sorted(loops_of(pslg.segments), key=lambda loop: -abs(area_of(loop, pslg)))
-    if area_of(loops[0], pslg) < 0:  # triangles have the orientation of the outline
-        loops[0] = [-i for i in reversed(loops[0])]
-    surface = geo.addPlaneSurface([geo.addCurveLoop(loop) for loop in loops])
+    first = [pslg.segments[2 * abs(loop[0]) - 2] for loop in loops]
+    parts = [loop for loop, v in zip(loops, first) if loop is loops[0] or not has_inside(loops[0], pslg, v)]
+    holes = [geo.addCurveLoop(loop) for loop in loops if loop not in parts]
+    for loop in reversed(parts):  # triangles have the orientation of the outline
+        outline = loop if area_of(loop, pslg) > 0 else [-i for i in reversed(loop)]
+        surface = geo.addPlaneSurface([geo.addCurveLoop(outline), *(holes if loop is loops[0] else [])])
     geo.synchronize()
     free = sorted(set(range(len(pslg.points) // 2)) - set(pslg.segments))
     if free:
