@@ -44,13 +44,15 @@ cp web/package.json "$work/npm/package.json"
 
 # --- the module
 
-# Compiled for size, except the hot code of refinement. Without a 128-bit integer, decimal.cpp has no table.
+# Compiled for size, most of all outside the hot code of refinement; web/c/left_out.c takes the place of what cannot be
+# reached. Without a 128-bit integer, decimal.cpp has no table.
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -n 1)
 flags="--target=wasm32-wasi -flto -DNDEBUG -mbulk-memory -mnontrapping-fptoint -msign-ext -ffp-contract=off
     -fno-tree-slp-vectorize -Wall -Wextra -Werror -Wno-unused-function -U__SIZEOF_INT128__ -I$root -I$root/include"
 sources=$(sed -n '/^set(PTRIANGLE_\(MESHER\|TEXT\)_SOURCES/,/)/p' cmake/sources.cmake |
     grep -oE 'triangle/[a-z_0-9/]+\.c(pp)?' |
-    grep -vE '/dropin/|/system[_.]|text/(read_[a-z0-9]+|reading|size_file|words|stream)\.')
+    grep -vE '/dropin/|/system[_.]|text/(read_[a-z0-9]+|reading|size_file|words|stream)\.' |
+    grep -vE 'size/(background|sampled|raster)\.|cdt/reconstruct\.')
 objects=""
 cache=$(command -v ccache || true)
 compile() {
@@ -58,9 +60,9 @@ compile() {
     objects="$objects $object"
     size=-Oz
     case $1 in
-    triangle/geometry/predicates.c | triangle/mesh/cavity.c | triangle/mesh/surface.c) size=-O2 ;;
-    triangle/mesh/locate.c) size=-O2 ;;
-    triangle/refine/treat.c | triangle/refine/bad_queue.c) size=-O2 ;;
+    triangle/geometry/predicates.c | triangle/mesh/cavity.c | triangle/mesh/surface.c | \
+        triangle/mesh/locate.c | triangle/refine/treat.c | triangle/refine/bad_queue.c) size="-Os -fno-unroll-loops" ;;
+    triangle/text/formats.c) size="-Oz -Dtri_write_msh_parts=tri_no_parts" ;;
     esac
     # shellcheck disable=SC2086 # one word an option
     case $1 in
