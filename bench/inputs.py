@@ -1,5 +1,7 @@
 """The domains that are measured. Each is written as a new plain file (numbered from 0, no attributes, markers and
 comments), so that all programs read the same file and the simplest reader can read it."""
+import cmath
+import math
 import os
 import random
 from array import array
@@ -80,6 +82,18 @@ def shared_coasts(settings, angle, area):
         if os.path.exists(source):
             found.append(Domain(name, _plain(settings, file, source), angle, settings.bound(area)))
     return found
+
+
+def wavy_circle(settings, n):
+    """A polygon of n points: a circle whose radius has seven waves."""
+    path = os.path.join(settings.work, "inputs", f"wavy{n}.poly")
+    if not os.path.exists(path):
+        pslg = meshfiles.Pslg()
+        places = (cmath.rect(1 + 0.2 * math.sin(14 * math.pi * k / n), 2 * math.pi * k / n) for k in range(n))
+        pslg.points = array("d", (x for z in places for x in (z.real, z.imag)))
+        pslg.segments = array("i", (end for k in range(n) for end in (k, (k + 1) % n)))
+        meshfiles.write(path, pslg)
+    return Domain(f"polygon of {n:,} points", path, 30, 0)
 
 
 def random_points(settings, angle, n=1_000_000):

@@ -1,11 +1,13 @@
-"""Small meshes made repeatedly in one process: the time of a call of triangulate(), compared with Triangle's."""
+"""Small meshes made repeatedly in one process: the time of a call of triangulate(), compared with Triangle's, and of a
+call from Python, compared with the PyPI package `triangle`."""
+import glob
 import json
 import os
 import statistics
 import subprocess
 
 from cases import Triangle, peer, python
-from inputs import letter, random_points
+from inputs import letter, random_points, wavy_circle
 from measure import table
 from process import execute
 from settings import say
@@ -17,6 +19,14 @@ Median of {} runs in turns. Points and segments are in arrays before the call, t
 checked here.
 
 """
+PYTHON_HEAD = ("input", "switches", "triangles", "package, µs", "compat, µs", "mesh(), µs", "compat over package",
+               "mesh() over package")
+PYTHON_NOTE = """
+The same from Python, with numpy arrays: the PyPI package `triangle`, `ptriangle.compat` in its place, and
+`ptriangle.mesh()`, whose points and triangles are read.
+
+"""
+PYTHON_POINTS = (100, 1_000)
 LETTER = ("p", "pq20", "pa0.001", "pq30a0.0001", "pq30a0.00001")
 POINTS = (10, 100, 1_000)
 LIMIT = 60
@@ -32,11 +42,11 @@ def _harness(settings):
     return made
 
 
-def _run(settings, harness, library, given):
-    ended = execute([python(settings), peer("small_calls.py"), harness, library, "0.01" if settings.small else "0.1",
+def _run(settings, what, given, script, *arguments):
+    ended = execute([python(settings), peer(script), *arguments, "0.01" if settings.small else "0.1",
                      *(word for path, switches in given for word in (path, switches))], LIMIT, settings.scratch)
     if ended.code != 0:
-        settings.fail(f"calls of {library}: exit code {ended.code}: {ended.errors[-200:]}")
+        settings.fail(f"calls of {what}: exit code {ended.code}: {ended.errors[-200:]}")
         return None
     return json.loads(ended.output)
 
@@ -56,7 +66,7 @@ def run(settings):
     harness, runs = _harness(settings), {}
     for _ in range(settings.repeats):
         for name in ("ours", library) if library else ("ours",):
-            found = _run(settings, harness, name, given)
+            found = _run(settings, name, given, "small_calls.py", harness, name)
             if found:
                 runs.setdefault(name, []).append(found)
     ours, theirs = _medians(runs.get("ours", [])), _medians(runs.get(library, []))
@@ -68,5 +78,33 @@ def run(settings):
         rows += [{"part": "calls", "input": domain.name, "switches": switches, "program": name, "threads": 1,
                   "stage": "call", "runs": len(runs[key]), "median_seconds": of[i][0], "triangles": of[i][1]}
                  for name, key, of in (("ours", "ours", ours), ("Triangle 1.6", library, theirs)) if of]
-    yield {"title": "Small meshes", "text": NOTE.format(settings.repeats) + table(HEAD, lines), "rows": rows,
-           "targets": []}
+    text, more = _from_python(settings, bool(library))
+    yield {"title": "Small meshes", "text": NOTE.format(settings.repeats) + table(HEAD, lines) + text,
+           "rows": rows + more, "targets": []}
+
+
+def _from_python(settings, has_package):
+    """A table, and rows for results.csv."""
+    scale = 10 if settings.small else 1
+    domains = [(letter(settings, 1), "p"), *((wavy_circle(settings, n // scale), "pq30") for n in PYTHON_POINTS)]
+    given = [(domain.path, switches) for domain, switches in domains]
+    has_numpy = glob.glob(os.path.join(settings.work, "python", "numpy-*"))
+    library = has_numpy and glob.glob(os.path.join(settings.programs, "libptriangle_python.*"))
+    runs = {}
+    for _ in range(settings.repeats):
+        for way in ("package", "compat", "mesh") if has_package else ("compat", "mesh"):
+            found = library and _run(settings, f"Python, {way}", given, "python_calls.py", way, library[0])
+            if found:
+                runs.setdefault(way, []).append(found)
+    package, compat, mesh = (_medians(runs.get(way, [])) for way in ("package", "compat", "mesh"))
+    lines, rows = [], []
+    for i, (domain, switches) in enumerate(domains if compat and mesh else []):
+        took = [of[i][0] if of else None for of in (package, compat, mesh)]
+        lines.append((domain.name, f"-{switches}", f"{compat[i][1]:,}",
+                      *(f"{t * 1e6:.0f}" if t else "missing" for t in took),
+                      *(f"{t / took[0]:.2f}" if took[0] else "–" for t in took[1:])))
+        rows += [{"part": "calls", "input": domain.name, "switches": switches, "program": name, "threads": 1,
+                  "stage": "call from Python", "runs": settings.repeats, "median_seconds": of[i][0],
+                  "triangles": of[i][1]}
+                 for name, of in (("package triangle", package), ("compat", compat), ("mesh()", mesh)) if of]
+    return PYTHON_NOTE + table(PYTHON_HEAD, lines), rows

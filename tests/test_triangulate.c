@@ -1110,6 +1110,23 @@ static void test_segments_that_are_no_edges_are_copied(void **state)
     release("rp", &out, &vorout);
 }
 
+/* A lattice needs fewer triangles. */
+static void test_placement_of_triangle(void **state)
+{
+    (void)state;
+    static REAL xy[] = {0, 0, 4, (REAL)0.3, 5, 4, 1, 3};
+    struct triangulateio in = points_only(xy, 4), out, vorout;
+    int n[2];
+    for (int classic = 0; classic < 2; classic++) {
+        struct triangulate_options options = {.classic = classic};
+        prepare("q30a", &out, &vorout);
+        assert_int_equal(triangulate_with("q30a0.01z", &in, &out, NULL, &options), 0);
+        n[classic] = out.numberoftriangles;
+        release("q30a", &out, &vorout);
+    }
+    assert_true(n[0] < 0.8 * n[1]);
+}
+
 /* Triangles have three corners, or three corners and the midpoints of their edges. */
 static void test_invalid_numbers_of_corners_are_refused(void **state)
 {
@@ -1443,6 +1460,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fields_by_switch),
         cmocka_unit_test(test_vorout_may_be_null),
+        cmocka_unit_test(test_placement_of_triangle),
         cmocka_unit_test(test_numbers_from_one),
         cmocka_unit_test(test_the_mesh_is_correct),
         cmocka_unit_test(test_values_of_points_are_correct),

@@ -22,8 +22,8 @@ pip_get() { # pip_get PACKAGE VERSION PROBE: installs without dependencies; it w
 # triangle/__init__.py needs numpy, but only the library inside is called, so its files are enough.
 pip_get triangle 20250106 "import glob, sysconfig; glob.glob(sysconfig.get_path('platlib') + '/triangle/core*.so')[0]"
 pip_get gmsh 4.15.2 "import gmsh; gmsh.initialize()"
-pip_get numpy 2.4.6 "import numpy" # both for the part `sizes`
-pip_get scipy 1.17.1 "import scipy.spatial"
+pip_get numpy 2.4.6 "import numpy"           # for the parts `calls` and `sizes`
+pip_get scipy 1.17.1 "import scipy.spatial" # for the part `sizes`
 
 if [ ! "$work/cgal_mesh" -nt "$peers/cgal_mesh.cpp" ]; then
     rm -f "$work/cgal_mesh"

@@ -107,7 +107,7 @@ StopTest = CFUNCTYPE(c_int, c_void_p)
 class TriangulateOptions(Structure):
     _fields_ = [("unsuitable", SizeTest), ("unsuitable_user", c_void_p), ("unsuitable_in_parallel", c_int),
                 ("threads", c_int), ("message", Message), ("message_user", c_void_p),
-                ("stop", StopTest), ("stop_user", c_void_p)]
+                ("stop", StopTest), ("stop_user", c_void_p), ("classic", c_int)]
 
 
 def _candidates() -> Iterator[str]:

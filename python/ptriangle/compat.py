@@ -95,9 +95,11 @@ def _release(io: TriangulateIO, borrowed: Set[Any]) -> None:
             library.trifree(address)
 
 
-def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: List[str],
+def _options_of(unsuitable: Optional[Callable[..., Any]], placement: str, calls: Calls, words: List[str],
                 notes: List[bytes]) -> TriangulateOptions:
-    options = TriangulateOptions()
+    if placement not in ("lattice", "classic"):
+        raise InputError('%s: placement: %r is not "lattice" or "classic"' % (calls.who, placement))
+    options = TriangulateOptions(classic=placement == "classic")
 
     def hear(_user: Any, is_error: int, text: bytes) -> None:
         if is_error:
@@ -125,7 +127,7 @@ def _warn_of_no_effect(tri: Mapping[str, Any], switches: bytes, who: str) -> Non
 
 
 def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
-          unsuitable: Optional[Callable[..., Any]] = None) -> Tuple[Arrays, Arrays]:
+          unsuitable: Optional[Callable[..., Any]] = None, placement: str = "lattice") -> Tuple[Arrays, Arrays]:
     """Returns the mesh and, with the switch v, its Voronoi diagram."""
     data, out, vorout, kept = TriangulateIO(), TriangulateIO(), TriangulateIO(), []
     words: List[str] = []
@@ -140,7 +142,7 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
             kept.append(_fill(data, key, given))
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
     calls = Calls("triangulate()")
-    options = _options_of(unsuitable, calls, words, notes)
+    options = _options_of(unsuitable, placement, calls, words, notes)
     borrowed = {data.holelist, data.regionlist}  # `out` refers to these as well
     try:
         status = calls.run(library.triangulate_with, b"z" + opts, byref(data), byref(out), byref(vorout),
@@ -157,7 +159,7 @@ def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
 
 
 def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
-                unsuitable: Optional[Callable[..., Any]] = None) -> Arrays:
+                unsuitable: Optional[Callable[..., Any]] = None, *, placement: str = "lattice") -> Arrays:
     """Triangulates a dictionary of arrays with the switches of Triangle. z is always set, and nothing is printed.
 
     Keys of `tri`: vertices [n, 2]; optional vertex_attributes, vertex_markers, segments [s, 2], segment_markers,
@@ -166,12 +168,14 @@ def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
     segment_markers, holes and regions (p), edges and edge_markers (e) that are not empty; markers are [n, 1].
 
     unsuitable(a, b, c, area), for the switch u: returns True if this triangle must be refined.
+    placement="classic": new points are placed as by the package `triangle`. By default, with the switch a and an angle
+    bound up to 30 degrees, they lie in a hexagonal lattice, which needs a third fewer triangles.
 
     Mistakes are warnings of the class IgnoredWarning: a number with an exponent ("a%g" % 1e-5 is read as a1 and e;
     write "a%.20f"), segments, holes or regions without the switch p, duplicate points, an angle bound above 38 degrees.
     An empty mesh is an EmptyMeshWarning. warnings.filterwarnings("ignore", category=IgnoredWarning) silences them.
     """
-    return _call(tri, opts, unsuitable)[0]
+    return _call(tri, opts, unsuitable, placement)[0]
 
 
 def delaunay(pts: Any) -> Any:

@@ -162,6 +162,16 @@ def test_size_test():
         triangle.triangulate({"vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}, "qu", unsuitable=broken)
 
 
+def test_placement():
+    figure = {"vertices": [[0, 0], [1, 0.1], [1.3, 1], [0.2, 0.8]]}
+
+    def count(**wanted):
+        return len(triangle.triangulate(figure, "qa0.001", **wanted)["triangles"])
+    assert count() == count(placement="lattice") < 0.8 * count(placement="classic")
+    with pytest.raises(ptriangle.InputError, match="placement: 'front'"):
+        count(placement="front")
+
+
 def test_examples_are_there():
     for name in NAMES:
         data = triangle.get_data(name)

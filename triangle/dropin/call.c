@@ -172,6 +172,7 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     tri_switches_add(&s, switches ? switches : "");
     const bool no_diagram = s.voronoi && !vorout;
     s.voronoi = s.voronoi && vorout;
+    s.placement = options->classic ? TRI_PLACEMENT_CLASSIC : s.placement;
     struct io_run run = {.switches = &s, .options = options, .aloud = aloud, .how = tri_switches_options(&s),
                          .error = &error};
     const struct tri_stop stop = {is_stopped, (void *)options}; /* it is only read */

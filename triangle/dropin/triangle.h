@@ -136,6 +136,9 @@ struct triangulate_options {
      * several threads at once. After it has returned non-zero it must keep returning non-zero. */
     int (*stop)(void *user);
     void *stop_user; /* passed to stop */
+    /* Non-zero: new points are placed as by Triangle. 0: with an area bound and an angle bound up to 30 degrees they
+     * lie in a hexagonal lattice, which needs a third fewer triangles; not with the switches r and u. */
+    int classic;
 };
 
 /* Like triangulate, with options; NULL: none. Never prints. */
