@@ -9,8 +9,8 @@
  * Information Science 26, 1999). All others, found by triangulation, keep their ends and the points on them.
  * CORNERS. A point can be removed if exactly two segments end there, both with the same marker, and if its own marker
  * is 0, that marker, or that of both neighbours.
- * ISLANDS. A closed chain whose points could all be removed, and which encloses less than L^2, is removed with the
- * hole points and region points inside, unless other points lie inside. */
+ * ISLANDS. A closed chain whose points could all be removed, and which encloses less than L^2 with its remaining
+ * corners, is removed with the hole points and region points inside, unless other points lie inside. */
 #ifndef TRIANGLE_API_SIMPLIFY_H
 #define TRIANGLE_API_SIMPLIFY_H
 
