@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "triangle/api/generate.h"
-#include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 
 enum { MOST_PASSES = 20 };
@@ -27,12 +26,11 @@ struct simplifying {
     bool *gone;           /* [n_items] the item is removed */
     bool *unused;         /* [n_segments] likewise for a segment, or it has no two ends */
     bool *is_free;        /* [n_points] the point may be removed, if its neighbours allow that */
-    int32_t *degree;      /* [n_points] number of segments; it never changes */
     int32_t *age;         /* [n_points] changes of the point's neighbours */
     int32_t *first, *next; /* [n_points], [2 * n_segments] lists of the ends at each point; end 2 s + k is
                               segments[2 s + k]; -1: none */
-    struct waiting *heap; /* [n_heap] smallest area first */
-    int64_t n_heap, capacity;
+    struct waiting *heap; /* [n_heap] smallest area first; at most 2 * n_points: a removal replaces one by two */
+    int64_t n_heap;
     /* A grid of columns * rows cells: the items of cell c are item[start[c] .. start[c + 1]). */
     struct tri_point low;
     double cell;          /* width of a cell */
@@ -51,14 +49,16 @@ static int32_t other_end(const struct simplifying *s, int32_t end) { return s->p
 
 static int32_t marker_of(const int32_t *markers, int32_t i) { return markers ? markers[i] : 0; }
 
-static bool has_usual_marker(const struct simplifying *s, int32_t v)
+/* Do exactly two segments end here, with usual markers? A removal changes this at no other point. */
+static bool joins_two(const struct simplifying *s, int32_t v)
 {
-    const int32_t *markers = s->pslg->markers, end = s->first[v], mine = marker_of(markers, v);
-    const int32_t segment = marker_of(s->pslg->segment_markers, end / 2);
-    if (marker_of(s->pslg->segment_markers, s->next[end] / 2) != segment)
+    const int32_t *markers = s->pslg->markers, *of_segments = s->pslg->segment_markers;
+    const int32_t end = s->first[v], second = end < 0 ? -1 : s->next[end];
+    if (second < 0 || s->next[second] >= 0 || marker_of(of_segments, end / 2) != marker_of(of_segments, second / 2))
         return false;
-    return mine == 0 || mine == segment || (mine == marker_of(markers, other_end(s, end)) &&
-                                            mine == marker_of(markers, other_end(s, s->next[end])));
+    const int32_t mine = marker_of(markers, v);
+    return mine == 0 || mine == marker_of(of_segments, end / 2) ||
+           (mine == marker_of(markers, other_end(s, end)) && mine == marker_of(markers, other_end(s, second)));
 }
 
 static bool are_joined(const struct simplifying *s, int32_t a, int32_t b)
@@ -80,10 +80,11 @@ static void make_chains(struct simplifying *s)
         for (int k = 0; k < 2 && !s->unused[i]; k++) {
             s->next[2 * i + k] = s->first[v[k]];
             s->first[v[k]] = 2 * i + k;
-            s->degree[v[k]]++;
         }
     }
 }
+
+static int32_t point_of(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->origin ? mesh->origin[v] : v; }
 
 /* Finds the points that may be removed. pieces: number of subsegments of each segment. Ends of segments that meet
  * others on the way stay. So do points on other segments, and at the place of another. */
@@ -91,21 +92,19 @@ static void find_free_points(struct simplifying *s, const struct tri_mesh *mesh,
 {
     const struct tri_pslg *p = s->pslg;
     for (int32_t v = 0; v < p->n_points; v++)
-        s->is_free[v] = s->degree[v] == 2 && has_usual_marker(s, v);
+        s->is_free[v] = joins_two(s, v);
     for (tri_sub_id i = 0; i < mesh->n_subs; i++) {
         const int32_t segment = mesh->parents[mesh->sub[i].parent].segment;
         for (int k = 0; k < 2 && segment >= 0 && pieces[segment] != 1; k++) {
             const tri_vertex_id v = mesh->sub[i].v[k];
             if (v < p->n_points)
-                s->is_free[mesh->origin ? mesh->origin[v] : v] = false;
+                s->is_free[point_of(mesh, v)] = false;
         }
     }
     for (int32_t v = 0; mesh->twin && v < p->n_points; v++) {
         const int32_t twin = mesh->twin[v];
-        if (twin == v)
-            continue;
-        s->is_free[mesh->origin ? mesh->origin[v] : v] = false;
-        s->is_free[mesh->origin ? mesh->origin[twin] : twin] = false;
+        for (int k = 0; k < 2 && twin != v; k++)
+            s->is_free[point_of(mesh, k ? twin : v)] = false;
     }
 }
 
@@ -258,7 +257,7 @@ static bool is_detail(const struct simplifying *s, int32_t b, int32_t v[3], doub
     v[2] = other_end(s, s->next[s->first[b]]);
     const struct tri_point *at = s->at;
     *area = fabs(tri_area_of(at[v[0]], at[b], at[v[2]]));
-    if (v[0] == v[2] || are_joined(s, v[0], v[2]) || !has_usual_marker(s, b))
+    if (v[0] == v[2] || are_joined(s, v[0], v[2]))
         return false;
     const double least2 = s->least * s->least;
     const double shortest2 = tri_lesser(tri_distance2(at[v[0]], at[b]), tri_distance2(at[b], at[v[2]]));
@@ -270,20 +269,17 @@ static bool is_before(const struct waiting *a, const struct waiting *b)
     return a->area < b->area || (a->area == b->area && a->v < b->v);
 }
 
-/* Queues the corner if it is a detail. Returns false if memory ran out. */
-static bool queue_corner(struct simplifying *s, int32_t b)
+/* Queues the corner if it is a detail. */
+static void queue_corner(struct simplifying *s, int32_t b)
 {
     int32_t v[3];
     struct waiting w = {.v = b, .age = ++s->age[b]};
     if (!is_detail(s, b, v, &w.area))
-        return true;
-    if (!tri_grow_far(&s->heap, &s->capacity, s->n_heap + 1, sizeof *s->heap))
-        return false;
+        return;
     int64_t i = s->n_heap++;
     for (; i > 0 && is_before(&w, &s->heap[(i - 1) / 2]); i = (i - 1) / 2)
         s->heap[i] = s->heap[(i - 1) / 2];
     s->heap[i] = w;
-    return true;
 }
 
 static struct waiting next_corner(struct simplifying *s)
@@ -314,12 +310,11 @@ static void remove_corner(struct simplifying *s, int32_t b)
     s->gone[b] = true;
 }
 
-/* Removes corners until none remains that can be removed at once. Returns false if memory ran out. */
-static bool remove_corners(struct simplifying *s)
+/* Removes corners until none remains that can be removed at once. */
+static void remove_corners(struct simplifying *s)
 {
     for (int32_t v = 0; v < s->pslg->n_points; v++)
-        if (!queue_corner(s, v))
-            return false;
+        queue_corner(s, v);
     while (s->n_heap > 0) {
         const struct waiting w = next_corner(s);
         int32_t v[3];
@@ -336,10 +331,9 @@ static bool remove_corners(struct simplifying *s)
             continue;
         remove_corner(s, w.v);
         s->report.corners++;
-        if ((s->is_free[v[0]] && !queue_corner(s, v[0])) || (s->is_free[v[2]] && !queue_corner(s, v[2])))
-            return false;
+        queue_corner(s, v[0]);
+        queue_corner(s, v[2]);
     }
-    return true;
 }
 
 /* --- islands */
@@ -471,15 +465,13 @@ static void compact(struct simplifying *s)
 static enum tri_status run_passes(struct simplifying *s, struct ring *ring, const struct tri_stop *stop,
                                   struct tri_error *error)
 {
-    bool changed = true;
-    for (int pass = 0; changed && pass < MOST_PASSES; pass++) {
-        const int32_t corners = s->report.corners, islands = s->report.islands;
+    int32_t before = -1;
+    for (int pass = 0; pass < MOST_PASSES && s->report.corners + s->report.islands > before; pass++) {
+        before = s->report.corners + s->report.islands;
         if (tri_stop_is_asked(stop))
             return tri_fail_stopped(error);
         remove_islands(s, ring);
-        if (!remove_corners(s))
-            return no_memory(error);
-        changed = s->report.corners > corners || s->report.islands > islands;
+        remove_corners(s);
     }
     return TRI_OK;
 }
@@ -500,12 +492,12 @@ enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struc
     s.unused = calloc(segments, sizeof *s.unused);
     s.next = malloc(2 * segments * sizeof *s.next);
     s.is_free = calloc(points, sizeof *s.is_free);
-    s.degree = calloc(points, sizeof *s.degree);
     s.age = calloc(points, sizeof *s.age);
+    s.heap = malloc(2 * points * sizeof *s.heap);
     s.first = malloc(points * sizeof *s.first);
     enum tri_status status = TRI_OK;
-    if (!ring.v || !ring.turn || !s.at || !s.gone || !s.item || !s.unused || !s.next || !s.is_free || !s.degree ||
-        !s.age || !s.first)
+    if (!ring.v || !ring.turn || !s.at || !s.gone || !s.item || !s.unused || !s.next || !s.is_free || !s.age ||
+        !s.first || !s.heap)
         status = no_memory(error);
     if (!status) {
         make_chains(&s);
@@ -519,8 +511,8 @@ enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struc
         status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no segment remains after details below %g are removed",
                           min_edge);
     *report = s.report;
-    void *const arrays[] = {ring.v, ring.turn, s.at, s.gone, s.item, s.unused, s.next, s.is_free, s.degree,
-                            s.age, s.first, s.heap, s.start};
+    void *const arrays[] = {ring.v, ring.turn, s.at, s.gone, s.item, s.unused, s.next, s.is_free, s.age, s.first,
+                            s.heap, s.start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);
     return status;
