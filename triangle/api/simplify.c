@@ -145,6 +145,12 @@ static enum tri_status examine(struct simplifying *s, const struct tri_executor 
 
 /* --- the grid */
 
+static void extend(struct tri_point *low, struct tri_point *high, struct tri_point p)
+{
+    *low = (struct tri_point){tri_lesser(low->x, p.x), tri_lesser(low->y, p.y)};
+    *high = (struct tri_point){tri_larger(high->x, p.x), tri_larger(high->y, p.y)};
+}
+
 /* Returns the column or row of a coordinate. */
 static int32_t cell_of(const struct simplifying *s, double from_low, int32_t n)
 {
@@ -162,10 +168,8 @@ static bool fill_grid(struct simplifying *s)
 {
     const int32_t n = s->pslg->n_points;
     struct tri_point high = s->low = s->at[0];
-    for (int32_t v = 1; v < n; v++) {
-        s->low = (struct tri_point){tri_lesser(s->low.x, s->at[v].x), tri_lesser(s->low.y, s->at[v].y)};
-        high = (struct tri_point){tri_larger(high.x, s->at[v].x), tri_larger(high.y, s->at[v].y)};
-    }
+    for (int32_t v = 1; v < n; v++)
+        extend(&s->low, &high, s->at[v]);
     const double width = high.x - s->low.x, height = high.y - s->low.y;
     s->cell = tri_larger(sqrt(width * height / n), tri_larger(width, height) / n);
     s->columns = 1 + (int32_t)(width / s->cell);
@@ -228,20 +232,14 @@ static bool is_in_the_way(struct simplifying *s, const void *corners, int32_t i)
            near2 < 0.25 * tri_lesser(distance2_to(a, b, p), distance2_to(b, c, p));
 }
 
-/* Returns true if the angle at a between b and c is below 30 degrees. */
-static bool is_sharp(struct tri_point a, struct tri_point b, struct tri_point c)
-{
-    const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
-    return dot > COS_SHARP * sqrt(tri_distance2(a, b) * tri_distance2(a, c));
-}
-
-/* Would the new segment make a sharp angle at one of its ends? v: the ends, with the corner between them. */
+/* Would the new segment make an angle below 30 degrees at one of its ends? v: the ends, with the corner between. */
 static bool makes_sharp(const struct simplifying *s, const int32_t v[3])
 {
     for (int k = 0; k < 3; k += 2)
         for (int32_t end = s->first[v[k]]; end >= 0; end = s->next[end]) {
-            const int32_t w = other_end(s, end);
-            if (w != v[1] && is_sharp(s->at[v[k]], s->at[w], s->at[v[2 - k]]))
+            const struct tri_point a = s->at[v[k]], b = s->at[other_end(s, end)], c = s->at[v[2 - k]];
+            const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
+            if (other_end(s, end) != v[1] && dot > COS_SHARP * sqrt(tri_distance2(a, b) * tri_distance2(a, c)))
                 return true;
         }
     return false;
@@ -321,12 +319,12 @@ static void remove_corners(struct simplifying *s)
         double area;
         if (w.age != s->age[w.v] || !is_detail(s, w.v, v, &area))
             continue;
-        const struct tri_point a = s->at[v[0]], b = s->at[v[1]], c = s->at[v[2]];
         const double room = NEAR * s->least;
-        const struct tri_point low = {tri_lesser(a.x, tri_lesser(b.x, c.x)) - room,
-                                      tri_lesser(a.y, tri_lesser(b.y, c.y)) - room};
-        const struct tri_point high = {tri_larger(a.x, tri_larger(b.x, c.x)) + room,
-                                       tri_larger(a.y, tri_larger(b.y, c.y)) + room};
+        struct tri_point low = s->at[w.v], high = low;
+        extend(&low, &high, s->at[v[0]]);
+        extend(&low, &high, s->at[v[2]]);
+        low = (struct tri_point){low.x - room, low.y - room};
+        high = (struct tri_point){high.x + room, high.y + room};
         if (any_in_box(s, low, high, is_in_the_way, v))
             continue;
         remove_corner(s, w.v);
@@ -400,8 +398,7 @@ static void remove_island(struct simplifying *s, const struct ring *ring)
     struct tri_point low = s->at[ring->v[0]], high = low;
     for (int32_t k = 1; k < ring->n; k++) {
         const struct tri_point p = s->at[ring->v[k]];
-        low = (struct tri_point){tri_lesser(low.x, p.x), tri_lesser(low.y, p.y)};
-        high = (struct tri_point){tri_larger(high.x, p.x), tri_larger(high.y, p.y)};
+        extend(&low, &high, p);
         if (k > 1)
             area += tri_area_of(s->at[ring->v[0]], s->at[ring->v[k - 1]], p);
     }
