@@ -269,6 +269,8 @@ static void print_json(const struct settings *s, const struct judged_files *f, c
     print_json_real("total_area", r->total_area);
     if (v->sizes.n_edges > 0) {
         print_json_real("fitting", judged_sizes_fitting(&v->sizes));
+        if (s->min_fitting > 0)
+            print_json_real("min_fitting", s->min_fitting);
         print_json_real("triangles_per_wanted", v->sizes.number);
         print_json_real("mean_quality", v->sizes.quality);
     }
@@ -419,7 +421,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     s->base = mesh;
     const bool measures = size_options_any(&s->sizes);
     if (((measures || s->sizes.min_edge > 0) && !s->input) || (s->min_fitting > 0 && !measures)) {
-        fputs(!s->input ? PTRIANGLE_NAME ": lengths follow from the input of the mesh: --poly is needed\n"
+        fputs(!s->input ? PTRIANGLE_NAME ": lengths and --min-edge need the input of the mesh: --poly\n"
                        : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
         return TROUBLE;
     }

@@ -116,7 +116,7 @@ for mesher in triangle ptriangle; do
     judge letter.1 --poly letter.poly --size 1.5
     "$bin/trianglecheck" letter.1 --poly letter.poly --size 1.5 --min-fitting 0.8 --json >.out 2>.err
     check "exit code of edges that are too short" test $? -eq 1
-    matches '"passed": false.*"fitting": 0, "triangles_per_wanted": [0-9.]*, "mean_quality": 0\.[6-9]'
+    matches '"passed": false.*"fitting": 0, "min_fitting": 0.8[0-9]*, "triangles_per_wanted": [0-9.]*, "mean_quality": 0\.[6-9]'
     "$bin/trianglecheck" letter.1 --poly letter.poly --size 1.5 --min-fitting 0.8 >.out 2>.err
     matches "^FAIL  lengths: [0-9]* of [0-9]* edges are not 0.7 to 1.4 times as long as wanted$"
     for words in "--size 1" "--poly letter.poly --min-fitting 0.5" "--poly letter.poly --size 0" \

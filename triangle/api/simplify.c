@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "triangle/api/generate.h"
-#include "triangle/base/grow.h"
 #include "triangle/geometry/predicates.h"
 
 enum { MOST_PASSES = 20 };
@@ -21,19 +20,17 @@ struct waiting {
 
 struct simplifying {
     struct tri_pslg *pslg;
-    double unit;          /* of the mesh, in the caller's units */
-    double least;         /* L, in this unit */
+    double least;         /* L, in units of the mesh */
     struct tri_point *at; /* [n_items] positions, likewise */
     int32_t n_items;
     bool *gone;           /* [n_items] the item is removed */
     bool *unused;         /* [n_segments] likewise for a segment, or it has no two ends */
     bool *is_free;        /* [n_points] the point may be removed, if its neighbours allow that */
-    int32_t *degree;      /* [n_points] number of segments; it never changes */
     int32_t *age;         /* [n_points] changes of the point's neighbours */
     int32_t *first, *next; /* [n_points], [2 * n_segments] lists of the ends at each point; end 2 s + k is
                               segments[2 s + k]; -1: none */
-    struct waiting *heap; /* [n_heap] smallest area first */
-    int64_t n_heap, capacity;
+    struct waiting *heap; /* [n_heap] smallest area first; at most 2 * n_points: a removal replaces one by two */
+    int64_t n_heap;
     /* A grid of columns * rows cells: the items of cell c are item[start[c] .. start[c + 1]). */
     struct tri_point low;
     double cell;          /* width of a cell */
@@ -50,30 +47,24 @@ static enum tri_status no_memory(struct tri_error *error)
 
 static int32_t other_end(const struct simplifying *s, int32_t end) { return s->pslg->segments[end ^ 1]; }
 
-/* Sets both neighbours of a point with degree 2. */
-static void find_neighbours(const struct simplifying *s, int32_t v, int32_t neighbour[2])
-{
-    neighbour[0] = other_end(s, s->first[v]);
-    neighbour[1] = other_end(s, s->next[s->first[v]]);
-}
-
 static int32_t marker_of(const int32_t *markers, int32_t i) { return markers ? markers[i] : 0; }
 
-static bool has_usual_marker(const struct simplifying *s, int32_t v)
+/* Do exactly two segments end here, with usual markers? A removal changes this at no other point. */
+static bool joins_two(const struct simplifying *s, int32_t v)
 {
-    const int32_t *markers = s->pslg->markers, end = s->first[v], mine = marker_of(markers, v);
-    const int32_t segment = marker_of(s->pslg->segment_markers, end / 2);
-    if (marker_of(s->pslg->segment_markers, s->next[end] / 2) != segment)
+    const int32_t *markers = s->pslg->markers, *of_segments = s->pslg->segment_markers;
+    const int32_t end = s->first[v], second = end < 0 ? -1 : s->next[end];
+    if (second < 0 || s->next[second] >= 0 || marker_of(of_segments, end / 2) != marker_of(of_segments, second / 2))
         return false;
-    return mine == 0 || mine == segment || (mine == marker_of(markers, other_end(s, end)) &&
-                                            mine == marker_of(markers, other_end(s, s->next[end])));
+    const int32_t mine = marker_of(markers, v);
+    return mine == 0 || mine == marker_of(of_segments, end / 2) ||
+           (mine == marker_of(markers, other_end(s, end)) && mine == marker_of(markers, other_end(s, second)));
 }
 
 static bool are_joined(const struct simplifying *s, int32_t a, int32_t b)
 {
-    const int32_t from = s->degree[a] < s->degree[b] ? a : b, to = a + b - from;
-    for (int32_t end = s->first[from]; end >= 0; end = s->next[end])
-        if (other_end(s, end) == to)
+    for (int32_t end = s->first[a]; end >= 0; end = s->next[end])
+        if (other_end(s, end) == b)
             return true;
     return false;
 }
@@ -89,10 +80,11 @@ static void make_chains(struct simplifying *s)
         for (int k = 0; k < 2 && !s->unused[i]; k++) {
             s->next[2 * i + k] = s->first[v[k]];
             s->first[v[k]] = 2 * i + k;
-            s->degree[v[k]]++;
         }
     }
 }
+
+static int32_t point_of(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->origin ? mesh->origin[v] : v; }
 
 /* Finds the points that may be removed. pieces: number of subsegments of each segment. Ends of segments that meet
  * others on the way stay. So do points on other segments, and at the place of another. */
@@ -100,21 +92,19 @@ static void find_free_points(struct simplifying *s, const struct tri_mesh *mesh,
 {
     const struct tri_pslg *p = s->pslg;
     for (int32_t v = 0; v < p->n_points; v++)
-        s->is_free[v] = s->degree[v] == 2 && has_usual_marker(s, v);
+        s->is_free[v] = joins_two(s, v);
     for (tri_sub_id i = 0; i < mesh->n_subs; i++) {
         const int32_t segment = mesh->parents[mesh->sub[i].parent].segment;
         for (int k = 0; k < 2 && segment >= 0 && pieces[segment] != 1; k++) {
             const tri_vertex_id v = mesh->sub[i].v[k];
             if (v < p->n_points)
-                s->is_free[mesh->origin ? mesh->origin[v] : v] = false;
+                s->is_free[point_of(mesh, v)] = false;
         }
     }
     for (int32_t v = 0; mesh->twin && v < p->n_points; v++) {
         const int32_t twin = mesh->twin[v];
-        if (twin == v)
-            continue;
-        s->is_free[mesh->origin ? mesh->origin[v] : v] = false;
-        s->is_free[mesh->origin ? mesh->origin[twin] : twin] = false;
+        for (int k = 0; k < 2 && twin != v; k++)
+            s->is_free[point_of(mesh, k ? twin : v)] = false;
     }
 }
 
@@ -138,7 +128,6 @@ static enum tri_status examine(struct simplifying *s, const struct tri_executor 
                 pieces[segment]++;
         }
         find_free_points(s, &mesh, pieces);
-        s->unit = mesh.unit;
         s->least /= mesh.unit;
         for (int32_t i = 0; i < s->n_items; i++) {
             const int32_t hole = i - p->n_points, region = hole - p->n_holes;
@@ -156,6 +145,12 @@ static enum tri_status examine(struct simplifying *s, const struct tri_executor 
 
 /* --- the grid */
 
+static void extend(struct tri_point *low, struct tri_point *high, struct tri_point p)
+{
+    *low = (struct tri_point){tri_lesser(low->x, p.x), tri_lesser(low->y, p.y)};
+    *high = (struct tri_point){tri_larger(high->x, p.x), tri_larger(high->y, p.y)};
+}
+
 /* Returns the column or row of a coordinate. */
 static int32_t cell_of(const struct simplifying *s, double from_low, int32_t n)
 {
@@ -167,38 +162,35 @@ static int32_t cell_at(const struct simplifying *s, struct tri_point p)
     return cell_of(s, p.y - s->low.y, s->rows) * s->columns + cell_of(s, p.x - s->low.x, s->columns);
 }
 
-/* Sorts the remaining items into cells. Returns false if memory ran out. */
+/* Sorts the points, and hole and region points that are not outside them all, into cells. Returns false if memory ran
+ * out. */
 static bool fill_grid(struct simplifying *s)
 {
-    int32_t n = 0;
-    struct tri_point high = {-HUGE_VAL, -HUGE_VAL};
-    s->low = (struct tri_point){HUGE_VAL, HUGE_VAL};
-    for (int32_t i = 0; i < s->n_items; i++)
-        if (!s->gone[i]) {
-            n++;
-            s->low = (struct tri_point){tri_lesser(s->low.x, s->at[i].x), tri_lesser(s->low.y, s->at[i].y)};
-            high = (struct tri_point){tri_larger(high.x, s->at[i].x), tri_larger(high.y, s->at[i].y)};
-        }
-    if (n == 0)
-        s->low = high = (struct tri_point){0, 0};
+    const int32_t n = s->pslg->n_points;
+    struct tri_point high = s->low = s->at[0];
+    for (int32_t v = 1; v < n; v++)
+        extend(&s->low, &high, s->at[v]);
     const double width = high.x - s->low.x, height = high.y - s->low.y;
-    n += n == 0;
     s->cell = tri_larger(sqrt(width * height / n), tri_larger(width, height) / n);
-    s->cell = s->cell > 0 ? s->cell : 1;
     s->columns = 1 + (int32_t)(width / s->cell);
     s->rows = 1 + (int32_t)(height / s->cell);
     const size_t cells = (size_t)s->columns * (size_t)s->rows;
-    if (!tri_resize(&s->start, cells + 2, sizeof *s->start))
+    s->start = calloc(cells + 2, sizeof *s->start);
+    if (!s->start)
         return false;
-    memset(s->start, 0, (cells + 2) * sizeof *s->start);
-    for (int32_t i = 0; i < s->n_items; i++)
-        if (!s->gone[i])
-            s->start[cell_at(s, s->at[i]) + 2]++;
-    for (size_t c = 0; c < cells; c++)
-        s->start[c + 2] += s->start[c + 1];
-    for (int32_t i = 0; i < s->n_items; i++)
-        if (!s->gone[i])
-            s->item[s->start[cell_at(s, s->at[i]) + 1]++] = i;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t i = 0; i < s->n_items; i++) {
+            const struct tri_point p = s->at[i];
+            if (!(p.x >= s->low.x && p.x <= high.x && p.y >= s->low.y && p.y <= high.y))
+                continue;
+            int32_t *at = &s->start[cell_at(s, p) + 2 - pass];
+            if (pass)
+                s->item[*at] = i;
+            ++*at;
+        }
+        for (size_t c = 0; c < cells && !pass; c++)
+            s->start[c + 2] += s->start[c + 1];
+    }
     return true;
 }
 
@@ -240,20 +232,14 @@ static bool is_in_the_way(struct simplifying *s, const void *corners, int32_t i)
            near2 < 0.25 * tri_lesser(distance2_to(a, b, p), distance2_to(b, c, p));
 }
 
-/* Returns true if the angle at a between b and c is below 30 degrees. */
-static bool is_sharp(struct tri_point a, struct tri_point b, struct tri_point c)
-{
-    const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
-    return dot > COS_SHARP * sqrt(tri_distance2(a, b) * tri_distance2(a, c));
-}
-
-/* Would the new segment make a sharp angle at one of its ends? v: the ends, with the corner between them. */
+/* Would the new segment make an angle below 30 degrees at one of its ends? v: the ends, with the corner between. */
 static bool makes_sharp(const struct simplifying *s, const int32_t v[3])
 {
     for (int k = 0; k < 3; k += 2)
         for (int32_t end = s->first[v[k]]; end >= 0; end = s->next[end]) {
-            const int32_t w = other_end(s, end);
-            if (w != v[1] && is_sharp(s->at[v[k]], s->at[w], s->at[v[2 - k]]))
+            const struct tri_point a = s->at[v[k]], b = s->at[other_end(s, end)], c = s->at[v[2 - k]];
+            const double dot = (b.x - a.x) * (c.x - a.x) + (b.y - a.y) * (c.y - a.y);
+            if (other_end(s, end) != v[1] && dot > COS_SHARP * sqrt(tri_distance2(a, b) * tri_distance2(a, c)))
                 return true;
         }
     return false;
@@ -262,16 +248,14 @@ static bool makes_sharp(const struct simplifying *s, const int32_t v[3])
 /* Is the corner simple enough to be removed, apart from what lies nearby? Sets the corners of its triangle. */
 static bool is_detail(const struct simplifying *s, int32_t b, int32_t v[3], double *area)
 {
-    int32_t neighbour[2];
     if (s->gone[b] || !s->is_free[b])
         return false;
-    find_neighbours(s, b, neighbour);
-    v[0] = neighbour[0];
+    v[0] = other_end(s, s->first[b]);
     v[1] = b;
-    v[2] = neighbour[1];
+    v[2] = other_end(s, s->next[s->first[b]]);
     const struct tri_point *at = s->at;
     *area = fabs(tri_area_of(at[v[0]], at[b], at[v[2]]));
-    if (v[0] == v[2] || are_joined(s, v[0], v[2]) || !has_usual_marker(s, b))
+    if (v[0] == v[2] || are_joined(s, v[0], v[2]))
         return false;
     const double least2 = s->least * s->least;
     const double shortest2 = tri_lesser(tri_distance2(at[v[0]], at[b]), tri_distance2(at[b], at[v[2]]));
@@ -283,20 +267,17 @@ static bool is_before(const struct waiting *a, const struct waiting *b)
     return a->area < b->area || (a->area == b->area && a->v < b->v);
 }
 
-/* Queues the corner if it is a detail. Returns false if memory ran out. */
-static bool queue_corner(struct simplifying *s, int32_t b)
+/* Queues the corner if it is a detail. */
+static void queue_corner(struct simplifying *s, int32_t b)
 {
     int32_t v[3];
     struct waiting w = {.v = b, .age = ++s->age[b]};
     if (!is_detail(s, b, v, &w.area))
-        return true;
-    if (!tri_grow_far(&s->heap, &s->capacity, s->n_heap + 1, sizeof *s->heap))
-        return false;
+        return;
     int64_t i = s->n_heap++;
     for (; i > 0 && is_before(&w, &s->heap[(i - 1) / 2]); i = (i - 1) / 2)
         s->heap[i] = s->heap[(i - 1) / 2];
     s->heap[i] = w;
-    return true;
 }
 
 static struct waiting next_corner(struct simplifying *s)
@@ -327,33 +308,30 @@ static void remove_corner(struct simplifying *s, int32_t b)
     s->gone[b] = true;
 }
 
-/* Removes corners until none remains that can be removed at once. Returns false if memory ran out. */
-static bool remove_corners(struct simplifying *s)
+/* Removes corners until none remains that can be removed at once. */
+static void remove_corners(struct simplifying *s)
 {
     for (int32_t v = 0; v < s->pslg->n_points; v++)
-        if (!queue_corner(s, v))
-            return false;
+        queue_corner(s, v);
     while (s->n_heap > 0) {
         const struct waiting w = next_corner(s);
         int32_t v[3];
         double area;
         if (w.age != s->age[w.v] || !is_detail(s, w.v, v, &area))
             continue;
-        const struct tri_point a = s->at[v[0]], b = s->at[v[1]], c = s->at[v[2]];
         const double room = NEAR * s->least;
-        const struct tri_point low = {tri_lesser(a.x, tri_lesser(b.x, c.x)) - room,
-                                      tri_lesser(a.y, tri_lesser(b.y, c.y)) - room};
-        const struct tri_point high = {tri_larger(a.x, tri_larger(b.x, c.x)) + room,
-                                       tri_larger(a.y, tri_larger(b.y, c.y)) + room};
+        struct tri_point low = s->at[w.v], high = low;
+        extend(&low, &high, s->at[v[0]]);
+        extend(&low, &high, s->at[v[2]]);
+        low = (struct tri_point){low.x - room, low.y - room};
+        high = (struct tri_point){high.x + room, high.y + room};
         if (any_in_box(s, low, high, is_in_the_way, v))
             continue;
         remove_corner(s, w.v);
         s->report.corners++;
-        s->report.area += area;
-        if ((s->is_free[v[0]] && !queue_corner(s, v[0])) || (s->is_free[v[2]] && !queue_corner(s, v[2])))
-            return false;
+        queue_corner(s, v[0]);
+        queue_corner(s, v[2]);
     }
-    return true;
 }
 
 /* --- islands */
@@ -413,20 +391,19 @@ static bool follow_ring(const struct simplifying *s, struct ring *ring, int32_t 
     return true;
 }
 
-/* Removes the ring if it is small and nothing but hole and region points lies inside. Returns true if it did. */
-static bool remove_island(struct simplifying *s, const struct ring *ring)
+/* Removes the ring if it is small and nothing but hole and region points lies inside. */
+static void remove_island(struct simplifying *s, const struct ring *ring)
 {
     double area = 0;
     struct tri_point low = s->at[ring->v[0]], high = low;
     for (int32_t k = 1; k < ring->n; k++) {
         const struct tri_point p = s->at[ring->v[k]];
-        low = (struct tri_point){tri_lesser(low.x, p.x), tri_lesser(low.y, p.y)};
-        high = (struct tri_point){tri_larger(high.x, p.x), tri_larger(high.y, p.y)};
+        extend(&low, &high, p);
         if (k > 1)
             area += tri_area_of(s->at[ring->v[0]], s->at[ring->v[k - 1]], p);
     }
     if (!(fabs(area) < s->least * s->least) || any_in_box(s, low, high, is_foreign_point, ring))
-        return false;
+        return;
     any_in_box(s, low, high, remove_seed, ring);
     for (int32_t k = 0; k < ring->n; k++) {
         const int32_t v = ring->v[k];
@@ -434,62 +411,49 @@ static bool remove_island(struct simplifying *s, const struct ring *ring)
     }
     s->report.islands++;
     s->report.island_points += ring->n;
-    s->report.area += fabs(area);
-    return true;
 }
 
-/* Removes small islands, and then those around them. */
+/* Removes small islands. Those around them follow in the next pass. */
 static void remove_islands(struct simplifying *s, struct ring *ring)
 {
-    for (bool again = true; again;) {
-        again = false;
-        ring->before = ring->number;
-        for (int32_t v = 0; v < s->pslg->n_points; v++)
-            if (!s->gone[v] && s->is_free[v] && ring->turn[v] <= ring->before && follow_ring(s, ring, v))
-                again = remove_island(s, ring) || again;
-    }
+    ring->before = ring->number;
+    for (int32_t v = 0; v < s->pslg->n_points; v++)
+        if (!s->gone[v] && s->is_free[v] && ring->turn[v] <= ring->before && follow_ring(s, ring, v))
+            remove_island(s, ring);
 }
 
 /* --- the result */
 
-/* Counts the segments that are still shorter than L. */
-static void count_shorter(struct simplifying *s)
-{
-    for (int32_t i = 0; i < s->pslg->n_segments; i++) {
-        const int32_t *v = &s->pslg->segments[2 * (size_t)i];
-        s->report.shorter += !s->unused[i] && tri_distance2(s->at[v[0]], s->at[v[1]]) < s->least * s->least;
-    }
-}
-
-/* Moves the rows that remain to the front. Returns their number. */
+/* Moves the rows that remain to the front, if there is an array. Returns their number. */
 static int32_t keep_rows(void *rows, size_t size, const bool *gone, int32_t n)
 {
     int32_t kept = 0;
-    for (int32_t i = 0; i < n; i++)
+    for (int32_t i = 0; i < n && rows; i++)
         if (!gone[i])
             memmove((char *)rows + size * (size_t)kept++, (char *)rows + size * (size_t)i, size);
     return kept;
 }
 
-/* Removes what is gone. `age` becomes the new numbers of points. */
+/* Removes what is gone, and counts segments that are still shorter than L. `age` becomes the new numbers of points. */
 static void compact(struct simplifying *s)
 {
     struct tri_pslg *p = s->pslg;
-    const int32_t n = p->n_points;
+    const int32_t n = p->n_points, n_holes = p->n_holes;
     for (int32_t v = 0, kept = 0; v < n; v++)
         s->age[v] = s->gone[v] ? -1 : kept++;
-    for (int32_t i = 0; i < p->n_segments; i++)
-        for (int k = 0; k < 2 && !s->unused[i]; k++)
-            p->segments[2 * i + k] = s->age[p->segments[2 * i + k]];
-    if (p->attributes)
-        keep_rows(p->attributes, (size_t)p->n_attributes * sizeof *p->attributes, s->gone, n);
-    if (p->markers)
-        keep_rows(p->markers, sizeof *p->markers, s->gone, n);
-    if (p->segment_markers)
-        keep_rows(p->segment_markers, sizeof *p->segment_markers, s->unused, p->n_segments);
+    for (int32_t i = 0; i < p->n_segments; i++) {
+        int32_t *v = &p->segments[2 * (size_t)i];
+        if (s->unused[i])
+            continue;
+        s->report.shorter += tri_distance2(s->at[v[0]], s->at[v[1]]) < s->least * s->least;
+        v[0] = s->age[v[0]];
+        v[1] = s->age[v[1]];
+    }
+    keep_rows(p->attributes, (size_t)p->n_attributes * sizeof *p->attributes, s->gone, n);
+    keep_rows(p->markers, sizeof *p->markers, s->gone, n);
+    keep_rows(p->segment_markers, sizeof *p->segment_markers, s->unused, p->n_segments);
     p->n_points = keep_rows(p->points, 2 * sizeof *p->points, s->gone, n);
     p->n_segments = keep_rows(p->segments, 2 * sizeof *p->segments, s->unused, p->n_segments);
-    const int32_t n_holes = p->n_holes;
     p->n_holes = keep_rows(p->holes, 2 * sizeof *p->holes, s->gone + n, n_holes);
     p->n_regions = keep_rows(p->regions, 4 * sizeof *p->regions, s->gone + n + n_holes, p->n_regions);
 }
@@ -498,24 +462,15 @@ static void compact(struct simplifying *s)
 static enum tri_status run_passes(struct simplifying *s, struct ring *ring, const struct tri_stop *stop,
                                   struct tri_error *error)
 {
-    bool changed = true;
-    for (int pass = 0; changed && pass < MOST_PASSES; pass++) {
-        const int32_t corners = s->report.corners, islands = s->report.islands;
+    int32_t before = -1;
+    for (int pass = 0; pass < MOST_PASSES && s->report.corners + s->report.islands > before; pass++) {
+        before = s->report.corners + s->report.islands;
         if (tri_stop_is_asked(stop))
             return tri_fail_stopped(error);
-        if (!fill_grid(s))
-            return no_memory(error);
         remove_islands(s, ring);
-        if (!remove_corners(s))
-            return no_memory(error);
-        changed = s->report.corners > corners || s->report.islands > islands;
+        remove_corners(s);
     }
-    count_shorter(s);
-    for (int32_t i = 0; i < s->pslg->n_segments; i++)
-        if (!s->unused[i])
-            return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no segment remains after details below %g are removed",
-                    s->least * s->unit);
+    return TRI_OK;
 }
 
 enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struct tri_executor *executor,
@@ -528,34 +483,33 @@ enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struc
     const size_t items = points + (size_t)pslg->n_holes + (size_t)pslg->n_regions;
     struct simplifying s = {.pslg = pslg, .least = min_edge, .n_items = (int32_t)(items - 1)};
     struct ring ring = {malloc(points * sizeof *ring.v), 0, calloc(points, sizeof *ring.turn), 0, 0};
-    int32_t *given = malloc(2 * segments * sizeof *given);
     s.at = malloc(items * sizeof *s.at);
     s.gone = calloc(items, sizeof *s.gone);
     s.item = malloc(items * sizeof *s.item);
     s.unused = calloc(segments, sizeof *s.unused);
     s.next = malloc(2 * segments * sizeof *s.next);
     s.is_free = calloc(points, sizeof *s.is_free);
-    s.degree = calloc(points, sizeof *s.degree);
     s.age = calloc(points, sizeof *s.age);
+    s.heap = malloc(2 * points * sizeof *s.heap);
     s.first = malloc(points * sizeof *s.first);
     enum tri_status status = TRI_OK;
-    if (!ring.v || !ring.turn || !given || !s.at || !s.gone || !s.item || !s.unused || !s.next || !s.is_free ||
-        !s.degree || !s.age || !s.first)
+    if (!ring.v || !ring.turn || !s.at || !s.gone || !s.item || !s.unused || !s.next || !s.is_free || !s.age ||
+        !s.first || !s.heap)
         status = no_memory(error);
     if (!status) {
-        memcpy(given, pslg->segments, 2 * (segments - 1) * sizeof *given);
         make_chains(&s);
         status = examine(&s, executor, stop, error);
-        status = status ? status : run_passes(&s, &ring, stop, error);
-        if (status)
-            memcpy(pslg->segments, given, 2 * (segments - 1) * sizeof *given);
-        else
-            compact(&s);
     }
-    s.report.area *= s.unit * s.unit;
+    if (!status)
+        status = fill_grid(&s) ? run_passes(&s, &ring, stop, error) : no_memory(error);
+    if (!status)
+        compact(&s);
+    if (!status && pslg->n_segments == 0)
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "no segment remains after details below %g are removed",
+                          min_edge);
     *report = s.report;
-    void *const arrays[] = {ring.v, ring.turn, given, s.at, s.gone, s.item, s.unused, s.next, s.is_free, s.degree,
-                            s.age, s.first, s.heap, s.start};
+    void *const arrays[] = {ring.v, ring.turn, s.at, s.gone, s.item, s.unused, s.next, s.is_free, s.age, s.first,
+                            s.heap, s.start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);
     return status;

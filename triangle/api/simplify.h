@@ -23,11 +23,10 @@ struct tri_simplify_report {
     int32_t island_points; /* removed points of these */
     int32_t holes, regions; /* removed hole points, and region points */
     int32_t shorter;     /* segments that are still shorter than L */
-    double area;         /* sum of the areas of all removed triangles and islands */
 };
 
 /* Simplifies the PSLG. min_edge: L, above 0, in its units. The remaining points, segments, holes and regions keep their
- * order. Segments that a mesh skips are removed. The PSLG is changed only if TRI_OK is returned. TRI_BAD_INPUT: as for
+ * order. Segments that a mesh skips are removed. After an error the PSLG can only be freed. TRI_BAD_INPUT: as for
  * tri_generate, or none of its segments remains; TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_STOPPED. Expected O(n log n) for n
  * points that are spread evenly. */
 enum tri_status tri_simplify(struct tri_pslg *pslg, double min_edge, const struct tri_executor *executor,
