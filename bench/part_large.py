@@ -98,8 +98,10 @@ def _streamed(settings, run):
     ended = execute([_stream_program(settings), d.path, repr(d.angle), repr(d.area), str(int(run.memory)),
                      str(settings.threads), settings.scratch], LIMIT, settings.scratch)
     found = re.match(r"(\d+) triangles", ended.output)
+    if ended.code != 0 or not found:
+        return ended, None, 0, ended.errors + ended.output
     verdict = "no fault, as it is streamed" if ", edges in pairs" in ended.output else "edges are not in pairs"
-    return ended, int(found.group(1)) if ended.code == 0 and found else None, 0, verdict
+    return ended, int(found.group(1)), 0, verdict
 
 
 REASONS = {"input_angle": "at small angles of the input", "narrow_gap": "between segments too near to each other",

@@ -5,6 +5,7 @@
 #include "sched/schedule/room.h"
 #include "sched/tiles/numbering.h"
 #include "sched/schedule/threads.h"
+#include "sched/tunables.h"
 #include "triangle/mesh/surface.h"
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
@@ -315,6 +316,10 @@ static void test_blocks_on_segments_get_room_for_subsegments(void **state)
     assert_true(triangles >= 10000 && triangles < 10100);
     assert_true(par_room_left(&room, PAR_SUBS) >= 5000);
     assert_int_equal(par_room_extend(&room, &spare, &mesh, triangles, NULL), TRI_OK);
+    assert_int_equal(mesh.n_triangles, n_triangles);
+    par_room_return(&room, &spare);
+    assert_int_equal(par_room_extend(&room, &spare, &mesh, 10, NULL), TRI_OK); /* takes a part of the long range */
+    assert_true(par_room_left(&room, PAR_TRIANGLES) <= 2 * PAR_LEAST_RANGE);
     assert_int_equal(mesh.n_triangles, n_triangles);
     par_room_return(&room, &spare);
     par_room_close(&spare, &mesh, NULL);

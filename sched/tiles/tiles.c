@@ -400,7 +400,8 @@ static void remove_share(void *context, size_t share)
                           !par_finds_add_gaps(&c->subs, share, subs);
 }
 
-/* Removes the column from the mesh and adds its ids to *spare. False: no memory. */
+/* Removes the column from the mesh and replaces *spare by the free ids that the searches met and those of the column.
+ * False: no memory. */
 static bool remove_column(struct par_column *c, struct par_room *spare)
 {
     struct par_ids stay, *held = &c->tiles->held;

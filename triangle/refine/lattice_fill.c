@@ -85,7 +85,9 @@ struct around {
     int32_t up2;      /* from a site to the one two rows above, in the same column */
 };
 
-/* Computes the differences for a row. The row has a site that is not TRI_SITE_OUT. */
+/* Computes the differences for a row at least TRI_SITE_MARGIN rows from the first and the last. If one of the rows is
+ * empty, differences to it are not indices. Only sites that are not TRI_SITE_OUT use them, and around these no row is
+ * empty. */
 static struct around around_row(const struct tri_sites *s, int32_t row)
 {
     const int32_t shift = row & 1, base = s->row[row].base;
