@@ -77,7 +77,7 @@ bool par_tiles_reserve(struct par_tiles *tiles);
  * (par_room_mark) and stay marked. *numbered uses little memory until it is handed out; free it in any case.
  *
  * par_tiles_hand_out hands the column out. Each corner of the column's triangles must have a number or belong to a
- * later tile. Afterwards *spare lacks free vertices, because the first step does not keep them: the mesh gets no further
+ * later tile. The first step does not keep the free vertices, so *spare lacks them afterwards: the mesh gets no more
  * points. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
