@@ -35,7 +35,8 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     free(j->kept);
     free(j->recent);
     *j = (struct judge){.squared_cosine = j->squared_cosine, .max_area = j->max_area, .mask = (1 << 16) - 1};
-    while (j->mask < (1 << 26) - 1 && (double)j->mask < stream->estimate / 16)
+    /* Corners are at most one column back, and a column has about sqrt(65,536 n) points (docs/scaling.md). */
+    while ((double)j->mask < 2.5 * sqrt(65536 * stream->estimate))
         j->mask = 2 * j->mask + 1;
     j->recent = malloc((size_t)(j->mask + 1) * sizeof *j->recent);
     return j->recent ? TRI_OK : TRI_NO_MEMORY;
