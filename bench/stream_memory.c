@@ -3,7 +3,7 @@
  * Each triangle is judged from its corners: they are counter-clockwise, and angles and area are within the bounds. Sums
  * judge the whole mesh. An edge that is no subsegment must occur once in each direction. If all segments are on the
  * boundary of the domain, the hashes of all edges, with a sign that depends on the direction, therefore have the same
- * sum as those of the subsegments. A difference is reported, but counts as a fault only where the caller says so.
+ * sum as those of the subsegments. A difference is printed, but does not count as a fault.
  * Usage: stream FILE.poly MIN_ANGLE MAX_AREA BYTES THREADS [SCRATCH]; bytes 0: in memory */
 #include <math.h>
 #include <stdbool.h>

@@ -11,8 +11,8 @@
 enum { SLICE = 1 << 14 }; /* triangles that are read at a time */
 
 struct measuring {
-    const struct tri_check_source *source;
-    const struct tri_lengths *lengths;
+    const struct tri_check_source *source; /* the mesh */
+    const struct tri_lengths *lengths;     /* the wanted lengths */
     double unit;          /* of the mesh of the input, in which the lengths are defined */
     struct tri_point *xy; /* [source->n_points], in this unit */
     uint64_t *edge;       /* [n] smaller end << bits | larger end, for each side of each triangle */

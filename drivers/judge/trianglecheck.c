@@ -89,12 +89,12 @@ struct settings {
     int64_t threads; /* 0: not given */
     double memory, memory_share; /* bytes, or a share of the free memory; 0: not given */
     const char *scratch;         /* folder; NULL: not given */
-    struct size_options sizes;
+    struct size_options sizes; /* the wanted lengths, and --min-edge */
     double min_fitting; /* share of edges; 0: not given */
 };
 
 struct verdict {
-    struct tri_check_report report;
+    struct tri_check_report report; /* of the mesh itself */
     struct judged_sizes sizes; /* n_edges is 0: not measured */
 };
 

@@ -255,16 +255,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 
 bool par_room_release(struct par_room *spare, enum par_kind kind, int32_t id)
 {
-    struct par_ranges *ranges = &spare->ranges[kind];
-    /* Deleted items often follow each other: extend the last range. */
-    if (ranges->n > 0 && ranges->item[ranges->n - 1].end == id && ranges->item[ranges->n - 1].next < id) {
-        ranges->item[ranges->n - 1].end++;
-        return true;
-    }
-    if (!par_ranges_reserve(ranges, ranges->n + ranges->dealt + 1))
-        return false;
-    ranges->item[ranges->n++] = (struct par_range){id, id + 1};
-    return true;
+    return par_ranges_add(&spare->ranges[kind], id);
 }
 
 void par_room_free(struct par_room *room)

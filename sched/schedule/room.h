@@ -34,6 +34,19 @@ struct par_ranges {
 /* Makes the list large enough for `need` ranges in total; amortised O(1) a range. False: no memory. */
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
 
+/* Adds an index: extends the last range if the index follows it, otherwise appends a range. False: no memory. */
+static inline bool par_ranges_add(struct par_ranges *ranges, int32_t id)
+{
+    if (ranges->n > 0 && ranges->item[ranges->n - 1].end == id && ranges->item[ranges->n - 1].next < id) {
+        ranges->item[ranges->n - 1].end++;
+        return true;
+    }
+    if (!par_ranges_reserve(ranges, ranges->n + ranges->dealt + 1))
+        return false;
+    ranges->item[ranges->n++] = (struct par_range){id, id + 1};
+    return true;
+}
+
 /* Returns the number of unused items in all ranges. */
 int64_t par_ranges_unused(const struct par_ranges *ranges);
 

@@ -74,16 +74,9 @@ bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor
 
 bool par_finds_add_gaps(struct par_finds *finds, size_t share, const struct par_ids *list)
 {
-    struct par_ranges *to = &finds->gaps[share];
     bool memory = true;
-    for (int32_t i = 0, first = 0; memory && i < list->n; i++) {
-        if (i + 1 < list->n && list->item[i + 1] == list->item[i] + 1)
-            continue;
-        memory = par_ranges_reserve(to, to->n + 1);
-        if (memory)
-            to->item[to->n++] = (struct par_range){list->item[first], list->item[i] + 1};
-        first = i + 1;
-    }
+    for (int32_t i = 0; memory && i < list->n; i++)
+        memory = par_ranges_add(&finds->gaps[share], list->item[i]);
     return memory;
 }
 

@@ -58,8 +58,7 @@ struct par_finder {
     struct par_ids notes;    /* the note of each id; empty: the ids have no notes */
     struct par_runs runs;    /* completed spans of `list` */
     struct par_span last;    /* the current span, which is not yet in `runs`; n 0: there is none */
-    struct par_ranges gaps;  /* completed ranges of free ids */
-    struct par_range gap;    /* the current range of free ids, which is not yet in `gaps`; empty: there is none */
+    struct par_ranges gaps;  /* ranges of free ids met so far */
     bool no_memory;          /* an allocation has failed */
 };
 
@@ -108,32 +107,16 @@ static inline void par_find_noted(struct par_finder *f, int32_t item, int32_t ro
     par_finder_add(f, &f->notes, note);
 }
 
-/* Completes the current range of free ids. */
-static inline void par_finder_close_gap(struct par_finder *f)
-{
-    if (f->gap.next == f->gap.end)
-        return;
-    if (par_ranges_reserve(&f->gaps, f->gaps.n + 1))
-        f->gaps.item[f->gaps.n++] = f->gap;
-    else
-        f->no_memory = true;
-}
-
 /* Adds a free id. */
 static inline void par_find_gap(struct par_finder *f, int32_t item)
 {
-    if (item != f->gap.end) {
-        par_finder_close_gap(f);
-        f->gap.next = item;
-    }
-    f->gap.end = item + 1;
+    f->no_memory |= !par_ranges_add(&f->gaps, item);
 }
 
 /* Ends the search and moves the lists to f->finds. False: no memory. */
 static inline bool par_finder_end(struct par_finder *f)
 {
     par_finder_count(f);
-    par_finder_close_gap(f);
     f->finds->gaps[f->share] = f->gaps;
     f->finds->found[f->share] = f->list;
     f->finds->notes[f->share] = f->notes;
@@ -144,7 +127,7 @@ static inline bool par_finder_end(struct par_finder *f)
 /* Sorts all ids that were found by row: sets item, note, start and n. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
 
-/* Appends the runs of consecutive ids of an ascending list to the gaps of a share. False: no memory. */
+/* Adds the ids of an ascending list to the gaps of a share. False: no memory. */
 bool par_finds_add_gaps(struct par_finds *finds, size_t share, const struct par_ids *list);
 
 /* Replaces the ranges by the gaps of all shares. No range is dealt out. False: no memory. */

@@ -14,15 +14,15 @@ static const double COS_SHARP = 0.8660254037844386; /* of 30 degrees */
 
 /* A corner in the queue. The entry is outdated if the corner has another age. */
 struct waiting {
-    double area;
-    int32_t v, age;
+    double area;    /* of the triangle of the corner and its neighbours */
+    int32_t v, age; /* the corner, and its age when it was queued */
 };
 
 struct simplifying {
-    struct tri_pslg *pslg;
+    struct tri_pslg *pslg; /* the input, which is changed */
     double least;         /* L, in units of the mesh */
     struct tri_point *at; /* [n_items] positions, likewise */
-    int32_t n_items;
+    int32_t n_items;      /* number of points, hole points and region points */
     bool *gone;           /* [n_items] the item is removed */
     bool *unused;         /* [n_segments] likewise for a segment, or it has no two ends */
     bool *is_free;        /* [n_points] the point may be removed, if its neighbours allow that */
@@ -32,10 +32,10 @@ struct simplifying {
     struct waiting *heap; /* [n_heap] smallest area first; at most 2 * n_points: a removal replaces one by two */
     int64_t n_heap;
     /* A grid of columns * rows cells: the items of cell c are item[start[c] .. start[c + 1]). */
-    struct tri_point low;
+    struct tri_point low; /* lower left corner */
     double cell;          /* width of a cell */
     int32_t columns, rows, *start, *item;
-    struct tri_simplify_report report;
+    struct tri_simplify_report report; /* counts so far */
 };
 
 static enum tri_status no_memory(struct tri_error *error)
@@ -209,13 +209,6 @@ static bool any_in_box(struct simplifying *s, struct tri_point low, struct tri_p
 
 /* --- corners */
 
-static double distance2_to(struct tri_point a, struct tri_point b, struct tri_point p)
-{
-    const double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y;
-    const double along = l2 > 0 ? tri_lesser(tri_larger(((p.x - a.x) * x + (p.y - a.y) * y) / l2, 0), 1) : 0;
-    return tri_distance2(p, (struct tri_point){a.x + along * x, a.y + along * y});
-}
-
 /* Is item i in the closed triangle of corners, or does it come too near to its side from corner 0 to corner 2? */
 static bool is_in_the_way(struct simplifying *s, const void *corners, int32_t i)
 {
@@ -227,9 +220,9 @@ static bool is_in_the_way(struct simplifying *s, const void *corners, int32_t i)
     const bool is_flat = ab == 0 && bc == 0 && ca == 0; /* the corner is free, so p lies on none of its segments */
     if (!is_flat && ((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0)))
         return true;
-    const double near2 = distance2_to(a, c, p);
+    const double near2 = tri_segment_distance2(a, c, p);
     return near2 < NEAR * NEAR * s->least * s->least &&
-           near2 < 0.25 * tri_lesser(distance2_to(a, b, p), distance2_to(b, c, p));
+           near2 < 0.25 * tri_lesser(tri_segment_distance2(a, b, p), tri_segment_distance2(b, c, p));
 }
 
 /* Would the new segment make an angle below 30 degrees at one of its ends? v: the ends, with the corner between. */

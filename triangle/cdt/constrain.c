@@ -30,8 +30,7 @@
 #include "triangle/mesh/surface.h"
 #include "triangle/tunables.h"
 
-/* Minimum number of further triangles searched for a nearer vertex, once a vertex beside the piece is found. */
-enum { WINDOW = 64 };
+enum { WINDOW = 64 }; /* minimum number of further triangles searched after a vertex beside the piece is found */
 
 static const struct tri_course NO_SEGMENT = {TRI_NONE, TRI_NONE, false};
 
@@ -444,13 +443,11 @@ struct hit {
 static void consider_beside(const struct builder *l, const struct tri_piece *piece, tri_vertex_id v, double det,
                      struct hit *met)
 {
-    const struct tri_point *xy = l->mesh->xy;
-    struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
+    const struct tri_point *xy = l->mesh->xy, a = xy[piece->from], b = xy[piece->to], q = xy[v];
     double x = b.x - a.x, y = b.y - a.y, length2 = x * x + y * y, at = x * (q.x - a.x) + y * (q.y - a.y);
-    if (v == piece->from || v == piece->to || !(at > 0 && at < length2))
-        return;
     double far = fmax(tri_resolution(q), fmax(tri_resolution(a), tri_resolution(b)));
-    if (fabs(det) > 8 * far * (fabs(x) + fabs(y)))
+    if (v == piece->from || v == piece->to || !(at > 0 && at < length2) ||
+        fabs(det) > 8 * far * (fabs(x) + fabs(y)))
         return;
     double distance = tri_line_distance(a, b, q), near = TRI_ON_SEGMENT * tri_resolution(q);
     if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||

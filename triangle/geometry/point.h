@@ -48,4 +48,13 @@ static inline double tri_distance2(struct tri_point p, struct tri_point q)
     return x * x + y * y;
 }
 
+/* Returns the squared distance of p from the segment ab, whose ends may be equal. */
+static inline double tri_segment_distance2(struct tri_point a, struct tri_point b, struct tri_point p)
+{
+    const double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y;
+    const double along = l > 0 ? ((p.x - a.x) * x + (p.y - a.y) * y) / l : 0;
+    const double at = tri_larger(0, tri_lesser(along, 1));
+    return tri_distance2(p, (struct tri_point){a.x + at * x, a.y + at * y});
+}
+
 #endif

@@ -149,14 +149,6 @@ struct segment {
     struct tri_point a, b; /* ends, may be equal */
 };
 
-static double distance2_to(const struct segment *s, struct tri_point p)
-{
-    const double x = s->b.x - s->a.x, y = s->b.y - s->a.y, l = x * x + y * y;
-    const double along = l > 0 ? ((p.x - s->a.x) * x + (p.y - s->a.y) * y) / l : 0;
-    const double at = tri_larger(0, tri_lesser(along, 1));
-    return tri_distance2(p, (struct tri_point){s->a.x + at * x, s->a.y + at * y});
-}
-
 /* Returns columns of a row that contain all sites closer than `distance` to a segment. */
 static struct span columns_near(const struct tri_lattice *lattice, const struct segment *s, double row, double distance)
 {
@@ -181,8 +173,8 @@ static void remove_sites_near(struct tri_sites *s, struct segment segment, doubl
         const struct span columns = columns_near(lattice, &segment, row, distance);
         for (double column = columns.first; column <= columns.last; column++) {
             const int32_t site = find_site(s, row - s->bottom, column - s->left);
-            if (site != TRI_NONE &&
-                distance2_to(&segment, tri_lattice_at(lattice, row, column)) < distance * distance)
+            const struct tri_point at = tri_lattice_at(lattice, row, column);
+            if (site != TRI_NONE && tri_segment_distance2(segment.a, segment.b, at) < distance * distance)
                 s->at[site] = TRI_SITE_OUT;
         }
     }
