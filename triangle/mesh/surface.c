@@ -215,7 +215,21 @@ void tri_surface_set(const struct tri_mesh *mesh, const tri_vertex_id *vertices,
     }
 }
 
-/* Processes blocks of vertices, each sorted along a curve, because vertices may be in any order. */
+/* Is the path through consecutive vertices about as short as it would be along a curve or in rows? */
+static bool is_short_path(const struct tri_point *xy, int32_t n)
+{
+    struct tri_point low = xy[0], high = xy[0];
+    double path = 0;
+    for (int32_t i = 1; i < n; i++) {
+        path += fabs(xy[i].x - xy[i - 1].x) + fabs(xy[i].y - xy[i - 1].y);
+        low = (struct tri_point){tri_lesser(low.x, xy[i].x), tri_lesser(low.y, xy[i].y)};
+        high = (struct tri_point){tri_larger(high.x, xy[i].x), tri_larger(high.y, xy[i].y)};
+    }
+    const double width = high.x - low.x, height = high.y - low.y;
+    return path <= 4 * (width + height + sqrt(n * width * height));
+}
+
+/* Processes blocks of vertices. A block that jumps to and fro is sorted along a curve first. */
 static void settle_share(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
@@ -226,7 +240,8 @@ static void settle_share(void *context, size_t share)
     for (int32_t i = range.first, n; i < range.last; i += n) {
         for (n = 0; n < BLOCK_VERTICES && i + n < range.last; n++)
             part[n] = first + i + n;
-        tri_hilbert_order_coarse(mesh->xy, part, n, scratch);
+        if (!is_short_path(mesh->xy + part[0], n))
+            tri_hilbert_order_coarse(mesh->xy, part, n, scratch);
         tri_surface_set(mesh, part, n);
     }
 }
