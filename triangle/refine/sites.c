@@ -58,20 +58,21 @@ static void corners_of(const struct tri_mesh *mesh, tri_triangle_id t, struct tr
         p[k] = mesh->xy[mesh->tri[t].v[k]];
 }
 
-/* Computes the range of rows and the leftmost column. Returns false if there are more than `most` rows, if the
- * triangles together cover more rows than that, or if coordinates are too coarse for the lattice. */
+/* Computes the range of rows and the leftmost column. *painted: receives the number of rows, summed over all triangles.
+ * Returns false if there are more than `most` rows, if the triangles together cover more rows than that, or if
+ * coordinates are too coarse for the lattice. */
 static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
-                       int32_t most)
+                       int32_t most, double *painted)
 {
     struct span rows = {HUGE_VAL, -HUGE_VAL}, columns = rows;
-    double painted = 0; /* number of rows, summed over all triangles */
+    *painted = 0;
     for (int32_t i = 0; i < n; i++) {
         struct tri_point p[3];
         corners_of(mesh, triangle[i], p);
         const struct span own = rows_in(&s->lattice, p);
         rows.first = tri_lesser(rows.first, own.first);
         rows.last = tri_larger(rows.last, own.last);
-        painted += tri_larger(own.last - own.first + 1, 0);
+        *painted += tri_larger(own.last - own.first + 1, 0);
         for (int k = 0; k < 3; k++) {
             columns.first = tri_lesser(columns.first, floor(p[k].x / s->lattice.edge) - 1);
             columns.last = tri_larger(columns.last, floor(p[k].x / s->lattice.edge) + 1);
@@ -81,46 +82,53 @@ static bool find_frame(struct tri_sites *s, const struct tri_mesh *mesh, const t
     s->left = columns.first - TRI_SITE_MARGIN;
     const double farthest = tri_larger(tri_larger(fabs(rows.first), fabs(rows.last)),
                                        tri_larger(fabs(columns.first), fabs(columns.last)));
-    if (!(farthest < TRI_LATTICE_FARTHEST) || !(rows.last - s->bottom < most) || !(painted <= most) ||
+    if (!(farthest < TRI_LATTICE_FARTHEST) || !(rows.last - s->bottom < most) || !(*painted <= most) ||
         !(columns.last - columns.first < INT32_MAX / 2))
         return false;
     s->n_rows = rows.first <= rows.last ? (int32_t)(rows.last - s->bottom) + 1 + TRI_SITE_MARGIN : 0;
     return true;
 }
 
-/* Calls `paint` for each row of each triangle, with the columns inside the triangle. */
-static void paint_all(struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n,
-                      void (*paint)(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t))
+/* A row of a triangle: the columns inside it. */
+struct stripe {
+    int32_t row, first, last; /* the row; its first and last column */
+    tri_triangle_id t;        /* the triangle */
+};
+
+/* Lists the stripes of all triangles. Returns their number. stripe: has room for all. */
+static int32_t list_stripes(const struct tri_sites *s, const struct tri_mesh *mesh, const tri_triangle_id *triangle,
+                            int32_t n, struct stripe *stripe)
 {
+    int32_t count = 0;
     for (int32_t i = 0; i < n; i++) {
         struct tri_point p[3];
         corners_of(mesh, triangle[i], p);
         const struct span rows = rows_in(&s->lattice, p);
         for (double row = rows.first; row <= rows.last; row++) {
-            struct span columns = columns_in(&s->lattice, p, row);
-            columns.first -= s->left;
-            columns.last -= s->left;
+            const struct span columns = columns_in(&s->lattice, p, row);
             if (columns.first <= columns.last)
-                paint(s, (int32_t)(row - s->bottom), columns, triangle[i]);
+                stripe[count++] = (struct stripe){(int32_t)(row - s->bottom), (int32_t)(columns.first - s->left),
+                                                  (int32_t)(columns.last - s->left), triangle[i]};
         }
     }
+    return count;
 }
 
-static void widen_row(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t)
+static void widen_rows(struct tri_sites *s, struct stripe stripe)
 {
-    (void)t;
-    for (int32_t k = row - TRI_SITE_MARGIN; k <= row + TRI_SITE_MARGIN; k++) {
-        s->row[k].first = (int32_t)tri_lesser(s->row[k].first, columns.first - TRI_SITE_MARGIN);
-        s->row[k].last = (int32_t)tri_larger(s->row[k].last, columns.last + TRI_SITE_MARGIN);
+    for (int32_t k = stripe.row - TRI_SITE_MARGIN; k <= stripe.row + TRI_SITE_MARGIN; k++) {
+        struct tri_site_row *row = &s->row[k];
+        row->first = row->first < stripe.first - TRI_SITE_MARGIN ? row->first : stripe.first - TRI_SITE_MARGIN;
+        row->last = row->last > stripe.last + TRI_SITE_MARGIN ? row->last : stripe.last + TRI_SITE_MARGIN;
     }
 }
 
-static void paint_row(struct tri_sites *s, int32_t row, struct span columns, tri_triangle_id t)
+static void paint(struct tri_sites *s, struct stripe stripe)
 {
-    const int32_t base = s->row[row].base;
-    for (int32_t c = (int32_t)columns.first; c <= (int32_t)columns.last; c++) {
+    const int32_t base = s->row[stripe.row].base;
+    for (int32_t c = stripe.first; c <= stripe.last; c++) {
         s->at[base + c] = TRI_SITE_FREE;
-        s->near[base + c] = t;
+        s->near[base + c] = stripe.t;
     }
 }
 
@@ -212,18 +220,16 @@ static void note_features(struct tri_sites *s, const struct tri_mesh *mesh, tri_
     }
 }
 
-bool tri_sites_find(struct tri_sites *s, const struct tri_mesh *mesh, const struct tri_lattice *lattice,
-                    const tri_triangle_id *triangle, int32_t n, int32_t most)
+/* Finds the sites inside the stripes. Returns false if memory ran out. */
+static bool paint_all(struct tri_sites *s, const struct stripe *stripe, int32_t n, int32_t most)
 {
-    *s = (struct tri_sites){.lattice = *lattice};
-    if (!find_frame(s, mesh, triangle, n, most))
-        return true;
     s->row = malloc(((size_t)s->n_rows + 1) * sizeof *s->row);
     if (!s->row)
         return false;
     for (int32_t row = 0; row < s->n_rows; row++)
         s->row[row] = (struct tri_site_row){INT32_MAX / 2, -1, 0};
-    paint_all(s, mesh, triangle, n, widen_row);
+    for (int32_t i = 0; i < n; i++)
+        widen_rows(s, stripe[i]);
     index_rows(s, most);
     s->at = malloc(((size_t)s->n + 1) * sizeof *s->at);
     s->near = malloc(((size_t)s->n + 1) * sizeof *s->near);
@@ -231,11 +237,24 @@ bool tri_sites_find(struct tri_sites *s, const struct tri_mesh *mesh, const stru
         return false;
     for (int32_t i = 0; i < s->n; i++)
         s->at[i] = TRI_SITE_OUT;
-    if (s->n > 0)
-        paint_all(s, mesh, triangle, n, paint_row);
     for (int32_t i = 0; s->n > 0 && i < n; i++)
-        note_features(s, mesh, triangle[i]);
+        paint(s, stripe[i]);
     return true;
+}
+
+bool tri_sites_find(struct tri_sites *s, const struct tri_mesh *mesh, const struct tri_lattice *lattice,
+                    const tri_triangle_id *triangle, int32_t n, int32_t most)
+{
+    double painted;
+    *s = (struct tri_sites){.lattice = *lattice};
+    if (!find_frame(s, mesh, triangle, n, most, &painted))
+        return true;
+    struct stripe *stripe = malloc(((size_t)painted + 1) * sizeof *stripe);
+    const bool memory = stripe && paint_all(s, stripe, list_stripes(s, mesh, triangle, n, stripe), most);
+    free(stripe);
+    for (int32_t i = 0; memory && s->n > 0 && i < n; i++)
+        note_features(s, mesh, triangle[i]);
+    return memory;
 }
 
 void tri_sites_free(struct tri_sites *s)
