@@ -53,6 +53,7 @@ struct tri_fill {
     int32_t n_new, n_cells;  /* sites without a vertex; cells */
     tri_triangle_id *number; /* [n_numbers] triangle numbers for the cells, those of replaced triangles first */
     int32_t n_numbers, number_capacity; /* entries of `number`; allocated */
+    int32_t n_reused;        /* leading entries of `number` that belonged to replaced triangles */
 };
 
 /* Marks the links from triangles inside to the outside during the walk over the inside. No subsegment has this
@@ -135,21 +136,37 @@ static bool find_cell(const struct tri_sites *s, struct around to, struct place 
     return true;
 }
 
-/* Calls `visit` for each cell, row by row from left to right, until a call does not return DONE. */
-static inline enum tri_outcome each_cell(struct tri_refiner *r,
+/* Do both cells of a site exist, with a cell across each of their edges? The site is not TRI_SITE_OUT. */
+static bool is_inner(const struct tri_sites *s, struct around to, int32_t site)
+{
+    const int32_t *at = s->at + site;
+    return (at[1] != TRI_SITE_OUT) & (at[to.up] != TRI_SITE_OUT) & (at[to.up - 1] != TRI_SITE_OUT) &
+           (at[to.up + 1] != TRI_SITE_OUT) & (at[-1] != TRI_SITE_OUT) & (at[to.down] != TRI_SITE_OUT) &
+           (at[to.up2] != TRI_SITE_OUT);
+}
+
+/* Calls `visit` for each cell, row by row from left to right, until a call does not return DONE. `inner`, unless it is
+ * NULL: counts the cells without border edges, which are not visited. */
+static inline enum tri_outcome each_cell(struct tri_refiner *r, int32_t *inner,
                                          enum tri_outcome (*visit)(struct tri_refiner *r, const struct cell *c))
 {
     const struct tri_sites *s = &r->fill->sites;
     struct cell c;
     for (struct place at = {TRI_SITE_MARGIN, 0}; at.row < s->n_rows - TRI_SITE_MARGIN; at.row++) {
         const struct around to = around_row(s, at.row);
-        for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++)
-            for (int by_edge = 0; by_edge < 2 && s->at[tri_site(s, at.row, at.column)] != TRI_SITE_OUT; by_edge++)
+        for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++) {
+            const int32_t site = tri_site(s, at.row, at.column);
+            if (s->at[site] != TRI_SITE_OUT && inner && is_inner(s, to, site)) {
+                *inner += 2;
+                continue;
+            }
+            for (int by_edge = 0; by_edge < 2 && s->at[site] != TRI_SITE_OUT; by_edge++)
                 if (find_cell(s, to, at, by_edge, &c)) {
                     const enum tri_outcome outcome = visit(r, &c);
                     if (outcome != DONE)
                         return outcome;
                 }
+        }
     }
     return DONE;
 }
@@ -355,7 +372,7 @@ static enum tri_outcome settle_rim(struct tri_refiner *r)
     struct tri_fill *f = r->fill;
     do {
         f->n_border = f->n_cells = f->n_new = 0;
-        if (look_at_sites(r) == FAILED || each_cell(r, list_border) == FAILED)
+        if (look_at_sites(r) == FAILED || each_cell(r, &f->n_cells, list_border) == FAILED)
             return FAILED;
     } while (f->n_check > 0);
     for (int32_t i = 0; i < f->sites.n; i++)
@@ -441,10 +458,8 @@ static void place_vertices(struct tri_refiner *r)
             (void)room;
             s->at[site] = tri_add_vertex(r, tri_site_place(s, row, column), TRI_VERTEX_FREE, 0);
             r->mesh->feature[s->at[site]] = s->lattice.feature;
-            for (int k = 0; k < 2; k++) {
-                r->mesh->tri[r->mesh->n_triangles].generation = 0;
+            for (int k = 0; k < 2; k++)
                 f->number[f->n_numbers++] = r->mesh->n_triangles++;
-            }
         }
 }
 
@@ -462,12 +477,13 @@ static enum tri_outcome make_cell(struct tri_refiner *r, const struct cell *c)
     struct tri_fill *f = r->fill;
     struct tri_sites *s = &f->sites;
     const tri_triangle_id before = f->n_cells > 0 ? f->number[f->n_cells - 1] : TRI_NONE;
-    const tri_triangle_id own = f->number[f->n_cells++];
+    const tri_triangle_id own = f->number[f->n_cells];
     struct tri_triangle *t = &r->mesh->tri[own];
+    const int32_t generation = f->n_cells++ < f->n_reused ? t->generation : 0; /* a new number has none yet */
     const bool at_border = s->at[c->across[1]] == TRI_SITE_OUT;
     assert(tri_owners_claim(r->hooks->owners, own) && (at_border || before != TRI_NONE));
     *t = (struct tri_triangle){{s->at[c->site[0]], s->at[c->site[1]], s->at[c->site[2]]}, {CUT, CUT, CUT},
-                               at_border ? TRI_NONE : r->mesh->tri[before].region, t->generation + 1};
+                               at_border ? TRI_NONE : r->mesh->tri[before].region, generation + 1};
     for (int e = 0; e < 3; e++)
         if (s->at[c->across[e]] == TRI_SITE_OUT) {
             const struct border *border = &f->border[f->n_border++];
@@ -494,9 +510,10 @@ static enum tri_outcome replace_by_cells(struct tri_refiner *r)
     const enum tri_outcome outcome = walk_inside(r);
     if (outcome != DONE)
         return outcome;
+    f->n_reused = f->n_numbers;
     place_vertices(r);
     f->n_cells = f->n_border = 0;
-    each_cell(r, make_cell);
+    each_cell(r, NULL, make_cell);
     assert(f->n_cells == f->n_numbers);
     r->report->inserted_free += f->n_new;
     if (r->hooks->part)
