@@ -178,24 +178,27 @@ struct tri_point tri_front_place(const struct tri_refiner *r, tri_triangle_id tr
 /* --- segments */
 
 /* Walks along a subsegment until the integral of ds / h is `count`. Returns the integral reached, and sets *fraction
- * to the point reached. Takes a limited number of steps; if the subsegment needs more, *fraction is 0.5, so that it
- * is halved first. */
+ * to the point reached. In each step of a quarter of h, h counts as the mean of both ends. Takes a limited number of
+ * steps; if the subsegment needs more, *fraction is 0.5, so that it is halved first. */
 static double integrate(const struct tri_refiner *r, const struct tri_subsegment *s, double count, double *fraction)
 {
     enum { MOST_STEPS = 1 << 16 };
     const struct tri_point a = r->mesh->xy[s->v[0]], b = r->mesh->xy[s->v[1]];
     const double length = sqrt(tri_distance2(a, b));
-    double at = 0, sum = 0;
+    double at = 0, sum = 0, h = tri_wanted_of(&r->criterion.asked, s->v[0]);
     for (int i = 0; i < MOST_STEPS && at < length; i++) {
-        const double step = tri_lesser(0.25 * tri_wanted_at(&r->criterion.asked, tri_point_between(a, b, at / length)),
-                                       length - at);
-        const double h = tri_wanted_at(&r->criterion.asked, tri_point_between(a, b, (at + 0.5 * step) / length));
-        if (sum + step / h >= count) {
-            *fraction = (at + (count - sum) * h) / length;
+        const double step = tri_lesser(0.25 * h, length - at);
+        const double next = at + step < length
+                                ? tri_wanted_at(&r->criterion.asked, tri_point_between(a, b, (at + step) / length))
+                                : tri_wanted_of(&r->criterion.asked, s->v[1]);
+        const double mean = 0.5 * (h + next);
+        if (sum + step / mean >= count) {
+            *fraction = (at + (count - sum) * mean) / length;
             return count;
         }
-        sum += step / h;
+        sum += step / mean;
         at += step;
+        h = next;
     }
     *fraction = at < length ? 0.5 : 1;
     return sum;
