@@ -12,7 +12,7 @@
 #include "triangle/size/quality.h"
 #include "triangle/tunables.h"
 
-enum { DEEPEST_CUT = 12 };
+enum { DEEPEST_CUT = 12, FEW_WORKS = 512 }; /* the latter: triangles of a share that asks for lengths */
 
 /* The limit on calls of the caller's functions, besides four per triangle; the factor by which sampling work may
  * exceed it. */
@@ -154,6 +154,7 @@ struct works {
     double (*of)(const struct estimator *e, tri_triangle_id t); /* returns the work of a triangle */
     int32_t step, n; /* triangles step * i for i < n */
     double *known;   /* [n] the work of each, computed by all threads; NULL: computed on request */
+    size_t shares;   /* number of shares in which `known` is computed */
     double sum[TRI_MOST_SHARES];    /* [shares] the sum of each share */
     double urgent[TRI_MOST_SHARES]; /* [shares] the same for triangles that violate their bounds */
 };
@@ -191,10 +192,11 @@ static void sum_share(void *context, size_t share)
     w->urgent[share] = urgent;
 }
 
-/* Returns NULL if the work depends on the caller's functions, which may not be safe to call from several threads. */
+/* Returns NULL if sizes must still be asked for: all shares use one budget, and the caller's functions may not be safe to
+ * call from several threads. */
 static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
 {
-    return tri_asks_caller(w->e->asked.quality) ? NULL : executor;
+    return tri_sizes_vary(w->e->asked.quality) && !w->e->known ? NULL : executor;
 }
 
 /* Sums over shares that depend on the mesh only, so the result does not depend on the number of threads. */
@@ -209,21 +211,30 @@ static double sum_of(struct works w, const struct tri_executor *executor, double
     return sum;
 }
 
+/* Each share has an equal part of the budget for itself. */
 static void compute_share_works(void *context, size_t share)
 {
     const struct works *w = context;
-    struct tri_range range = tri_share(share, w->n);
+    struct estimator e = *w->e;
+    struct budget budget = *e.budget;
+    const struct tri_range range = tri_share_of(share, w->shares, w->n);
+    if (w->shares > 1) {
+        budget.left /= (int64_t)w->shares;
+        e.budget = &budget;
+    }
     for (int32_t i = range.first; i < range.last; i++)
-        w->known[i] = w->of(w->e, w->step * i);
+        w->known[i] = w->of(&e, w->step * i);
 }
 
 /* Computes the work of all triangles. The caller frees the result. NULL if memory ran out: each is then computed on
- * request. */
+ * request. The shares depend on the mesh only. The caller's functions share one budget. */
 static double *compute_works(struct works w, const struct tri_executor *executor)
 {
+    const size_t few = (size_t)w.n / FEW_WORKS + 1;
+    w.shares = tri_asks_caller(w.e->asked.quality) ? 1 : few < TRI_MOST_SHARES ? few : TRI_MOST_SHARES;
     w.known = malloc(((size_t)w.n + 1) * sizeof *w.known);
     if (w.known)
-        tri_execute(executor_for(&w, executor), tri_shares(w.n), compute_share_works, &w);
+        tri_execute(executor, w.shares, compute_share_works, &w);
     return w.known;
 }
 
@@ -283,7 +294,9 @@ double tri_size_demand(const struct tri_mesh *mesh, const struct tri_quality *qu
     struct estimator e = estimator_for(mesh, &known, &budget);
     e.large *= ROUGH;
     e.at_least = true;
+    e.known = tri_sizes_vary(&known) ? compute_works(asked_works(&e), executor) : NULL;
     sum_of(asked_works(&e), executor, &urgent);
+    free(e.known);
     return tri_mean_over_bound(&known) / tri_most_over_bound(&known) * urgent;
 }
 
