@@ -101,7 +101,7 @@ static double crowd_in(const struct tri_mesh *mesh, tri_triangle_id triangle, do
         f.least = tri_lesser(f.least, LEAST * f.size[k]);
     }
     find_strips(&f, mesh, triangle);
-    return tri_integral(&field, f.corner);
+    return tri_integral(&field, f.corner, NULL);
 }
 
 /* Returns how many times the shortest edge must be doubled to reach the longest edge or `most`. */
@@ -196,10 +196,10 @@ static double count_in(const struct tri_integrand *f, const struct place p[3], i
     return count_in(f, first, depth - 1) + count_in(f, second, depth - 1);
 }
 
-double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3])
+double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3], const double *h)
 {
     struct place p[3];
     for (int k = 0; k < 3; k++)
-        p[k] = (struct place){corner[k], field->at(field->user, corner[k])};
+        p[k] = (struct place){corner[k], h ? h[k] : field->at(field->user, corner[k])};
     return count_in(field, p, field->deepest);
 }

@@ -36,7 +36,8 @@ struct tri_integrand {
     bool at_least; /* true: a part in which h may vary counts with its largest h */
 };
 
-/* Integrates over the triangle. If h is smooth, this evaluates O(log of the ratio of sizes) points. */
-double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3]);
+/* Integrates over the triangle. h: [3] the values of h at its corners; NULL: not known. If h is smooth, this evaluates
+ * O(log of the ratio of sizes) points. */
+double tri_integral(const struct tri_integrand *field, const struct tri_point corner[3], const double *h);
 
 #endif

@@ -68,35 +68,48 @@ struct caller_piece {
     struct budget *budget;         /* limit on calls */
 };
 
-static double caller_size_at(const void *user, struct tri_point q)
+/* Converts the edge length asked for at a point. */
+static double size_of_length(double length)
 {
     const double MEAN_SQUARE = TRI_EQUILATERAL * TRI_MEAN_OVER_BOUND; /* of an equilateral triangle */
+    return sqrt(MEAN_SQUARE) * length;
+}
+
+static double caller_size_at(const void *user, struct tri_point q)
+{
     const double ANY = 1e99;
     const struct caller_piece *caller_piece = user;
     struct budget *budget = caller_piece->budget;
     budget->stopped = budget->stopped || tri_stop_is_due(caller_piece->asked->mesh->stop, &budget->step);
     budget->left = budget->stopped ? 0 : budget->left - 1;
-    return budget->stopped ? ANY : sqrt(MEAN_SQUARE) * tri_asked_length(caller_piece->asked, caller_piece->piece, q);
+    return budget->stopped ? ANY : size_of_length(tri_asked_length(caller_piece->asked, caller_piece->piece, q));
 }
 
-/* Returns the number of triangles that the caller's functions need in a piece. */
-static double caller_work_in(const struct estimator *e, const struct tri_point p[3])
+/* Returns the number of triangles that the caller's functions need in a piece. corners: its vertices; NULL: it is part
+ * of a triangle. */
+static double caller_work_in(const struct estimator *e, const struct tri_point p[3], const tri_vertex_id *corners)
 {
+    double h[3];
+    const bool known = corners && e->asked.mesh->has_lengths && !tri_asks_caller(e->asked.quality);
+    for (int k = 0; known && k < 3; k++)
+        h[k] = size_of_length(e->asked.coarser *
+                              (fabs(e->asked.mesh->length[corners[k]]) / sqrt(TRI_MEAN_OVER_BOUND)));
     const struct caller_piece caller_piece = {&e->asked, p, e->budget};
     if (e->at_least && e->budget->left <= 0)
         return 0;
     const struct tri_integrand field = {caller_size_at, &caller_piece, 0, e->large, TRI_WISH_FEW, 2 * DEEPEST_CUT,
                                          &e->budget->left, e->at_least};
-    return tri_integral(&field, p);
+    return tri_integral(&field, p, known ? h : NULL);
 }
 
-/* Returns the number of triangles needed for sizes in a piece of a triangle of this region. */
-static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3])
+/* Returns the number of triangles needed for sizes in a piece of a triangle of this region. corners: as above. */
+static double asked_in(const struct estimator *e, tri_region_id region, const struct tri_point p[3],
+                       const tri_vertex_id *corners)
 {
     const double mean = tri_mean_over_bound(e->asked.quality);
     double work = tri_area_of(p[0], p[1], p[2]) * 2 / (mean * tri_area2_bound(&e->asked, region));
     if (tri_sizes_vary(e->asked.quality))
-        work = fmax(work, caller_work_in(e, p));
+        work = fmax(work, caller_work_in(e, p, corners));
     return work < MOST_WORK ? work : MOST_WORK;
 }
 
@@ -109,7 +122,7 @@ static double asked_work(const struct estimator *e, tri_triangle_id t)
     if (!tri_has_sizes(e->asked.quality) || !tri_is_live(&e->asked.mesh->tri[t]))
         return 0;
     corners_of(e->asked.mesh, t, p);
-    return asked_in(e, e->asked.mesh->tri[t].region, p);
+    return asked_in(e, e->asked.mesh->tri[t].region, p, e->asked.mesh->tri[t].v);
 }
 
 static double rest_work(const struct estimator *e, tri_triangle_id t)
@@ -192,8 +205,8 @@ static void sum_share(void *context, size_t share)
     w->urgent[share] = urgent;
 }
 
-/* Returns NULL if sizes must still be asked for: all shares use one budget, and the caller's functions may not be safe to
- * call from several threads. */
+/* Returns NULL if sizes must still be asked for: all shares use one budget, and the caller's functions may not be safe
+ * to call from several threads. */
 static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
 {
     return tri_sizes_vary(w->e->asked.quality) && !w->e->known ? NULL : executor;
@@ -331,7 +344,7 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
         struct tri_point piece[3];
         quarter(p, i, piece);
         const bool asks = tri_sizes_vary(e->asked.quality) && e->budget->left > 0;
-        double inside = asks ? asked_in(e, region, piece) : work / 4;
+        double inside = asks ? asked_in(e, region, piece, NULL) : work / 4;
         if (!sample_triangle(to, e, region, piece, inside, grain, depth - 1))
             return false;
     }
