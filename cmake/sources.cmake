@@ -68,6 +68,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/size/estimate.c
     triangle/api/generate.c
     triangle/api/simplify.c
+    triangle/api/region_polygons.c
     triangle/api/figure.c
     triangle/api/figure_mesh.c
     triangle/api/arrays.c
@@ -210,6 +211,8 @@ set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge a
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
+set(PTRIANGLE_GEOJSON_SOURCE drivers/mesh/geojson.c) # for triangle, ptriangle and trianglecheck
+set(PTRIANGLE_NO_GEOJSON_SOURCE drivers/mesh/geojson_none.c) # without jansson
 
 # meshplot, built if cairo is found.
 set(PTRIANGLE_PLOT_SOURCES

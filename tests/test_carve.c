@@ -136,7 +136,7 @@ static void test_tangles_equal_naive_twin(void **state)
     (void)state;
     for (int which = 0; which < 8; which++)
         for (uint64_t seed = 0; seed < 25; seed++) {
-            struct tri_carve_options options = {which & 1, which & 2, which & 4, false, NULL};
+            struct tri_carve_options options = {which & 1, which & 2, which & 4, false, 0, NULL};
             struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
             if (seed % 3)
                 memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* makes an open hull */

@@ -63,6 +63,8 @@ static enum tri_status read_input(struct judged_files *f, const struct judged_re
     bool points_in_poly;
     struct tri_names names;
     const bool is_node = ends_in(path, ".node");
+    if (ends_in(path, ".geojson")) /* its polygons become the input (size_options_divide) */
+        return TRI_OK;
     const size_t length = strlen(path) - (is_node || ends_in(path, ".poly") ? strlen(".poly") : 0);
     enum tri_status status = tri_names_make(&names, path, length, error);
     if (status == TRI_OK)

@@ -16,6 +16,7 @@
 #include "triangle/base/system.h"
 #include "triangle/check/check.h"
 #include "triangle/text/decimal.h"
+#include "triangle/text/names.h"
 
 enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 
@@ -420,8 +421,10 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     const bool measures = size_options_any(&s->sizes);
-    if (((measures || s->sizes.min_edge > 0) && !s->input) || (s->min_fitting > 0 && !measures)) {
-        fputs(!s->input ? PTRIANGLE_NAME ": lengths and --min-edge need the input of the mesh: --poly\n"
+    if (s->input && tri_name_ends(s->input, ".geojson") && !s->sizes.region_polygons)
+        s->sizes.region_polygons = s->input;
+    if (((measures || s->sizes.min_edge > 0 || s->sizes.region_polygons) && !s->input) || (s->min_fitting > 0 && !measures)) {
+        fputs(!s->input ? PTRIANGLE_NAME ": lengths, --min-edge and --region-polygons need the input of the mesh: --poly\n"
                        : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
         return TROUBLE;
     }
@@ -443,7 +446,14 @@ static int run(const struct settings *s, struct par_team *team, struct judged_fi
         one_line_put(stderr, s->base);
         fputs(".neigh is of another mesh than .ele, by their numbers of triangles: it is not judged\n", stderr);
     }
-    char changes[SIMPLIFIED_TEXT] = "";
+    struct tri_options how = tri_defaults();
+    char changes[CHANGED_TEXT] = "";
+    how.keep_hull = s->check.border == TRI_CHECK_BORDER_HULL;
+    how.ignore_holes = s->check.ignore_holes;
+    how.even_odd = s->check.any_holes;
+    how.executor = &executor;
+    if (status == TRI_OK && s->input)
+        status = size_options_divide(&s->sizes, &f->input, &how, changes, &error);
     if (status == TRI_OK && s->input)
         status = size_options_simplify(&s->sizes, &f->input, &executor, NULL, changes, &error);
     if (status == TRI_OK && changes[0] && !s->json && !s->quiet)

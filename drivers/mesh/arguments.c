@@ -69,7 +69,8 @@ static void apply_suffix(struct arguments *arguments)
     }
     if (cut_suffix(name, ".node"))
         return;
-    if (cut_suffix(name, ".poly"))
+    arguments->is_geojson = cut_suffix(name, ".geojson");
+    if (arguments->is_geojson || cut_suffix(name, ".poly"))
         switches->segments = true;
     else if (cut_suffix(name, ".ele"))
         switches->mesh = true;
@@ -87,6 +88,11 @@ enum tri_status arguments_end(struct arguments *arguments, struct tri_error *err
     arguments->input = tri_joined(arguments->file, "");
     if (arguments->input) {
         apply_suffix(arguments);
+        if (arguments->is_geojson && arguments->sizes.region_polygons)
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the polygons of %.80s are the regions: --region-polygons is"
+                            " for other inputs", arguments->file);
+        if (arguments->is_geojson)
+            arguments->sizes.region_polygons = arguments->file;
         arguments->output = arguments->switches.no_iteration ? tri_joined(arguments->input, "")
                                                              : next_iteration(arguments->input);
     }

@@ -14,6 +14,7 @@ struct arguments {
     struct size_options sizes; /* --size and related options; all 0: none */
     const char *file, *further; /* the first argument that is no switch, and the last further one; NULL: none */
     const struct tri_format *format; /* format of the file if other programs use it as well; NULL: Triangle's formats */
+    bool is_geojson;  /* the polygons of the file are the input */
     char *input;      /* file without its suffix; suffixes are appended to this */
     char *output;     /* the same for output files */
 };
@@ -24,7 +25,7 @@ struct arguments arguments_begin(int argc, char **argv);
 void arguments_word(struct arguments *arguments, const char *word);
 
 /* Completes the arguments: the suffix of the file sets its switches, and the file names are made. TRI_BAD_INPUT: a
- * second file, or a number that is separated from its switch. TRI_NO_MEMORY. */
+ * second file, a number that is separated from its switch, or --region-polygons beside a GeoJSON file. TRI_NO_MEMORY. */
 enum tri_status arguments_end(struct arguments *arguments, struct tri_error *error);
 
 void arguments_free(struct arguments *arguments);

@@ -10,7 +10,7 @@
 
 struct run; /* drivers/mesh/stages.h */
 
-enum { MESH_FILES_MOST_NAMES = 4 + SIZE_OPTIONS_MOST };
+enum { MESH_FILES_MOST_NAMES = 5 + SIZE_OPTIONS_MOST };
 
 /* Returns names of files, which are borrowed. */
 struct file_names {

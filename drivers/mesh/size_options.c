@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/mesh/geojson.h"
 #include "drivers/words.h"
 #include "triangle/api/simplify.h"
 #include "triangle/text/decimal.h"
@@ -13,8 +14,8 @@
 
 static const double USUAL_GRADATION = 0.2; /* struct tri_sizes */
 
-enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, MIN_EDGE, PLACEMENT,
-          OPTIMISE };
+enum id { SIZE, SIZE_NEAR, GRADATION, MIN_SIZE, MAX_SIZE, ELEMENTS_ACROSS, PER_CIRCLE, MIN_EDGE, REGION_POLYGONS,
+          PLACEMENT, OPTIMISE };
 
 static const struct kind {
     const char *name;
@@ -29,6 +30,7 @@ static const struct kind {
     {"elements-across", ELEMENTS_ACROSS, "not a number from 0.1 to 1000"},
     {"per-circle", PER_CIRCLE, "not a number from 3 to 100000"},
     {"min-edge", MIN_EDGE, "not a length above 0"},
+    {"region-polygons", REGION_POLYGONS, "no name of a file"},
     {"placement", PLACEMENT, "neither front, lattice nor classic"},
     {"optimise", OPTIMISE, "not a whole number from 0 to 1000"},
 };
@@ -143,6 +145,7 @@ static bool take_value(struct size_options *options, struct tri_switches *switch
     case ELEMENTS_ACROSS: return words_take_real(text, "", NULL, 0.1, 1000, &options->elements_across);
     case PER_CIRCLE: return words_take_real(text, "", NULL, 3, 1e5, &options->per_circle);
     case MIN_EDGE: return read_length(text, &options->min_edge);
+    case REGION_POLYGONS: options->region_polygons = text; return *text != 0;
     case PLACEMENT: return take_placement(switches, text);
     case OPTIMISE: return take_passes(switches, text);
     default: return false;
@@ -267,9 +270,27 @@ void size_options_name(const struct size_options *options, const char *sentence,
 
 /* --- the input */
 
+enum tri_status size_options_divide(const struct size_options *options, struct tri_pslg *pslg,
+                                    const struct tri_options *how, char text[CHANGED_TEXT], struct tri_error *error)
+{
+    struct tri_polygons polygons = {0};
+    const int32_t points = pslg->n_points;
+    *text = 0;
+    enum tri_status status = options->region_polygons ? geojson_read(&polygons, options->region_polygons, error)
+                                                      : TRI_OK;
+    if (!status && polygons.n_points > 0)
+        status = tri_divide_by_polygons(pslg, &polygons, how, error);
+    if (options->region_polygons)
+        snprintf(text, CHANGED_TEXT, "Regions by the polygons of %ld features: %ld points more, %ld segments, %ld"
+                 " region points", (long)polygons.n_features, (long)(pslg->n_points - points), (long)pslg->n_segments,
+                 (long)pslg->n_regions);
+    tri_polygons_free(&polygons);
+    return status;
+}
+
 enum tri_status size_options_simplify(const struct size_options *options, struct tri_pslg *pslg,
                                       const struct tri_executor *executor, const struct tri_stop *stop,
-                                      char text[SIMPLIFIED_TEXT], struct tri_error *error)
+                                      char text[CHANGED_TEXT], struct tri_error *error)
 {
     *text = 0;
     if (!(options->min_edge > 0))
@@ -277,7 +298,7 @@ enum tri_status size_options_simplify(const struct size_options *options, struct
     struct tri_simplify_report r;
     const int32_t points = pslg->n_points;
     const enum tri_status status = tri_simplify(pslg, options->min_edge, executor, stop, &r, error);
-    snprintf(text, SIMPLIFIED_TEXT, "Simplified by --min-edge %g: %ld of %ld points are gone, with %ld islands, "
+    snprintf(text, CHANGED_TEXT, "Simplified by --min-edge %g: %ld of %ld points are gone, with %ld islands, "
              "%ld holes, %ld regions; %ld short segments remain", options->min_edge,
              (long)(r.corners + r.island_points), (long)points, (long)r.islands, (long)r.holes, (long)r.regions,
              (long)r.shorter);

@@ -3,6 +3,7 @@
 #ifndef DRIVERS_MESH_SIZE_OPTIONS_H
 #define DRIVERS_MESH_SIZE_OPTIONS_H
 
+#include "triangle/api/generate.h"
 #include "triangle/dropin/switches.h"
 #include "triangle/size/lengths.h"
 #include "triangle/text/size_file.h"
@@ -24,6 +25,7 @@ struct size_options {
     double gradation, min_size, max_size;         /* as in struct tri_sizes; 0: not given */
     double elements_across, per_circle;           /* likewise; 0: not given */
     double min_edge; /* shorter details of the input are removed (triangle/api/simplify.h); 0: not given */
+    const char *region_polygons; /* GeoJSON file, borrowed from argv; NULL: not given */
 };
 
 /* Reads the option in argument *at, like long_options_take. Returns false if it is another argument. Sets *error if the
@@ -53,13 +55,18 @@ void size_options_name(const struct size_options *options, const char *sentence,
 
 /* --- the input, after the files have been read */
 
-enum { SIMPLIFIED_TEXT = 320 };
+enum { CHANGED_TEXT = 320 };
+
+/* Divides the input by the polygons of a file, if it is given, and writes one sentence about the changes. Otherwise the
+ * text is "". Errors: as for geojson_read and tri_divide_by_polygons. */
+enum tri_status size_options_divide(const struct size_options *options, struct tri_pslg *pslg,
+                                    const struct tri_options *how, char text[CHANGED_TEXT], struct tri_error *error);
 
 /* Removes details below min_edge, if it is given, and writes one sentence about the changes. Otherwise the text is
  * "". Errors: as for tri_simplify. */
 enum tri_status size_options_simplify(const struct size_options *options, struct tri_pslg *pslg,
                                       const struct tri_executor *executor, const struct tri_stop *stop,
-                                      char text[SIMPLIFIED_TEXT], struct tri_error *error);
+                                      char text[CHANGED_TEXT], struct tri_error *error);
 
 /* --- the fields, after the files have been read */
 

@@ -63,9 +63,11 @@ static enum tri_status read_pslg(struct run *r, const struct tri_read_options *o
 {
     const struct tri_names *names = &r->input.names;
     const struct tri_format *format = r->arguments->format;
+    r->input.base = options->default_base;
+    if (r->arguments->is_geojson)
+        return TRI_OK;
     if (format) {
         console_say(&r->console, "Opening %s.\n", r->arguments->file);
-        r->input.base = options->default_base;
         return format->read(r->arguments->file, &r->input.pslg, &r->input.elements, options->executor, r->error);
     }
     if (!r->arguments->switches.segments) {
@@ -115,9 +117,11 @@ static void add_hint(const struct run *r)
 static struct file_names files_read(const struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
-    const bool is_own = !r->arguments->format;
+    const bool is_own = !r->arguments->format && !r->arguments->is_geojson;
     struct file_names read = {0};
-    if (!is_own)
+    if (r->arguments->sizes.region_polygons)
+        read.name[read.n++] = r->arguments->sizes.region_polygons;
+    if (r->arguments->format)
         read.name[read.n++] = r->arguments->file;
     if (is_own && s->segments)
         read.name[read.n++] = r->input.names.poly;
@@ -155,16 +159,23 @@ static enum tri_status read_input(struct run *r)
     return status;
 }
 
-/* Applies --min-edge and prints what it has changed, also if quiet. */
-static enum tri_status simplify_input(struct run *r)
+/* Applies --region-polygons and --min-edge, and prints what they have changed; the latter also if quiet. */
+static enum tri_status change_input(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
     const struct size_options *options = &r->arguments->sizes;
-    char text[SIMPLIFIED_TEXT];
+    struct tri_options how = r->options;
+    char text[CHANGED_TEXT];
+    how.executor = r->settings.executor;
+    how.stop = interrupt_stop();
+    if (options->region_polygons && (s->mesh || !s->segments))
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--region-polygons adds segments: it needs -p, without -r");
     if (options->min_edge > 0 && (s->mesh || !s->segments))
         return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--min-edge simplifies segments: it needs -p, without -r");
-    const enum tri_status status = size_options_simplify(options, &r->input.pslg, r->settings.executor,
-                                                         interrupt_stop(), text, r->error);
+    enum tri_status status = size_options_divide(options, &r->input.pslg, &how, text, r->error);
+    if (!status && text[0])
+        console_say(&r->console, "%s.\n", text);
+    status = status ? status : size_options_simplify(options, &r->input.pslg, how.executor, how.stop, text, r->error);
     if (!status && text[0] && r->console.quiet)
         console_remark(&r->console, "%s.\n", text);
     else if (!status && text[0])
@@ -177,7 +188,7 @@ enum tri_status run_read(struct run *r)
     interrupt_stage("reading");
     enum tri_status status = r->settings.written_elsewhere ? TRI_OK : read_input(r);
     if (!status && !r->settings.written_elsewhere)
-        status = simplify_input(r);
+        status = change_input(r);
     if (!status && !r->settings.written_elsewhere)
         status = size_fields_read(&r->sizes, &r->arguments->sizes, r->settings.executor, r->error);
     return status || r->settings.n_ranks > 0 ? status : plan_check_input(r);

@@ -45,7 +45,7 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
     announce(options, TRI_STAGE_HOLES);
     if (options->use_segments) {
         struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
-                                          options->even_odd, &report->carve};
+                                          options->even_odd, options->n_open, &report->carve};
         status = tri_carve(mesh, pslg, &carve, error);
         assert(status || tri_mesh_is_sound(mesh));
     }

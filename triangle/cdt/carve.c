@@ -16,12 +16,22 @@ enum { DEAD = -1 };
 
 struct flood {
     struct tri_mesh *mesh;
+    int32_t open;      /* floods cross segments from this number on */
     int32_t *stack;    /* [n_triangles]; each flood pushes a triangle at most once */
     struct tri_carve_report report;
     struct tri_emptied holes;
 };
 
 static bool is_dead(const struct flood *f, tri_triangle_id t) { return f->mesh->tri[t].region == DEAD; }
+
+/* Returns the half-edge across an edge that floods cross; TRI_NONE: they do not. */
+static tri_halfedge passage(const struct flood *f, tri_triangle_id t, int e)
+{
+    const tri_link link = f->mesh->tri[t].n[e];
+    if (link >= 0 || f->mesh->parents[f->mesh->sub[~link].parent].segment < f->open)
+        return link >= 0 ? link : TRI_NONE;
+    return tri_across(f->mesh, tri_code(t, e));
+}
 
 /* Assigns the region to all triangles reachable from `start` that have no region yet. */
 static void flood_from(const struct flood *f, tri_triangle_id start, tri_region_id region)
@@ -36,20 +46,24 @@ static void flood_from(const struct flood *f, tri_triangle_id start, tri_region_
     while (n > 0) {
         tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            tri_link link = tri[t].n[e];
-            if (link >= 0 && tri[tri_of(link)].region == 0) {
+            const tri_halfedge beyond = passage(f, t, e);
+            if (beyond != TRI_NONE && tri[tri_of(beyond)].region == 0) {
                 assert(n < f->mesh->n_triangles);
-                tri[tri_of(link)].region = region;
-                f->stack[n++] = tri_of(link);
+                tri[tri_of(beyond)].region = region;
+                f->stack[n++] = tri_of(beyond);
             }
         }
     }
 }
 
-/* Is the link a hull edge along which no input segment runs? */
-static bool is_bare_hull(const struct tri_mesh *mesh, tri_link link)
+/* Is the edge a hull edge along which no input segment runs, or only segments that floods cross? */
+static bool is_bare_hull(const struct flood *f, tri_triangle_id t, int e)
 {
-    return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
+    const tri_link link = f->mesh->tri[t].n[e];
+    if (link >= 0 || tri_across(f->mesh, tri_code(t, e)) != TRI_NONE)
+        return false;
+    const int32_t segment = f->mesh->parents[f->mesh->sub[~link].parent].segment;
+    return segment == TRI_NONE || segment >= f->open;
 }
 
 static void kill_concavities(struct flood *f)
@@ -57,7 +71,7 @@ static void kill_concavities(struct flood *f)
     const struct tri_mesh *mesh = f->mesh;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
-            if (is_bare_hull(mesh, mesh->tri[t].n[e]))
+            if (is_bare_hull(f, t, e))
                 flood_from(f, t, DEAD);
 }
 
@@ -181,34 +195,35 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
     return status;
 }
 
-/* Does a subsegment end at corner k of triangle t? */
-static bool ends_sub(const struct tri_mesh *mesh, tri_triangle_id t, int k)
+/* Does a subsegment that stops floods end at corner k of triangle t? */
+static bool ends_sub(const struct flood *f, tri_triangle_id t, int k)
 {
-    tri_vertex_id v = mesh->tri[t].v[k];
+    tri_vertex_id v = f->mesh->tri[t].v[k];
     tri_triangle_id at = t;
     do {
-        tri_link beyond = mesh->tri[at].n[tri_next[tri_corner_of(&mesh->tri[at], v)]];
-        if (beyond < 0)
+        tri_halfedge beyond = passage(f, at, tri_next[tri_corner_of(&f->mesh->tri[at], v)]);
+        if (beyond == TRI_NONE)
             return true;
         at = tri_of(beyond);
     } while (at != t);
     return false;
 }
 
-/* Does q lie on a subsegment? t is the triangle that tri_locate_faces has returned for q; in this case q is on its
- * boundary. */
-static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+/* Does q lie on a subsegment that stops floods? t is the triangle that tri_locate_faces has returned for q; in this case
+ * q is on its boundary. */
+static bool is_between_faces(const struct flood *f, tri_triangle_id t, struct tri_point q)
 {
+    const struct tri_mesh *mesh = f->mesh;
     const tri_vertex_id *v = mesh->tri[t].v;
     bool on_sub = false;
     for (int k = 0; k < 3; k++)
         if (tri_compare_places(mesh->xy[v[k]], q) == 0)
-            return ends_sub(mesh, t, k);
+            return ends_sub(f, t, k);
     for (int e = 0; e < 3; e++) {
         double side = tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q);
         if (side < 0)
             return false;
-        on_sub = on_sub || (side == 0 && mesh->tri[t].n[e] < 0);
+        on_sub = on_sub || (side == 0 && passage(f, t, e) == TRI_NONE);
     }
     return on_sub;
 }
@@ -221,7 +236,7 @@ static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, 
         const double *at = &pslg->holes[2 * (size_t)k];
         if (faces[k] == TRI_NONE)
             continue;
-        if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1]))) {
+        if (is_between_faces(f, faces[k], tri_to_units(f->mesh, at[0], at[1]))) {
             f->report.between++;
         } else if (!is_dead(f, faces[k])) {
             f->holes.first = f->holes.n++ == 0 ? k : f->holes.first;
@@ -392,7 +407,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 {
     size_t n = (size_t)mesh->n_triangles + 1;
     assert(mesh->n_subs == mesh->n_parents); /* each has its own parent */
-    struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack)};
+    struct flood f = {.mesh = mesh, .open = pslg->n_segments - options->n_open, .stack = malloc(n * sizeof *f.stack)};
     enum tri_status status = TRI_OK;
     if (!f.stack)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);

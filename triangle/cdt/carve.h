@@ -15,6 +15,8 @@ struct tri_carve_options {
     bool ignore_holes;  /* ignore hole points (-O) */
     bool spread_regions; /* assign regions by the region points of the PSLG */
     bool even_odd;       /* the even-odd rule defines the domain: see below */
+    int32_t n_open;      /* number of segments, the last ones, which have no effect on the domain and on regions. With
+                            even_odd an even number of them must run along each subsegment */
     struct tri_carve_report *report; /* NULL: no report */
 };
 
