@@ -47,6 +47,10 @@ static enum tri_status check_switches(struct run *r)
     if (!status && s->mesh && s->no_iteration)
         return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0,
                         "-I cannot be used when refining (-r): it would overwrite the input");
+    const struct size_options *sizes = &r->arguments->sizes;
+    if (!status && (sizes->region_polygons || sizes->min_edge > 0) && (s->mesh || !s->segments))
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--%s segments: it needs -p, without -r",
+                        sizes->region_polygons ? "region-polygons adds" : "min-edge simplifies");
     return status;
 }
 
@@ -109,8 +113,8 @@ static void add_hint(const struct run *r)
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
         snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
-                 " files, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\", makes a .poly of"
-                 " GeoJSON, shapefiles and others)");
+                 " files, polygons in .geojson, and meshes in " TRI_FORMAT_SUFFIXES "; docs/formats.md, \"From maps\","
+                 " makes a .poly of shapefiles and others)");
 }
 
 /* Only after the .poly file has been read is it known whether the .node file is needed. */
@@ -140,8 +144,10 @@ static struct file_names files_read(const struct run *r)
 static enum tri_status read_input(struct run *r)
 {
     const struct tri_switches *s = &r->arguments->switches;
+    const bool polygons = r->arguments->sizes.region_polygons != NULL;
     struct tri_read_options options = {.default_base = s->from_zero ? 0 : 1,
-                                       .want_regions = tri_switches_use_regions(s),
+                                       .want_regions = tri_switches_use_regions(s) && !polygons,
+                                       .regions_if_any = tri_switches_use_regions(s) && polygons,
                                        .may_be_empty = s->mesh,
                                        .refining = s->mesh,
                                        .executor = r->settings.executor,
@@ -162,16 +168,11 @@ static enum tri_status read_input(struct run *r)
 /* Applies --region-polygons and --min-edge, and prints what they have changed; the latter also if quiet. */
 static enum tri_status change_input(struct run *r)
 {
-    const struct tri_switches *s = &r->arguments->switches;
     const struct size_options *options = &r->arguments->sizes;
     struct tri_options how = r->options;
     char text[CHANGED_TEXT];
     how.executor = r->settings.executor;
     how.stop = interrupt_stop();
-    if (options->region_polygons && (s->mesh || !s->segments))
-        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--region-polygons adds segments: it needs -p, without -r");
-    if (options->min_edge > 0 && (s->mesh || !s->segments))
-        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "--min-edge simplifies segments: it needs -p, without -r");
     enum tri_status status = size_options_divide(options, &r->input.pslg, &how, text, r->error);
     if (!status && text[0])
         console_say(&r->console, "%s.\n", text);

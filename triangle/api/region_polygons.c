@@ -20,6 +20,7 @@ struct face {
     tri_triangle_id largest;  /* the triangle */
     int32_t number;           /* of the face */
     int32_t feature;          /* number of the last feature around it so far; -1: none */
+    bool is_thin;             /* it is no wider than rounding */
     bool inside;              /* inside an odd number of rings of the current polygon so far */
 };
 
@@ -121,12 +122,6 @@ static struct tri_shape shape_of(const struct dividing *d, tri_triangle_id t)
     return tri_shape_of(d->mesh.xy, d->mesh.tri[t].v);
 }
 
-static bool is_thin(const struct dividing *d, const struct face *face)
-{
-    const struct tri_shape shape = shape_of(d, face->largest);
-    return shape.area2 * shape.area2 <= d->thin * d->thin * tri_longest2(&shape);
-}
-
 static void add_face(struct dividing *d, tri_triangle_id start, tri_triangle_id *stack)
 {
     const struct tri_triangle *tri = d->mesh.tri;
@@ -145,7 +140,9 @@ static void add_face(struct dividing *d, tri_triangle_id start, tri_triangle_id 
     const struct tri_point a = xy[tri[largest].v[0]], b = xy[tri[largest].v[1]], c = xy[tri[largest].v[2]];
     const struct tri_point at = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
-    d->face[d->n_faces] = (struct face){at, largest, d->n_faces, -1, false};
+    const struct tri_shape shape = shape_of(d, largest);
+    const bool is_thin = shape.area2 * shape.area2 <= d->thin * d->thin * tri_longest2(&shape);
+    d->face[d->n_faces] = (struct face){at, largest, d->n_faces, -1, is_thin, false};
     d->n_faces++;
 }
 
@@ -243,7 +240,7 @@ static void set_codes(const struct dividing *d)
         const struct face *face = &d->face[i];
         const int32_t own = d->is_union ? OUTSIDE : d->mesh.tri[face->largest].region;
         const int32_t code = face->feature < 0 ? own : 1 + d->n_regions + face->feature;
-        d->code[face->number] = is_thin(d, face) ? UNKNOWN : code;
+        d->code[face->number] = face->is_thin ? UNKNOWN : code;
     }
     d->code[d->n_faces] = OUTSIDE;
     for (tri_sub_id s = 0; s < d->mesh.n_subs; s++) /* no polygon is beyond an edge of the hull alone */
@@ -301,7 +298,7 @@ static void add_seeds(const struct dividing *d)
     for (int32_t i = 0; i < d->n_faces; i++) {
         const int32_t region = d->code[d->face[i].number] - 1, feature = region - d->n_regions;
         const double at[2] = {d->face[i].at.x * d->mesh.unit, d->face[i].at.y * d->mesh.unit};
-        if (is_thin(d, &d->face[i]))
+        if (d->face[i].is_thin)
             continue;
         if (region == OUTSIDE - 1)
             memcpy(&to->holes[2 * (size_t)to->n_holes++], at, sizeof at);
