@@ -2,8 +2,8 @@
 # Installs packages that building needs and this machine lacks, through apt. Without apt, it prints what is needed.
 # Usage: tools/setup.sh [coast|build|tests|ci|ports|windows|docs]
 #   coast    C and C++ compiler, make, CMake (for the programs), and cairo (for meshplot)
-#   build    coast, jansson (for ptriangle --report), HDF5 (for .h5 files), pkg-config (for programs that call the
-#            libraries)
+#   build    coast, jansson (for ptriangle --report and GeoJSON), HDF5 (for .h5 files), pkg-config (for programs that
+#            call the libraries)
 #   tests    build, cmocka, GMP (for tools/test.sh)
 #   ci       tests, clang with its OpenMP library, fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (for
 #            .ci/run)
@@ -138,7 +138,7 @@ purposes() { # prints the purpose of each package
         case $package in
         gcc | g++ | libc6-dev | make | cmake) purpose="to build the programs" ;;
         libcairo2-dev) purpose="meshplot, which draws meshes (optional)" ;;
-        libjansson-dev) purpose="ptriangle --report (optional)" ;;
+        libjansson-dev) purpose="ptriangle --report, GeoJSON (optional)" ;;
         libhdf5-dev) purpose=".h5 files (optional)" ;;
         pkg-config) purpose="programs that call the libraries" ;;
         libcmocka-dev | libgmp-dev) purpose="the tests" ;;
@@ -157,7 +157,7 @@ amount() { # number and disk size of all packages that apt would install
 
 consequence() { # consequence of leaving out $wished
     case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
-    case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
+    case $wished in *jansson*) printf 'the programs have no --report and read no GeoJSON; ' ;; esac
     case $wished in *hdf5*) printf '.h5 files are neither written nor read; ' ;; esac
     echo "everything else works"
 }

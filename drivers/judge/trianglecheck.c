@@ -62,6 +62,8 @@ static const char help[] = /* cmake/help.awk turns it into a manual page */
     "                       sqrt(3) area / sum of squared edges. Area bounds of regions do not change lengths here.\n"
     "                       This takes 16 bytes of memory per vertex and 48 per triangle, beyond --memory.\n"
     "                       With --min-edge the mesh is compared with the simplified input\n"
+    "      --region-polygons FILE.geojson  compare with the input divided by these polygons. The input may also be a\n"
+    "                       .geojson file\n"
     "      --min-fitting S  a smaller share of such edges (0.95) is a fault\n";
 
 static const char more_help[] =
@@ -423,7 +425,8 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     const bool measures = size_options_any(&s->sizes);
     if (s->input && tri_name_ends(s->input, ".geojson") && !s->sizes.region_polygons)
         s->sizes.region_polygons = s->input;
-    if (((measures || s->sizes.min_edge > 0 || s->sizes.region_polygons) && !s->input) || (s->min_fitting > 0 && !measures)) {
+    const bool changes = s->sizes.min_edge > 0 || s->sizes.region_polygons;
+    if (((measures || changes) && !s->input) || (s->min_fitting > 0 && !measures)) {
         fputs(!s->input ? PTRIANGLE_NAME ": lengths, --min-edge and --region-polygons need the input of the mesh: --poly\n"
                        : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
         return TROUBLE;

@@ -115,6 +115,7 @@ static const char *const paragraphs[] = {
 
     "Input\n"
     "  file.node  points\n"
+    "  file.geojson  polygons, each of them a region: the domain is their union (sets -p)\n"
     "  file.poly  points, segments, holes and regions (sets -p)\n"
     "  file.ele   triangles (sets -r)\n"
     "  file.area  the largest area allowed for each triangle (sets -r and -a)\n"
@@ -128,6 +129,10 @@ static const char *const paragraphs[] = {
     "  -D      conforming: every triangle is Delaunay, not only constrained Delaunay\n"
     "  -O      ignore the holes\n"
     "  -A      give each triangle the attribute of its region\n"
+    "  --region-polygons FILE.geojson\n"
+    "          with -p: divide the domain into regions by polygons, of which later ones cover earlier ones. With -A\n"
+    "          a triangle has the property attribute of its feature, or the feature's number, counted from 1. With\n"
+    "          -a the property area is its largest area. The regions of the input hold outside the polygons\n"
     "  -s      accepted without effect: recovering a segment never needs extra vertices\n",
 
     "Bounds\n"

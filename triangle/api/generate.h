@@ -39,7 +39,7 @@ struct tri_options {
     bool keep_hull;     /* true (-c): keep the whole convex hull */
     bool ignore_holes;  /* true (-O): do not carve holes */
     bool even_odd;      /* true: the even-odd rule decides which areas are inside, see tri_carve */
-    int32_t n_open;     /* number of segments that have no effect on domain and regions, see tri_carve_options; 0: none */
+    int32_t n_open;     /* number of segments without effect on domain and regions (tri_carve_options); 0: none */
     bool spread_regions; /* true (-A, or -a without a number): assign regions to triangles */
     bool refine;        /* true: run the quality stage, with the options below */
     struct tri_quality quality;   /* bounds of the quality stage */

@@ -209,8 +209,8 @@ static bool ends_sub(const struct flood *f, tri_triangle_id t, int k)
     return false;
 }
 
-/* Does q lie on a subsegment that stops floods? t is the triangle that tri_locate_faces has returned for q; in this case
- * q is on its boundary. */
+/* Does q lie on a subsegment that stops floods? t is the triangle that tri_locate_faces has returned for q; in this
+ * case q is on its boundary. */
 static bool is_between_faces(const struct flood *f, tri_triangle_id t, struct tri_point q)
 {
     const struct tri_mesh *mesh = f->mesh;
