@@ -22,7 +22,8 @@ static enum tri_status read_text(struct tri_polygons *p, const char *text, struc
 
 #define SQUARE "[[0, 0], [1, 0, 9], [1, 1], [0, 1], [0, 0]]"
 #define OPEN "[[2, 0.1], [3e0, -0.0], [25e-1, 1.7976931348623157e308]]"
-#define FEATURE(properties, geometry) "{\"type\": \"Feature\", \"properties\": " properties ", \"geometry\": " geometry "}"
+#define FEATURE(properties, geometry) \
+    "{\"type\": \"Feature\", \"properties\": " properties ", \"geometry\": " geometry "}"
 #define POLYGON(rings) "{\"type\": \"Polygon\", \"coordinates\": [" rings "]}"
 #define MULTI(polygons) "{\"type\": \"MultiPolygon\", \"coordinates\": [" polygons "]}"
 #define FEATURES(list) "{\"type\": \"FeatureCollection\", \"features\": [" list "]}"

@@ -427,7 +427,8 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
         s->sizes.region_polygons = s->input;
     const bool changes = s->sizes.min_edge > 0 || s->sizes.region_polygons;
     if (((measures || changes) && !s->input) || (s->min_fitting > 0 && !measures)) {
-        fputs(!s->input ? PTRIANGLE_NAME ": lengths, --min-edge and --region-polygons need the input of the mesh: --poly\n"
+        fputs(!s->input ? PTRIANGLE_NAME ": lengths, --min-edge and --region-polygons need the input of the"
+                                          " mesh: --poly\n"
                        : PTRIANGLE_NAME ": --min-fitting needs --size or another source of lengths\n", stderr);
         return TROUBLE;
     }

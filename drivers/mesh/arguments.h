@@ -25,7 +25,8 @@ struct arguments arguments_begin(int argc, char **argv);
 void arguments_word(struct arguments *arguments, const char *word);
 
 /* Completes the arguments: the suffix of the file sets its switches, and the file names are made. TRI_BAD_INPUT: a
- * second file, a number that is separated from its switch, or --region-polygons beside a GeoJSON file. TRI_NO_MEMORY. */
+ * second file, a number that is separated from its switch, or --region-polygons beside a GeoJSON file.
+ * TRI_NO_MEMORY. */
 enum tri_status arguments_end(struct arguments *arguments, struct tri_error *error);
 
 void arguments_free(struct arguments *arguments);
