@@ -77,7 +77,7 @@ static void test_faults(void **state)
         {"", "'[' or '{' expected"},
         {"[1]", "feature 1: a geometry without type is no polygon"},
         {"{\"type\": \"Point\", \"coordinates\": [1, 2]}", "feature 1: Point is no polygon"},
-        {FEATURES(FEATURE("{}", "null") "," FEATURE("{}", "{\"type\": \"LineString\"}")), "feature 2: LineString is no"},
+        {FEATURES(FEATURE("{}", "null") "," FEATURE("{}", "{\"type\": \"LineString\"}")), "feature 2: LineString is"},
         {FEATURES("7"), "feature 1: a geometry without type"},
         {GEOMETRIES(GEOMETRIES("{}")), "feature 1: a geometry without type"},
         {POLYGON("[[0, 0], [1]]"), "feature 1: a position is not two numbers"},
