@@ -41,7 +41,7 @@ static void test_all_forms(void **state)
                                             FEATURE("{}", GEOMETRIES(POLYGON(OPEN) "," MULTI("")))), &error), TRI_OK);
     setlocale(LC_ALL, "C");
     static const double attributes[] = {-2.5, 2, 3, 4}, open[] = {2, 0.1, 3, -0.0, 2.5, 1.7976931348623157e308};
-    static const struct tri_ring rings[] = {{0, 0, 0}, {4, 0, 0}, {7, 1, 2}, {10, 2, 2}, {14, 4, 3}};
+    static const struct tri_ring rings[] = {{0, 4, 0, 0}, {4, 7, 0, 0}, {7, 10, 1, 2}, {10, 14, 2, 2}, {14, 17, 4, 3}};
     assert_int_equal(p.n_features, 4);
     for (int k = 0; k < 4; k++)
         assert_true(p.features[k].attribute == attributes[k] && p.features[k].max_area == (k ? 0 : 3));

@@ -2,6 +2,7 @@
  * domain and the other regions with a mesh of the input alone. */
 #include "triangle/api/region_polygons.h"
 
+#include "allocations.h"
 #include "support.h"
 #include "triangle/base/grow.h"
 
@@ -17,7 +18,7 @@ static void add_ring(struct tri_polygons *p, bool fresh, const double (*at)[2], 
     const int32_t polygon = p->n_rings > 0 ? p->rings[p->n_rings - 1].polygon + fresh : 0;
     assert_true(tri_grow(&p->points, &p->point_capacity, p->n_points + n, 2 * sizeof *p->points));
     assert_true(tri_grow(&p->rings, &p->ring_capacity, p->n_rings + 1, sizeof *p->rings));
-    p->rings[p->n_rings++] = (struct tri_ring){p->n_points, polygon, p->n_features - 1};
+    p->rings[p->n_rings++] = (struct tri_ring){p->n_points, p->n_points + n, polygon, p->n_features - 1};
     memcpy(&p->points[2 * p->n_points], at, 2 * (size_t)n * sizeof(double));
     p->n_points += n;
 }
@@ -35,7 +36,7 @@ static int32_t feature_at(const struct tri_polygons *p, struct tri_point at, dou
     bool inside = false;
     *near = HUGE_VAL;
     for (int32_t r = 0; r < p->n_rings; r++) {
-        const int32_t first = p->rings[r].first, end = r + 1 < p->n_rings ? p->rings[r + 1].first : p->n_points;
+        const int32_t first = p->rings[r].first, end = p->rings[r].end;
         for (int32_t k = first; k < end; k++) {
             const double *u = &p->points[2 * k], *v = &p->points[2 * (k + 1 < end ? k + 1 : first)];
             const struct tri_point a = {u[0], u[1]}, b = {v[0], v[1]};
@@ -291,6 +292,31 @@ static void test_refusals(void **state)
     tri_pslg_free(&p);
 }
 
+#ifdef SUPPORT_WRAP
+static void test_failing_allocations(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    const struct tri_options how = tri_defaults();
+    int failures = 0;
+    for (bool failed = true; failed; failures += failed) {
+        const int64_t before = support_held;
+        struct tri_pslg p = support_square(1, 3, 1);
+        struct tri_polygons q = random_polygons(3, false, 0, 1, &random);
+        support_calls = 0;
+        support_fail_at = failures + 1;
+        const enum tri_status status = tri_divide_by_polygons(&p, &q, &how, NULL);
+        failed = support_calls > failures;
+        support_fail_at = INT64_MAX;
+        assert_int_equal(status, failed ? TRI_NO_MEMORY : TRI_OK);
+        tri_polygons_free(&q);
+        tri_pslg_free(&p);
+        assert_int_equal(support_held, before);
+    }
+    assert_true(failures > 20);
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +324,9 @@ int main(void)
         cmocka_unit_test(test_segments_that_remain),
         cmocka_unit_test(test_slivers_join_a_neighbour),
         cmocka_unit_test(test_refusals),
+#ifdef SUPPORT_WRAP
+        cmocka_unit_test(test_failing_allocations),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,7 +29,7 @@ static enum tri_status no_memory(const struct reading *r)
 static enum tri_status read_ring(const struct reading *r, const json_t *places)
 {
     struct tri_polygons *to = r->to;
-    const struct tri_ring ring = {to->n_points, r->n_polygons, to->n_features - 1};
+    struct tri_ring ring = {to->n_points, to->n_points, r->n_polygons, to->n_features - 1};
     const size_t n = json_array_size(places);
     if (n > INT32_MAX / 4 ||
         !tri_grow(&to->points, &to->point_capacity, ring.first + (int32_t)n, 2 * sizeof *to->points) ||
@@ -45,7 +45,8 @@ static enum tri_status read_ring(const struct reading *r, const json_t *places)
     const double *last = n > 1 ? &to->points[2 * (size_t)to->n_points - 2] : NULL;
     if (last && memcmp(&to->points[2 * (size_t)ring.first], last, 2 * sizeof *last) == 0)
         to->n_points--; /* the first point again */
-    if (to->n_points > ring.first)
+    ring.end = to->n_points;
+    if (ring.end > ring.first)
         to->rings[to->n_rings++] = ring;
     return TRI_OK;
 }

@@ -64,11 +64,6 @@ static bool extend(void *array, int32_t n, int64_t more, size_t item)
 
 /* --- triangulation */
 
-static int32_t ring_end(const struct tri_polygons *p, int32_t r)
-{
-    return r + 1 < p->n_rings ? p->rings[r + 1].first : p->n_points;
-}
-
 /* Adds the rings to the PSLG, twice if parities count, which must not change. */
 static enum tri_status add_rings(struct dividing *d, struct tri_error *error)
 {
@@ -85,11 +80,11 @@ static enum tri_status add_rings(struct dividing *d, struct tri_error *error)
     memcpy(&to->points[2 * (size_t)to->n_points], p->points, 2 * (size_t)p->n_points * sizeof *p->points);
     to->n_points += p->n_points;
     for (int32_t r = 0; r < copies * p->n_rings; r++) {
-        const int32_t first = p->rings[r / copies].first, end = ring_end(p, r / copies);
-        for (int32_t k = first; k < end; k++) {
+        const struct tri_ring *ring = &p->rings[r / copies];
+        for (int32_t k = ring->first; k < ring->end; k++) {
             int32_t *segment = &to->segments[2 * (size_t)to->n_segments++];
             segment[0] = d->n_points + k;
-            segment[1] = d->n_points + (k + 1 < end ? k + 1 : first);
+            segment[1] = d->n_points + (k + 1 < ring->end ? k + 1 : ring->first);
         }
     }
     return TRI_OK;
@@ -102,7 +97,7 @@ static enum tri_status triangulate(struct dividing *d, const struct tri_options 
     enum tri_status status = add_rings(d, error);
     options.use_segments = options.spread_regions = true;
     options.keep_hull = d->is_union || how->keep_hull;
-    options.ignore_holes = d->is_union || how->ignore_holes;
+    options.ignore_holes = how->ignore_holes;
     options.even_odd = !d->is_union && how->even_odd;
     options.n_open = d->pslg->n_segments - d->n_segments;
     options.executor = how->executor;
@@ -205,13 +200,13 @@ static void find_features(struct dividing *d)
     const struct tri_polygons *p = d->polygons;
     int32_t range[2] = {d->n_faces, 0};
     for (int32_t r = 0; r < p->n_rings; r++) {
-        const int32_t first = p->rings[r].first, end = ring_end(p, r);
-        for (int32_t k = first; k < end; k++)
-            cross_segment(d, ring_point(d, k), ring_point(d, k + 1 < end ? k + 1 : first), range);
-        if (r + 1 < p->n_rings && p->rings[r + 1].polygon == p->rings[r].polygon)
+        const struct tri_ring *ring = &p->rings[r];
+        for (int32_t k = ring->first; k < ring->end; k++)
+            cross_segment(d, ring_point(d, k), ring_point(d, k + 1 < ring->end ? k + 1 : ring->first), range);
+        if (r + 1 < p->n_rings && ring[1].polygon == ring->polygon)
             continue;
         for (int32_t i = range[0]; i < range[1]; i++) {
-            d->face[i].feature = d->face[i].inside ? p->rings[r].feature : d->face[i].feature;
+            d->face[i].feature = d->face[i].inside ? ring->feature : d->face[i].feature;
             d->face[i].inside = false;
         }
         range[0] = d->n_faces;

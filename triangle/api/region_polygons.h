@@ -17,9 +17,9 @@ struct tri_feature {
     double max_area;  /* <= 0: none */
 };
 
-/* A closed ring: points first .. (first of the next ring) - 1. */
+/* A closed ring: points first .. end - 1. */
 struct tri_ring {
-    int32_t first;   /* its first point */
+    int32_t first, end; /* first < end */
     int32_t polygon; /* number of its polygon; the rings of a polygon follow each other */
     int32_t feature; /* number of its feature */
 };
