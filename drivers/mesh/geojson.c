@@ -42,8 +42,8 @@ static enum tri_status read_ring(const struct reading *r, const json_t *places)
                 return refuse(r, "a position", "is not two numbers");
             to->points[2 * (size_t)to->n_points + k] = json_number_value(number);
         }
-    const double *last = n > 1 ? &to->points[2 * (size_t)to->n_points - 2] : NULL;
-    if (last && memcmp(&to->points[2 * (size_t)ring.first], last, 2 * sizeof *last) == 0)
+    const double *begin = to->points + 2 * (size_t)ring.first, *end = to->points + 2 * (size_t)to->n_points;
+    if (n > 1 && begin[0] == end[-2] && begin[1] == end[-1])
         to->n_points--; /* the first point again */
     ring.end = to->n_points;
     if (ring.end > ring.first)
