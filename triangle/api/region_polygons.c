@@ -10,32 +10,32 @@
 #include "triangle/geometry/predicates.h"
 #include "triangle/geometry/shape.h"
 
-enum { OUTSIDE = -1, UNKNOWN = -2, MOST_PASSES = 20 };
+enum { OUTSIDE = -1, UNKNOWN = -2 };
 
 static const double THIN = 16 * DBL_EPSILON; /* width of a face, as a share of the largest coordinate */
 
 /* A face, seen from the centroid of its largest triangle. */
 struct face {
-    struct tri_point at;      /* the centroid */
-    tri_triangle_id largest;  /* the triangle */
-    int32_t number;           /* of the face */
-    int32_t feature;          /* number of the last feature around it so far; -1: none */
-    bool is_thin;             /* it is no wider than rounding */
-    bool inside;              /* inside an odd number of rings of the current polygon so far */
+    struct tri_point at;     /* the centroid */
+    tri_triangle_id largest; /* the triangle */
+    int32_t number;          /* number of the face */
+    int32_t feature;         /* number of the last feature around it so far; -1: none */
+    bool is_thin;            /* whether it is no wider than rounding */
+    bool inside;             /* whether an odd number of rings of the current polygon enclose it so far */
 };
 
 struct dividing {
-    struct tri_pslg *pslg;
-    const struct tri_polygons *polygons;
-    bool even_odd;                         /* of the options for the mesh */
-    bool is_union;                         /* the polygons define the domain */
-    int32_t n_points, n_segments, n_regions; /* of the PSLG as given */
-    struct tri_mesh mesh;                  /* triangulation of all segments and rings in the domain */
-    double thin;                           /* faces of less width are thin, in units of the mesh */
-    int32_t n_faces;
-    struct face *face;                     /* [n_faces] by height */
-    int32_t *face_of;                      /* [n_triangles] number of the face */
-    int32_t *code;                         /* [n_faces] of the face with this number */
+    struct tri_pslg *pslg;               /* the input, which is changed */
+    const struct tri_polygons *polygons; /* the features and their rings */
+    bool even_odd;                       /* of the options for the mesh */
+    bool is_union;                       /* the polygons define the domain */
+    int32_t n_points, n_segments, n_regions; /* numbers of the input as given */
+    struct tri_mesh mesh;                /* triangulation of all segments and rings in the domain */
+    double thin;                         /* largest width of a thin face, in units of the mesh */
+    int32_t n_faces;                     /* number of faces */
+    struct face *face;                   /* [n_faces] by height */
+    int32_t *face_of;                    /* [n_triangles] number of the face of each triangle */
+    int32_t *code;                       /* [n_faces + 1] code of the face with this number; the last is OUTSIDE */
 };
 
 void tri_polygons_free(struct tri_polygons *polygons)
@@ -136,7 +136,7 @@ static void add_face(struct dividing *d, tri_triangle_id start, tri_triangle_id 
     const struct tri_point at = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
     const struct tri_shape shape = shape_of(d, largest);
-    const bool is_thin = shape.area2 * shape.area2 <= d->thin * d->thin * tri_longest2(&shape);
+    const bool is_thin = shape.area2 <= d->thin * sqrt(tri_longest2(&shape));
     d->face[d->n_faces] = (struct face){at, largest, d->n_faces, -1, is_thin, false};
     d->n_faces++;
 }
@@ -241,12 +241,16 @@ static void set_codes(const struct dividing *d)
     for (tri_sub_id s = 0; s < d->mesh.n_subs; s++) /* no polygon is beyond an edge of the hull alone */
         if (d->is_union && d->mesh.parents[d->mesh.sub[s].parent].segment == TRI_NONE)
             d->code[face_beside(d, s, 0)] = d->code[face_beside(d, s, 1)] = OUTSIDE;
-    for (int pass = 0; pass < MOST_PASSES; pass++)
+    for (bool changed = true; changed;) {
+        changed = false;
         for (tri_sub_id s = 0; s < d->mesh.n_subs; s++) {
             int32_t *a = &d->code[face_beside(d, s, 0)], *b = &d->code[face_beside(d, s, 1)];
-            if (is_ring(d, s) && (*a == UNKNOWN) != (*b == UNKNOWN))
-                *(*a == UNKNOWN ? a : b) = *a == UNKNOWN ? *b : *a;
+            if (!is_ring(d, s) || (*a == UNKNOWN) == (*b == UNKNOWN))
+                continue;
+            *(*a == UNKNOWN ? a : b) = *a == UNKNOWN ? *b : *a;
+            changed = true;
         }
+    }
 }
 
 /* --- the result */
