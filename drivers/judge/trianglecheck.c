@@ -423,8 +423,13 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     const bool measures = size_options_any(&s->sizes);
-    if (s->input && tri_name_ends(s->input, ".geojson") && !s->sizes.region_polygons)
+    if (s->input && tri_name_ends(s->input, ".geojson")) {
+        if (s->sizes.region_polygons) {
+            fputs(PTRIANGLE_NAME ": --region-polygons is for inputs other than .geojson\n", stderr);
+            return TROUBLE;
+        }
         s->sizes.region_polygons = s->input;
+    }
     const bool changes = s->sizes.min_edge > 0 || s->sizes.region_polygons;
     if (((measures || changes) && !s->input) || (s->min_fitting > 0 && !measures)) {
         fputs(!s->input ? PTRIANGLE_NAME ": lengths, --min-edge and --region-polygons need the input of the"

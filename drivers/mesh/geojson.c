@@ -109,8 +109,14 @@ enum tri_status geojson_read(struct tri_polygons *polygons, const char *path, st
     FILE *file = fopen(path, "rb");
     if (!file)
         return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot open", errno);
+    errno = 0;
     json_t *all = json_loadf(file, JSON_DECODE_INT_AS_REAL, &fault);
+    const int reason = ferror(file) ? errno : 0;
     fclose(file);
+    if (reason != 0) {
+        json_decref(all);
+        return tri_fail_system(error, TRI_CANNOT_READ, path, "cannot read", reason);
+    }
     if (!all)
         return tri_fail(error, TRI_BAD_INPUT, path, fault.line, "%s", fault.text);
     const json_t *features = json_object_get(all, "features"), *parts = json_object_get(all, "geometries");

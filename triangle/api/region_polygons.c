@@ -103,9 +103,11 @@ static enum tri_status triangulate(struct dividing *d, const struct tri_options 
     options.executor = how->executor;
     options.stop = how->stop;
     status = status ? status : tri_generate(&d->mesh, d->pslg, &options, &report, error);
-    double largest = 0;
-    for (tri_vertex_id v = 0; v < d->mesh.n_vertices; v++)
-        largest = tri_larger(largest, tri_larger(fabs(d->mesh.xy[v].x), fabs(d->mesh.xy[v].y)));
+    double largest = 0; /* outside the domain there may be polygons far away */
+    for (int64_t i = 0; i < 3 * (int64_t)d->mesh.n_triangles; i++) {
+        const struct tri_point p = d->mesh.xy[d->mesh.tri[i / 3].v[i % 3]];
+        largest = tri_larger(largest, tri_larger(fabs(p.x), fabs(p.y)));
+    }
     d->thin = THIN * largest;
     return status;
 }
