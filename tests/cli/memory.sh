@@ -37,7 +37,7 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     every 3 || continue
     rm -f whole.h5 out.h5
     program 0 "-Qp$switches" s --output whole.h5
-    for budget in 20 40 50 75 100; do
+    for budget in 20 40 50 70 75 100; do
         what="ptriangle -p$switches --memory ${budget}000000"
         rm -f out.h5 out.xdmf
         within $budget 1 'which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left' \
