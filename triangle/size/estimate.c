@@ -167,9 +167,8 @@ struct works {
     double (*of)(const struct estimator *e, tri_triangle_id t); /* returns the work of a triangle */
     int32_t step, n; /* triangles step * i for i < n */
     double *known;   /* [n] the work of each, computed by all threads; NULL: computed on request */
-    size_t shares;   /* number of shares in which `known` is computed */
-    double sum[TRI_MOST_SHARES];    /* [shares] the sum of each share */
-    double urgent[TRI_MOST_SHARES]; /* [shares] the same for triangles that violate their bounds */
+    double sum[TRI_MOST_SHARES];    /* [tri_shares(n)] the sum of each share */
+    double urgent[TRI_MOST_SHARES]; /* [tri_shares(n)] the same for triangles that violate their bounds */
 };
 
 static struct works asked_works(const struct estimator *e)
@@ -224,15 +223,26 @@ static double sum_of(struct works w, const struct tri_executor *executor, double
     return sum;
 }
 
-/* Each share has an equal part of the budget for itself. */
+/* Returns in how many shares the work of all triangles is computed. It depends on the mesh only. The caller's functions
+ * have one share: they share one budget, and may not be safe to call from several threads. */
+static size_t computing_shares(const struct works *w)
+{
+    const size_t shares = (size_t)w->n / FEW_WORKS + 1;
+    if (tri_asks_caller(w->e->asked.quality))
+        return 1;
+    return shares < TRI_MOST_SHARES ? shares : TRI_MOST_SHARES;
+}
+
+/* If there are several shares, each has an equal part of the budget for itself. */
 static void compute_share_works(void *context, size_t share)
 {
     const struct works *w = context;
+    const size_t shares = computing_shares(w);
     struct estimator e = *w->e;
     struct budget budget = *e.budget;
-    const struct tri_range range = tri_share_of(share, w->shares, w->n);
-    if (w->shares > 1) {
-        budget.left /= (int64_t)w->shares;
+    const struct tri_range range = tri_share_of(share, shares, w->n);
+    if (shares > 1) {
+        budget.left /= (int64_t)shares;
         e.budget = &budget;
     }
     for (int32_t i = range.first; i < range.last; i++)
@@ -240,14 +250,12 @@ static void compute_share_works(void *context, size_t share)
 }
 
 /* Computes the work of all triangles. The caller frees the result. NULL if memory ran out: each is then computed on
- * request. The shares depend on the mesh only. The caller's functions share one budget. */
+ * request. */
 static double *compute_works(struct works w, const struct tri_executor *executor)
 {
-    const size_t few = (size_t)w.n / FEW_WORKS + 1;
-    w.shares = tri_asks_caller(w.e->asked.quality) ? 1 : few < TRI_MOST_SHARES ? few : TRI_MOST_SHARES;
     w.known = malloc(((size_t)w.n + 1) * sizeof *w.known);
     if (w.known)
-        tri_execute(executor, w.shares, compute_share_works, &w);
+        tri_execute(executor, computing_shares(&w), compute_share_works, &w);
     return w.known;
 }
 
