@@ -108,6 +108,14 @@ static unsigned neighbours_in(const struct tri_sites *s, struct around to, int32
 
 enum { ALL_IN = (1 << AROUND) - 1 };
 
+/* Do both cells of a site (find_cell) exist, with a cell across each of their edges? False also for a few sites next to
+ * TRI_SITE_OUT. */
+static bool is_inner(const struct tri_sites *s, struct around to, int32_t site)
+{
+    return neighbours_in(s, to, site) == ALL_IN && s->at[site + to.up + 1] != TRI_SITE_OUT &&
+           s->at[site + to.up2] != TRI_SITE_OUT;
+}
+
 /* Does at least one cell around the site exist? in: its neighbours as returned by neighbours_in. */
 static bool has_cell(unsigned in) { return in & (in >> 1 | in << (AROUND - 1)); }
 
@@ -136,17 +144,8 @@ static bool find_cell(const struct tri_sites *s, struct around to, struct place 
     return true;
 }
 
-/* Do both cells of a site exist, with a cell across each of their edges? The site is not TRI_SITE_OUT. */
-static bool is_inner(const struct tri_sites *s, struct around to, int32_t site)
-{
-    const int32_t *at = s->at + site;
-    return (at[1] != TRI_SITE_OUT) & (at[to.up] != TRI_SITE_OUT) & (at[to.up - 1] != TRI_SITE_OUT) &
-           (at[to.up + 1] != TRI_SITE_OUT) & (at[-1] != TRI_SITE_OUT) & (at[to.down] != TRI_SITE_OUT) &
-           (at[to.up2] != TRI_SITE_OUT);
-}
-
 /* Calls `visit` for each cell, row by row from left to right, until a call does not return DONE. `inner`, unless it is
- * NULL: counts the cells without border edges, which are not visited. */
+ * NULL: counts the cells of inner sites, which are not visited. */
 static inline enum tri_outcome each_cell(struct tri_refiner *r, int32_t *inner,
                                          enum tri_outcome (*visit)(struct tri_refiner *r, const struct cell *c))
 {
@@ -156,11 +155,13 @@ static inline enum tri_outcome each_cell(struct tri_refiner *r, int32_t *inner,
         const struct around to = around_row(s, at.row);
         for (at.column = s->row[at.row].first; at.column <= s->row[at.row].last; at.column++) {
             const int32_t site = tri_site(s, at.row, at.column);
-            if (s->at[site] != TRI_SITE_OUT && inner && is_inner(s, to, site)) {
+            if (s->at[site] == TRI_SITE_OUT)
+                continue;
+            if (inner && is_inner(s, to, site)) {
                 *inner += 2;
                 continue;
             }
-            for (int by_edge = 0; by_edge < 2 && s->at[site] != TRI_SITE_OUT; by_edge++)
+            for (int by_edge = 0; by_edge < 2; by_edge++)
                 if (find_cell(s, to, at, by_edge, &c)) {
                     const enum tri_outcome outcome = visit(r, &c);
                     if (outcome != DONE)
