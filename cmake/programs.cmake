@@ -122,7 +122,8 @@ set_target_properties(geojson PROPERTIES POSITION_INDEPENDENT_CODE ON)
 ptriangle_flags(geojson STRICT)
 
 foreach(name IN LISTS PTRIANGLE_SEQUENTIAL_PROGRAMS)
-    ptriangle_program(${name} SOURCES ${PTRIANGLE_MAIN_${name}} LIBS geojson libptriangle-check libptriangle-files libtriangle)
+    ptriangle_program(${name} SOURCES ${PTRIANGLE_MAIN_${name}}
+                      LIBS geojson libptriangle-check libptriangle-files libtriangle)
 endforeach()
 add_library(judged OBJECT ${PTRIANGLE_JUDGED_SOURCES})
 set_target_properties(judged PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -262,7 +262,7 @@ static void set_codes(const struct dividing *d)
 static int32_t number_of(const struct dividing *d, tri_vertex_id v, int32_t *end)
 {
     const struct tri_mesh *mesh = &d->mesh;
-    const int32_t input = v >= mesh->n_input ? d->n_points : mesh->origin ? mesh->origin[v] : v;
+    const int32_t input = v < mesh->n_input ? tri_point_of(mesh, v) : d->n_points;
     if (input < d->n_points)
         return input;
     if (end[v] == 0) {

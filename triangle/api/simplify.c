@@ -84,8 +84,6 @@ static void make_chains(struct simplifying *s)
     }
 }
 
-static int32_t point_of(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->origin ? mesh->origin[v] : v; }
-
 /* Finds the points that may be removed. pieces: number of subsegments of each segment. Ends of segments that meet
  * others on the way stay. So do points on other segments, and at the place of another. */
 static void find_free_points(struct simplifying *s, const struct tri_mesh *mesh, const int32_t *pieces)
@@ -98,13 +96,13 @@ static void find_free_points(struct simplifying *s, const struct tri_mesh *mesh,
         for (int k = 0; k < 2 && segment >= 0 && pieces[segment] != 1; k++) {
             const tri_vertex_id v = mesh->sub[i].v[k];
             if (v < p->n_points)
-                s->is_free[point_of(mesh, v)] = false;
+                s->is_free[tri_point_of(mesh, v)] = false;
         }
     }
     for (int32_t v = 0; mesh->twin && v < p->n_points; v++) {
         const int32_t twin = mesh->twin[v];
         for (int k = 0; k < 2 && twin != v; k++)
-            s->is_free[point_of(mesh, k ? twin : v)] = false;
+            s->is_free[tri_point_of(mesh, k ? twin : v)] = false;
     }
 }
 

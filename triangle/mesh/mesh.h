@@ -179,6 +179,12 @@ static inline const double *tri_region_attributes(const struct tri_mesh *mesh, t
     return mesh->columns ? mesh->columns + (size_t)region * (size_t)mesh->n_columns : &mesh->regions[region].attribute;
 }
 
+/* Returns the number that a vertex v < n_input has among the caller's points. */
+static inline int32_t tri_point_of(const struct tri_mesh *mesh, tri_vertex_id v)
+{
+    return mesh->origin ? mesh->origin[v] : v;
+}
+
 /* Stores the coordinates of a vertex in the caller's units. */
 static inline void tri_mesh_place(const struct tri_mesh *mesh, tri_vertex_id v, double at[2])
 {
